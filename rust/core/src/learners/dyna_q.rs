@@ -1,7 +1,7 @@
 //! Dyna-Q: Q-learning that also learns from a model (R. Sutton, 1990; Sutton & Barto, the box in section 8.2).
 
-use super::common::{Agent, DynaModel, Model, ModelEntry, PlanningProgress, UpdateRule, single_row};
-use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
+use super::common::{Agent, DynaModel, Model, ModelEntry, UpdateRule, row_work, single_row};
+use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::memory::{AllocationError, RunMemory};
 use crate::random::Rng;
 use crate::tasks::Next;
@@ -19,15 +19,12 @@ pub struct DynaQ<M = Model> {
     pub model: M,
     /// The number of planning updates per step, n.
     pub planning_steps: u32,
-    /// The planning of the last step.
-    progress: PlanningProgress,
 }
 
 impl<M: DynaModel> DynaQ<M> {
     /// An update rule before the first step.
     pub fn new(model: M, planning_steps: u32) -> Self {
-        let progress = PlanningProgress::new(model.num_actions());
-        Self { model, planning_steps, progress }
+        Self { model, planning_steps }
     }
 }
 
@@ -45,44 +42,27 @@ impl<R: Copy + AsRef<[u32]>, M: DynaModel> UpdateRule<R, Agent> for DynaQ<M> {
         let (row, entry) = (single_row(&state), ModelEntry::new(reward, &next));
         agent.update_from_entry(row, action, entry);
         self.model.record(row, action, entry);
-        self.progress.begin(self.planning_steps);
-        self.resume(agent, next, rng)
-    }
-
-    #[inline]
-    fn work(&self, _agent: &Agent) -> u64 {
-        self.progress.work()
-    }
-
-    fn reserve(&mut self, _agent: &mut Agent, work: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
-        self.model.reserve(work, memory)
-    }
-
-    #[inline]
-    fn is_unfinished(&self) -> bool {
-        self.progress.is_unfinished()
-    }
-
-    #[inline]
-    fn resume(&mut self, agent: &mut Agent, next: Next<R>, rng: &mut impl Rng) -> usize {
-        for _ in 0..self.progress.take(self.model.work()) {
+        for _ in 0..self.planning_steps {
             let row = self.model.sample_state(rng);
             let action = self.model.sample_action(row, rng);
             if let Some(entry) = self.model.sample(row, action, rng) {
                 agent.update_from_entry(row, action, entry);
             }
         }
-        if self.progress.is_unfinished() { 0 } else { agent.next_action(next, rng) }
+        agent.next_action(next, rng)
+    }
+
+    #[inline]
+    fn work(&self, _agent: &Agent) -> u64 {
+        (1 + u64::from(self.planning_steps)) * (row_work(self.model.num_actions()) + self.model.work())
+    }
+
+    fn reserve(&mut self, _agent: &mut Agent, work: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
+        self.model.reserve(work, memory)
     }
 
     fn persist(&mut self, _shape: (usize, usize), checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
-        self.model.persist(checkpoint)?;
-        self.progress.persist(checkpoint)?;
-        self.model.check_planning(&self.progress, checkpoint)
-    }
-
-    fn abandon_episode(&mut self, _agent: &mut Agent) {
-        self.progress.abandon();
+        self.model.persist(checkpoint)
     }
 }
 

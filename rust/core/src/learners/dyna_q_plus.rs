@@ -1,6 +1,6 @@
 //! Dyna-Q+: Dyna-Q with an exploration bonus (R. Sutton, 1990; Sutton & Barto, section 8.3).
 
-use super::common::{Agent, Model, ModelEntry, PlanningProgress, UpdateRule, single_row};
+use super::common::{Agent, Model, ModelEntry, UpdateRule, row_work, single_row};
 use crate::StopFlag;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::memory::{AllocationError, filled};
@@ -22,8 +22,6 @@ pub struct DynaQPlus {
     now: u64,
     /// The step at which each pair was last tried.
     last_tried: Vec<u64>,
-    /// The planning of the last step.
-    progress: PlanningProgress,
 }
 
 impl DynaQPlus {
@@ -38,8 +36,7 @@ impl DynaQPlus {
         stop: &StopFlag<'_>,
     ) -> Result<Self, AllocationError> {
         let last_tried = filled(&0, model.num_pairs(), stop)?;
-        let progress = PlanningProgress::new(model.num_actions());
-        Ok(Self { model, planning_steps, time_weight, now: 0, last_tried, progress })
+        Ok(Self { model, planning_steps, time_weight, now: 0, last_tried })
     }
 }
 
@@ -59,23 +56,7 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for DynaQPlus {
         self.last_tried[agent.table.weight_index(row, action)] = self.now;
         agent.update_from_entry(row, action, entry);
         self.model.record(row, action, entry);
-        self.progress.begin(self.planning_steps);
-        self.resume(agent, next, rng)
-    }
-
-    #[inline]
-    fn work(&self, _agent: &Agent) -> u64 {
-        self.progress.work()
-    }
-
-    #[inline]
-    fn is_unfinished(&self) -> bool {
-        self.progress.is_unfinished()
-    }
-
-    #[inline]
-    fn resume(&mut self, agent: &mut Agent, next: Next<R>, rng: &mut impl Rng) -> usize {
-        for _ in 0..self.progress.take(0) {
+        for _ in 0..self.planning_steps {
             let row = self.model.sample_state(rng);
             let action = agent.sample_action([row], rng);
             let ModelEntry { reward, next } =
@@ -84,20 +65,19 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for DynaQPlus {
             let reward = reward + self.time_weight * elapsed.sqrt();
             agent.update_from_entry(row, action, ModelEntry { reward, next });
         }
-        if self.progress.is_unfinished() { 0 } else { agent.next_action(next, rng) }
+        agent.next_action(next, rng)
+    }
+
+    #[inline]
+    fn work(&self, _agent: &Agent) -> u64 {
+        (1 + u64::from(self.planning_steps)) * row_work(self.model.num_actions())
     }
 
     fn persist(&mut self, _shape: (usize, usize), checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
         self.model.persist(checkpoint)?;
-        self.progress.persist(checkpoint)?;
-        self.model.check_planning(&self.progress, checkpoint)?;
         self.now.persist(checkpoint)?;
         self.last_tried.persist(checkpoint)?;
         checkpoint.check(self.last_tried.iter().all(|&step| step <= self.now), "step of a visit")
-    }
-
-    fn abandon_episode(&mut self, _agent: &mut Agent) {
-        self.progress.abandon();
     }
 }
 

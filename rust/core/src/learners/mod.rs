@@ -28,10 +28,11 @@ mod watkins_q_lambda;
 pub use actor_critic::ActorCritic;
 pub use actor_critic_lambda::ActorCriticLambda;
 pub use any_algorithm::{AnyAlgorithm, LearnerVisitor};
+pub(crate) use common::StepInParts;
 pub use common::{
     ActionMasks, Agent, CountBonus, Critic, DynaModel, Learner, Model, ModelEntry, NStep, NStepMethod, NStepVisit,
-    PlanningProgress, PolicyGradientLearner, PolicyGradientRule, StochasticModel, TargetPolicy, TdLearner, TraceKind,
-    Traces, TruncationHandling, UpdateRule,
+    PolicyGradientLearner, PolicyGradientRule, StochasticModel, TargetPolicy, TdLearner, TraceKind, Traces,
+    TruncationHandling, UpdateRule,
 };
 pub use differential_q_learning::DifferentialQLearning;
 pub use differential_sarsa::DifferentialSarsa;

@@ -65,16 +65,6 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for MonteCarloControl {
         self.visits.reserve(work, memory)
     }
 
-    #[inline]
-    fn is_unfinished(&self) -> bool {
-        self.visits.steps().is_finishing()
-    }
-
-    fn resume(&mut self, agent: &mut Agent, _next: Next<R>, _rng: &mut impl Rng) -> usize {
-        self.visits.finish(agent);
-        0
-    }
-
     fn end_episode(&mut self, _agent: &mut Agent) {}
 
     fn abandon_episode(&mut self, agent: &mut Agent) {

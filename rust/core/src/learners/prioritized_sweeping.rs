@@ -2,7 +2,7 @@
 //! Barto, the box in section 8.4).
 
 use super::common::{
-    Agent, MAX_WORK_PER_CALL, Model, ModelEntry, Predecessors, PriorityQueue, UpdateRule, row_work, single_row,
+    Agent, Model, ModelEntry, Predecessors, PriorityQueue, StepInParts, UpdateRule, row_work, single_row,
 };
 use crate::StopFlag;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
@@ -32,8 +32,8 @@ pub struct PrioritizedSweeping {
     remaining: u32,
     /// The number of updates since the start of the run.
     updates: u64,
-    /// The work of the last call.
-    work: u64,
+    /// The updates of the last step.
+    planning: StepInParts,
 }
 
 impl PrioritizedSweeping {
@@ -50,47 +50,57 @@ impl PrioritizedSweeping {
         let pairs = model.num_pairs();
         let predecessors = Predecessors::new(pairs / model.num_actions(), pairs, stop)?;
         let queue = PriorityQueue::new(pairs, stop)?;
-        Ok(Self { model, predecessors, queue, planning_steps, threshold, remaining: 0, updates: 0, work: 1 })
-    }
-
-    /// Inserts a pair of the model if its error is large enough.
-    #[inline]
-    fn consider(&mut self, agent: &mut Agent, pair: usize) {
-        let (row, action) = ((pair / self.model.num_actions()) as u32, pair % self.model.num_actions());
-        let Some(ModelEntry { reward, next }) = self.model.entry(row, action) else { return };
-        let target = match next {
-            Some(next) => reward + agent.discount * maximum(agent.action_values([next])),
-            None => reward,
-        };
-        let priority = (target - agent.value([row], action)).abs();
-        if priority > self.threshold {
-            self.queue.insert(pair, priority);
-        }
+        Ok(Self {
+            model,
+            predecessors,
+            queue,
+            planning_steps,
+            threshold,
+            remaining: 0,
+            updates: 0,
+            planning: StepInParts::new(),
+        })
     }
 
     /// Does the updates that remain, or a part of them.
     fn sweep(&mut self, agent: &mut Agent) {
-        let (num_actions, work) = (self.model.num_actions(), row_work(self.model.num_actions()));
-        self.work = work;
-        while self.remaining > 0 && self.work < MAX_WORK_PER_CALL {
-            let Some(pair) = self.queue.pop() else {
-                self.remaining = 0;
-                return;
-            };
-            self.remaining -= 1;
-            self.updates += 1;
-            let (row, action) = ((pair / num_actions) as u32, pair % num_actions);
-            if let Some(entry) = self.model.entry(row, action) {
+        let Self { model, predecessors, queue, threshold, remaining, updates, planning, .. } = self;
+        let work = row_work(model.num_actions());
+        planning.advance(|| {
+            if *remaining == 0 {
+                return (0, false);
+            }
+            let Some(pair) = queue.pop() else { return (0, false) };
+            *remaining -= 1;
+            *updates += 1;
+            let (row, action) = ((pair / model.num_actions()) as u32, pair % model.num_actions());
+            if let Some(entry) = model.entry(row, action) {
                 agent.update_from_entry(row, action, entry);
             }
-            self.work += work;
-            let mut predecessor = self.predecessors.first(row);
+            let mut done = work;
+            let mut predecessor = predecessors.first(row);
             while let Some(found) = predecessor {
-                self.consider(agent, found);
-                self.work += work;
-                predecessor = self.predecessors.after(found);
+                consider(queue, model, agent, (found, *threshold));
+                done += work;
+                predecessor = predecessors.after(found);
             }
-        }
+            (done, *remaining > 0)
+        });
+    }
+}
+
+/// Inserts a pair of the model into the queue if its error is larger than the threshold.
+#[inline]
+fn consider(queue: &mut PriorityQueue, model: &Model, agent: &mut Agent, (pair, threshold): (usize, f64)) {
+    let (row, action) = ((pair / model.num_actions()) as u32, pair % model.num_actions());
+    let Some(ModelEntry { reward, next }) = model.entry(row, action) else { return };
+    let target = match next {
+        Some(next) => reward + agent.discount * maximum(agent.action_values([next])),
+        None => reward,
+    };
+    let priority = (target - agent.value([row], action)).abs();
+    if priority > threshold {
+        queue.insert(pair, priority);
     }
 }
 
@@ -116,24 +126,24 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for PrioritizedSweeping {
             }
         }
         self.model.record(row, action, entry);
-        self.consider(agent, pair);
+        consider(&mut self.queue, &self.model, agent, (pair, self.threshold));
         self.remaining = self.planning_steps;
         self.resume(agent, next, rng)
     }
 
     #[inline]
-    fn work(&self, _agent: &Agent) -> u64 {
-        self.work
+    fn work(&self, agent: &Agent) -> u64 {
+        agent.work() + self.planning.work()
     }
 
     #[inline]
     fn is_unfinished(&self) -> bool {
-        self.remaining > 0
+        self.planning.is_unfinished()
     }
 
     fn resume(&mut self, agent: &mut Agent, next: Next<R>, rng: &mut impl Rng) -> usize {
         self.sweep(agent);
-        if self.remaining > 0 { 0 } else { agent.next_action(next, rng) }
+        if self.planning.is_unfinished() { 0 } else { agent.next_action(next, rng) }
     }
 
     fn planning_updates(&self) -> Option<u64> {
@@ -141,7 +151,7 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for PrioritizedSweeping {
     }
 
     fn abandon_episode(&mut self, _agent: &mut Agent) {
-        self.remaining = 0;
+        self.planning.clear();
     }
 
     fn persist(
@@ -151,7 +161,7 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for PrioritizedSweeping {
     ) -> Result<(), CheckpointError> {
         self.model.persist(checkpoint)?;
         self.queue.persist(checkpoint)?;
-        (&mut self.remaining, &mut self.updates).persist(checkpoint)?;
+        (&mut self.remaining, &mut self.updates, &mut self.planning).persist(checkpoint)?;
         if checkpoint.is_restoring() {
             self.predecessors.clear();
             for pair in 0..self.model.num_pairs() {

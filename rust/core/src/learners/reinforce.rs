@@ -1,6 +1,6 @@
 //! REINFORCE (R. Williams, 1992; Sutton & Barto, the boxes in sections 13.3 and 13.4).
 
-use super::common::{Agent, Critic, MAX_WORK_PER_CALL, PolicyGradientRule, VALUES_PER_WORK};
+use super::common::{Agent, Critic, PolicyGradientRule, VALUES_PER_WORK};
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist, persist_rows};
 use crate::features::ActiveRows;
 use crate::memory::{AllocationError, RunMemory, reserve};
@@ -23,50 +23,39 @@ struct PastStep<R> {
 /// An episode that its time limit cuts off has the return up to there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reinforce<R> {
-    /// The steps of the episode, and how many of them have been learned from.
+    /// The steps of the episode.
     steps: Vec<PastStep<R>>,
-    learned: usize,
-    /// γᵗ
-    power: f64,
-    /// Whether the episode is over and steps are still to be learned from.
-    finishing: bool,
-    /// The work of the last call at the end of the episode.
-    finishing_work: u64,
+    /// The work of the last step.
+    work: u64,
 }
 
 impl<R: ActiveRows> Reinforce<R> {
     /// Before the first episode.
     #[expect(clippy::new_without_default, reason = "as for the other learners")]
     pub fn new() -> Self {
-        Self { steps: Vec::new(), learned: 0, power: 1.0, finishing: false, finishing_work: 0 }
+        Self { steps: Vec::new(), work: 1 }
     }
 
-    /// Turns the rewards into returns, from the last step back.
-    fn sum_rewards(&mut self, discount: f64) {
-        let mut episode_return = 0.0;
-        for step in self.steps.iter_mut().rev() {
-            episode_return = step.reward + discount * episode_return;
-            step.reward = episode_return;
-        }
-        self.finishing_work = self.steps.len() as u64 / VALUES_PER_WORK;
-    }
-
-    /// Learns from the steps of the episode, or from a part of them where they are many.
+    /// Learns from the steps of the episode.
     #[inline(never)]
     fn finish(&mut self, agent: &mut Agent, mut critic: Option<&mut Critic>) {
-        while self.learned < self.steps.len() && self.finishing_work < MAX_WORK_PER_CALL {
-            let PastStep { rows, action, reward: episode_return } = self.steps[self.learned];
+        let mut episode_return = 0.0;
+        for step in self.steps.iter_mut().rev() {
+            episode_return = step.reward + agent.discount * episode_return;
+            step.reward = episode_return;
+        }
+        let mut power = 1.0;
+        for &PastStep { rows, action, reward: episode_return } in &self.steps {
             let mut error = episode_return;
             if let Some(critic) = &mut critic {
                 error -= critic.value(rows);
                 critic.update(rows, error);
             }
-            agent.ascend(rows, action, self.power * error);
-            self.power *= agent.discount;
-            self.learned += 1;
-            self.finishing_work += agent.work();
+            agent.ascend(rows, action, power * error);
+            power *= agent.discount;
         }
-        self.finishing = self.learned < self.steps.len();
+        let steps = self.steps.len() as u64;
+        self.work += steps * agent.work() + steps / VALUES_PER_WORK;
     }
 }
 
@@ -82,15 +71,15 @@ impl<R: ActiveRows> PolicyGradientRule<R> for Reinforce<R> {
         next: Next<R>,
     ) {
         self.steps.push(PastStep { rows: state, action, reward });
+        self.work = agent.work();
         if !matches!(next, Next::NonTerminal(_)) {
-            self.sum_rewards(agent.discount);
             self.finish(agent, critic);
         }
     }
 
     #[inline]
-    fn work(&self, agent: &Agent) -> u64 {
-        agent.work() + self.finishing_work
+    fn work(&self, _agent: &Agent) -> u64 {
+        self.work
     }
 
     /// An episode has as many steps as there is work for them.
@@ -98,19 +87,8 @@ impl<R: ActiveRows> PolicyGradientRule<R> for Reinforce<R> {
         memory.reserve(&mut self.steps, usize::try_from(work).unwrap_or(usize::MAX).min(1 << 20))
     }
 
-    #[inline]
-    fn is_unfinished(&self) -> bool {
-        self.finishing
-    }
-
-    fn resume(&mut self, agent: &mut Agent, critic: Option<&mut Critic>) {
-        self.finishing_work = 0;
-        self.finish(agent, critic);
-    }
-
     fn end_episode(&mut self) {
         self.steps.clear();
-        (self.learned, self.power, self.finishing, self.finishing_work) = (0, 1.0, false, 0);
     }
 
     fn persist(
@@ -134,8 +112,7 @@ impl<R: ActiveRows> PolicyGradientRule<R> for Reinforce<R> {
                 self.steps.push(PastStep { rows, action, reward });
             }
         }
-        checkpoint.index(&mut self.learned, self.steps.len() + 1, "number of steps")?;
-        (&mut self.power, &mut self.finishing).persist(checkpoint)
+        Ok(())
     }
 }
 

@@ -3,14 +3,13 @@
 use std::collections::HashMap;
 
 use super::{LinearValues, PredictionRule, PredictionStep, RowSets};
+use crate::learners::StepInParts;
 use crate::memory::{AllocationError, RunMemory};
 use crate::tasks::Next;
 
 /// A value has settled when the sum of its errors in a presentation is at most this fraction of the largest sum of the
 /// magnitudes of their terms since the last episode. Each row has such a sum, so large values of other rows do not matter.
 const SETTLED: f64 = 1e-12;
-/// How many transitions are read in one call. A step that needs more is left unfinished.
-const MAX_TRANSITIONS_PER_CALL: u64 = 65_536;
 /// How many transitions are read in the time that counts as a work of 1.
 const TRANSITIONS_PER_WORK: u64 = 4;
 
@@ -37,8 +36,8 @@ pub struct BatchTd {
     largest_sizes: Vec<f64>,
     /// Whether these transitions were found to lead to an end.
     leads_to_end: bool,
-    unfinished: bool,
-    work: u64,
+    /// The presentations since the last episode.
+    settling: StepInParts,
 }
 
 impl BatchTd {
@@ -52,8 +51,7 @@ impl BatchTd {
             sizes: vec![0.0; rows],
             largest_sizes: vec![0.0; rows],
             leads_to_end: false,
-            unfinished: false,
-            work: 1,
+            settling: StepInParts::new(),
         }
     }
 
@@ -103,7 +101,6 @@ impl BatchTd {
 
 impl<S: RowSets> PredictionRule<S> for BatchTd {
     fn learn(&mut self, values: &mut LinearValues<S>, step: PredictionStep) {
-        self.work = 1;
         let row = values.rows.first(step.state) as u32;
         let next = match step.next {
             Next::NonTerminal(next) | Next::Truncated(next) => Some(values.rows.first(next) as u32),
@@ -120,11 +117,13 @@ impl<S: RowSets> PredictionRule<S> for BatchTd {
             self.leads_to_end = false;
             self.largest_sizes.fill(0.0);
             self.resume(values);
+        } else {
+            self.settling.clear();
         }
     }
 
     fn work(&self) -> u64 {
-        self.work
+        1 + self.settling.work()
     }
 
     /// With continuous rewards each step is a transition of its own.
@@ -135,23 +134,20 @@ impl<S: RowSets> PredictionRule<S> for BatchTd {
     }
 
     fn is_unfinished(&self) -> bool {
-        self.unfinished
+        self.settling.is_unfinished()
     }
 
     fn resume(&mut self, values: &mut LinearValues<S>) {
-        let (mut read, each) = (0, (self.transitions.len() + self.visits.len()) as u64);
-        self.unfinished = true;
-        while self.unfinished && read < MAX_TRANSITIONS_PER_CALL {
-            self.unfinished = !self.present(values);
-            read += each;
-        }
-        self.work = 1 + read / TRANSITIONS_PER_WORK;
+        let work = 1 + (self.transitions.len() + self.visits.len()) as u64 / TRANSITIONS_PER_WORK;
+        let mut settling = self.settling;
+        settling.advance(|| (work, !self.present(values)));
+        self.settling = settling;
         // Most episodes settle in one call, and need no search.
-        if self.unfinished && values.discount >= 1.0 && !self.leads_to_end {
+        if self.settling.is_unfinished() && values.discount >= 1.0 && !self.leads_to_end {
             self.leads_to_end = self.every_row_leads_to_an_end();
             if !self.leads_to_end {
                 values.give_up();
-                self.unfinished = false;
+                self.settling.clear();
             }
         }
     }
@@ -172,7 +168,7 @@ mod tests {
             learner.rule.learn(&mut learner.values, step(0, -1.0, 1));
             let cut_off = PredictionStep { state: 1, action: 0, reward: -1.0, next: Next::Truncated(0) };
             learner.rule.learn(&mut learner.values, cut_off);
-            assert!(!learner.rule.unfinished);
+            assert!(!learner.rule.settling.is_unfinished());
             assert_eq!(learner.values.diverged(), diverged);
         }
     }
@@ -205,7 +201,7 @@ mod tests {
             learner.rule.learn(&mut learner.values, step(state, -1.0, state + 1));
         }
         learner.rule.learn(&mut learner.values, last(3, -1.0));
-        while learner.rule.unfinished {
+        while learner.rule.settling.is_unfinished() {
             learner.rule.resume(&mut learner.values);
         }
         assert_eq!(learner.values.weights, [-4.0, -3.0, -2.0, -1.0, -1e13]);
@@ -222,7 +218,7 @@ mod tests {
         for reward in episodes {
             learner.rule.learn(&mut learner.values, last(1, reward));
         }
-        assert!(!learner.rule.unfinished);
+        assert!(!learner.rule.settling.is_unfinished());
         for value in learner.values.weights {
             assert!((value - 0.75).abs() < 1e-11, "{value}");
         }

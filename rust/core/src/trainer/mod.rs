@@ -225,7 +225,9 @@ mod tests {
     use super::*;
     use crate::envs::classic_control::MountainCar;
     use crate::features::{Axis, Rounding};
-    use crate::learners::{Agent, DynaQ, DynaQPlus, Model, NStepSarsa, TdLearner, TruncationHandling, UpdateRule};
+    use crate::learners::{
+        Agent, DynaQ, Model, NStepSarsa, PrioritizedSweeping, TdLearner, TruncationHandling, UpdateRule,
+    };
     use crate::policies::{AnyPolicy, TieBreaking};
     use crate::q_table::{QTable, TerminalUpdate};
     use crate::random::{Pcg64, SeedSequence};
@@ -273,8 +275,9 @@ mod tests {
         let stop = StopFlag::new();
         let model = || Model::new(ROWS, ACTIONS, &stop).expect("a small model");
         for terminate in [false, true] {
-            check_parts(&DynaQ::new(model(), 20_000), 4, terminate);
-            check_parts(&DynaQPlus::new(model(), 20_000, 1e-3, &stop).expect("a small model"), 4, terminate);
+            // Every error is large enough, so that the queue is never empty.
+            let sweeping = PrioritizedSweeping::new(model(), 20_000, -1.0, &stop).expect("a small model");
+            check_parts(&sweeping, 4, terminate);
             check_parts(&NStepSarsa::new(5000), 2000, terminate);
         }
     }

@@ -165,17 +165,17 @@ impl Setup {
     fn check_tables<F: Features<[f32; 2], Active = [u32; 1]> + Clone>(&self, grid: &F) {
         let rows = grid.len();
         self.check_all(grid, 1);
+        let (agent, stop) = (|| self.agent(rows, 1), StopFlag::new());
+        let model = || Model::new(rows, ACTIONS, &stop).expect("a small model");
+        self.check(grid, || TdLearner { agent: agent(), rule: DynaQ::new(model(), 3) });
+        let stochastic = || StochasticModel::new(rows, ACTIONS, &stop).expect("a small model");
+        self.check(grid, || TdLearner { agent: agent(), rule: DynaQ::new(stochastic(), 5) });
         // More planning than is done in one call, so that a run can stop within a step. It takes long: a few steps do.
         let (planner, planning) = if self.damage.is_empty() {
             (Self { limit: LIMIT / 10, steps: 1000 * self.steps, ..self.clone() }, 9000)
         } else {
             (self.clone(), 3)
         };
-        let (agent, stop) = (|| self.agent(rows, 1), StopFlag::new());
-        let model = || Model::new(rows, ACTIONS, &stop).expect("a small model");
-        planner.check(grid, || TdLearner { agent: agent(), rule: DynaQ::new(model(), planning) });
-        let stochastic = || StochasticModel::new(rows, ACTIONS, &stop).expect("a small model");
-        self.check(grid, || TdLearner { agent: agent(), rule: DynaQ::new(stochastic(), 5) });
         let sweeping = || PrioritizedSweeping::new(model(), planning, 1e-4, &stop).expect("a small model");
         planner.check(grid, || TdLearner { agent: agent(), rule: sweeping() });
         let pairs = rows * ACTIONS;
@@ -185,8 +185,8 @@ impl Setup {
         }
         let off_policy = || OffPolicyMonteCarlo::new(pairs, LIMIT, (1.0, 0.0), &stop).expect("a few pairs");
         self.check(grid, || TdLearner { agent: agent(), rule: off_policy() });
-        let dyna_q_plus = || DynaQPlus::new(model(), planning, 1e-3, &StopFlag::new()).expect("a small model");
-        planner.check(grid, || TdLearner { agent: agent(), rule: dyna_q_plus() });
+        let dyna_q_plus = || DynaQPlus::new(model(), 3, 1e-3, &StopFlag::new()).expect("a small model");
+        self.check(grid, || TdLearner { agent: agent(), rule: dyna_q_plus() });
     }
 }
 

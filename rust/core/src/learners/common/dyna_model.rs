@@ -1,7 +1,7 @@
 //! The trait of the models that Dyna-Q plans with.
 
-use super::{Model, ModelEntry, PlanningProgress};
-use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
+use super::{Model, ModelEntry};
+use crate::checkpoint::Persist;
 use crate::memory::{AllocationError, RunMemory};
 use crate::random::Rng;
 
@@ -36,12 +36,6 @@ pub trait DynaModel: Persist {
         let (_, _) = (transitions, memory);
         Ok(())
     }
-
-    /// Refuses planning that is unfinished although nothing was tried yet.
-    ///
-    /// # Errors
-    /// `Invalid`.
-    fn check_planning(&self, progress: &PlanningProgress, checkpoint: &Checkpoint<'_>) -> Result<(), CheckpointError>;
 }
 
 impl DynaModel for Model {
@@ -67,9 +61,5 @@ impl DynaModel for Model {
     #[inline]
     fn sample(&self, row: u32, action: usize, _rng: &mut impl Rng) -> Option<ModelEntry> {
         self.entry(row, action)
-    }
-
-    fn check_planning(&self, progress: &PlanningProgress, checkpoint: &Checkpoint<'_>) -> Result<(), CheckpointError> {
-        Self::check_planning(self, progress, checkpoint)
     }
 }

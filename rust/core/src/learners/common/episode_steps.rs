@@ -1,6 +1,5 @@
 //! The steps of an episode, which Monte Carlo methods learn from when it ends.
 
-use super::agent::MAX_WORK_PER_CALL;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::memory::{AllocationError, RunMemory};
 
@@ -17,24 +16,20 @@ pub(in crate::learners) struct EpisodeStep<M> {
     pub(in crate::learners) memo: M,
 }
 
-/// The steps of an unfinished episode, and the learning from them, from the last one backwards, in parts.
+/// The steps of an unfinished episode, which are learned from at its end, from the last one backwards.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::learners) struct EpisodeSteps<M> {
     steps: Vec<EpisodeStep<M>>,
     /// The most steps of an episode.
     limit: u64,
-    /// The return G of what follows the steps that are left.
-    pub(in crate::learners) following: f64,
-    /// Whether the episode is over and steps are left to learn from.
-    finishing: bool,
-    /// The work of the last call.
+    /// The work of the last step.
     work: u64,
 }
 
 impl<M: Copy + Default + Persist> EpisodeSteps<M> {
     /// Before the first episode, whose steps are at most `limit`.
     pub(in crate::learners) fn new(limit: u64) -> Self {
-        Self { steps: Vec::new(), limit, following: 0.0, finishing: false, work: 1 }
+        Self { steps: Vec::new(), limit, work: 1 }
     }
 
     /// Makes room for so many steps more.
@@ -54,36 +49,10 @@ impl<M: Copy + Default + Persist> EpisodeSteps<M> {
         self.steps.iter()
     }
 
-    /// Begins to learn from an episode that is over; `following` is the value of its last state.
-    pub(in crate::learners) fn begin(&mut self, following: f64) {
-        (self.following, self.finishing) = (following, true);
-    }
-
-    /// Calls `learn` for the steps that are left, the last one first, or for a part of them where they are many. It
-    /// returns whether to go on.
-    pub(in crate::learners) fn finish(
-        &mut self,
-        work_per_step: u64,
-        mut learn: impl FnMut(&mut f64, EpisodeStep<M>) -> bool,
-    ) {
-        self.work = 1;
-        while self.work < MAX_WORK_PER_CALL {
-            let Some(step) = self.steps.pop() else {
-                self.finishing = false;
-                return;
-            };
-            self.work += work_per_step;
-            if !learn(&mut self.following, step) {
-                self.abandon();
-                return;
-            }
-        }
-        self.finishing = !self.steps.is_empty();
-    }
-
-    #[inline]
-    pub(in crate::learners) fn is_finishing(&self) -> bool {
-        self.finishing
+    /// Takes out the steps of an episode that is over, the last one first, for an update that does so much work for each.
+    pub(in crate::learners) fn drain(&mut self, work_per_step: u64) -> impl Iterator<Item = EpisodeStep<M>> {
+        self.work = 1 + work_per_step * self.steps.len() as u64;
+        self.steps.drain(..).rev()
     }
 
     #[inline]
@@ -92,8 +61,7 @@ impl<M: Copy + Default + Persist> EpisodeSteps<M> {
     }
 
     /// Forgets the steps.
-    pub(in crate::learners) fn abandon(&mut self) {
-        self.finishing = false;
+    pub(in crate::learners) fn clear(&mut self) {
         self.steps.clear();
     }
 
@@ -117,9 +85,7 @@ impl<M: Copy + Default + Persist> EpisodeSteps<M> {
             checkpoint.index_u32(action, num_actions, "action")?;
             (reward, memo).persist(checkpoint)?;
         }
-        (&mut self.following, &mut self.finishing).persist(checkpoint)?;
-        // An episode that has reached the limit is learned from.
-        let is_valid = if self.finishing { !self.steps.is_empty() } else { (self.steps.len() as u64) < self.limit };
-        checkpoint.check(is_valid || self.steps.is_empty() && !self.finishing, "number of steps")
+        // An episode that has reached the limit was learned from.
+        checkpoint.check((self.steps.len() as u64) < self.limit || self.steps.is_empty(), "number of steps")
     }
 }

@@ -34,25 +34,22 @@ impl FirstVisits {
         self.occurrences[agent.table.weight_index(row, action)] += 1;
         let following = agent.sample_next(next, rng);
         if !matches!(next, Next::NonTerminal(_)) {
-            self.steps.begin(following.map_or(0.0, |(rows, action)| agent.value(rows, action)));
-            self.finish(agent);
+            self.finish(agent, following.map_or(0.0, |(rows, action)| agent.value(rows, action)));
         }
         following.map_or(0, |(_, next_action)| next_action)
     }
 
-    /// G ← γ G + R and, where the pair does not occur earlier, Q(S, A) ← Q(S, A) + α [G - Q(S, A)].
-    pub(in crate::learners) fn finish(&mut self, agent: &mut Agent) {
-        let work = row_work(agent.table.num_actions());
-        let Self { steps, occurrences } = self;
-        steps.finish(work, |following, step| {
-            *following = agent.discount * *following + step.reward;
-            let earlier = &mut occurrences[agent.table.weight_index(step.row, step.action as usize)];
+    /// G ← γ G + R and, where the pair does not occur earlier, Q(S, A) ← Q(S, A) + α [G - Q(S, A)]. The first G is the value
+    /// of the last state.
+    fn finish(&mut self, agent: &mut Agent, mut following: f64) {
+        for step in self.steps.drain(row_work(agent.table.num_actions())) {
+            following = agent.discount * following + step.reward;
+            let earlier = &mut self.occurrences[agent.table.weight_index(step.row, step.action as usize)];
             *earlier -= 1;
             if *earlier == 0 {
-                agent.update([step.row], step.action as usize, *following);
+                agent.update([step.row], step.action as usize, following);
             }
-            true
-        });
+        }
     }
 
     pub(in crate::learners) fn steps(&self) -> &EpisodeSteps<()> {
@@ -68,7 +65,7 @@ impl FirstVisits {
         for step in self.steps.iter() {
             self.occurrences[agent.table.weight_index(step.row, step.action as usize)] = 0;
         }
-        self.steps.abandon();
+        self.steps.clear();
     }
 
     pub(in crate::learners) fn persist(

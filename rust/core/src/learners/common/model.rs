@@ -1,6 +1,6 @@
 //! The model that Dyna plans with (Sutton & Barto, section 8.2).
 
-use super::{Agent, PlanningProgress};
+use super::Agent;
 use crate::StopFlag;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::memory::{AllocationError, filled, with_capacity};
@@ -132,16 +132,6 @@ impl Persist for Model {
 }
 
 impl Model {
-    /// Refuses planning that is unfinished although nothing was tried yet.
-    pub(in crate::learners) fn check_planning(
-        &self,
-        progress: &PlanningProgress,
-        checkpoint: &Checkpoint<'_>,
-    ) -> Result<(), CheckpointError> {
-        let is_valid = !progress.is_unfinished() || !self.visited.is_empty();
-        checkpoint.check(is_valid, "number of planning updates")
-    }
-
     /// The entry of the action that was tried in a row as number `position`.
     fn persist_entry(
         &mut self,

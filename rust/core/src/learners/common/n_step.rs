@@ -2,8 +2,8 @@
 
 use std::collections::VecDeque;
 
-use super::agent::{MAX_WORK_PER_CALL, VALUES_PER_WORK};
-use super::{Agent, UpdateRule};
+use super::agent::VALUES_PER_WORK;
+use super::{Agent, StepInParts, UpdateRule};
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist, persist_rows};
 use crate::features::ActiveRows;
 use crate::memory::{AllocationError, RunMemory};
@@ -53,10 +53,8 @@ pub struct NStep<R, M: NStepMethod<R>> {
     memo: M::Memo,
     /// The pair after the newest reward of a finished episode, or `None` after a terminal state.
     following: Option<(R, usize)>,
-    /// Whether the episode is finished and pairs still await their updates.
-    finishing: bool,
-    /// The work of the updates at the end of the episode, in the last call.
-    finishing_work: u64,
+    /// The updates at the end of the episode.
+    end: StepInParts,
 }
 
 impl<R: ActiveRows, M: NStepMethod<R>> NStep<R, M> {
@@ -67,25 +65,19 @@ impl<R: ActiveRows, M: NStepMethod<R>> NStep<R, M> {
     pub(in crate::learners) fn with_method(method: M, n: usize) -> Self {
         assert!(n > 0, "n_steps must be at least 1, got 0");
         let (visits, memo) = (VecDeque::new(), M::Memo::default());
-        Self { method, n, visits, memo, following: None, finishing: false, finishing_work: 0 }
-    }
-
-    /// Updates the oldest pair.
-    #[inline]
-    fn update_oldest(&mut self, agent: &mut Agent, following: Option<(R, usize)>) {
-        self.method.update(agent, &self.visits, following);
-        self.visits.pop_front();
+        Self { method, n, visits, memo, following: None, end: StepInParts::new() }
     }
 
     /// Updates the last pairs of an episode, or a part of them where they are many.
     #[inline(never)]
     fn finish(&mut self, agent: &mut Agent) {
-        self.finishing_work = 0;
-        while !self.visits.is_empty() && self.finishing_work < MAX_WORK_PER_CALL {
-            self.finishing_work += M::work(agent, self.visits.len());
-            self.update_oldest(agent, self.following);
-        }
-        self.finishing = !self.visits.is_empty();
+        let Self { method, visits, following, end, .. } = self;
+        end.advance(|| {
+            let work = M::work(agent, visits.len());
+            method.update(agent, visits, *following);
+            visits.pop_front();
+            (work, !visits.is_empty())
+        });
     }
 }
 
@@ -116,18 +108,19 @@ impl<R: ActiveRows, M: NStepMethod<R>> UpdateRule<R, Agent> for NStep<R, M> {
             self.following = following;
             self.finish(agent);
         } else if self.visits.len() == self.n {
-            self.update_oldest(agent, following);
+            self.method.update(agent, &self.visits, following);
+            self.visits.pop_front();
         }
         following.map_or(0, |(_, next_action)| next_action)
     }
 
     #[inline]
     fn work(&self, agent: &Agent) -> u64 {
-        M::work(agent, self.visits.len()) + self.finishing_work
+        M::work(agent, self.visits.len()) + self.end.work()
     }
 
     fn end_episode(&mut self, _agent: &mut Agent) {
-        self.finishing_work = 0;
+        self.end.clear();
     }
 
     /// An episode has as many pairs as steps, and at most n of them wait.
@@ -138,7 +131,7 @@ impl<R: ActiveRows, M: NStepMethod<R>> UpdateRule<R, Agent> for NStep<R, M> {
 
     #[inline]
     fn is_unfinished(&self) -> bool {
-        self.finishing
+        self.end.is_unfinished()
     }
 
     fn resume(&mut self, agent: &mut Agent, _next: Next<R>, _rng: &mut impl Rng) -> usize {
@@ -170,8 +163,8 @@ impl<R: ActiveRows, M: NStepMethod<R>> UpdateRule<R, Agent> for NStep<R, M> {
         }
         self.memo.persist(checkpoint)?;
         let mut follows = self.following.is_some();
-        (&mut self.finishing, &mut follows).persist(checkpoint)?;
-        let is_valid = if self.finishing { count > 0 } else { count < self.n };
+        (&mut self.end, &mut follows).persist(checkpoint)?;
+        let is_valid = if self.end.is_unfinished() { count > 0 } else { count < self.n };
         checkpoint.check(is_valid, "number of steps")?;
         self.following = if follows {
             let rows = persist_rows(self.following.map(|(rows, _)| rows), num_rows, checkpoint)?;
@@ -186,7 +179,7 @@ impl<R: ActiveRows, M: NStepMethod<R>> UpdateRule<R, Agent> for NStep<R, M> {
 
     /// The pairs that await their updates are forgotten.
     fn abandon_episode(&mut self, _agent: &mut Agent) {
-        self.finishing = false;
+        self.end.clear();
         self.visits.clear();
     }
 }

@@ -32,17 +32,6 @@ pub trait PolicyGradientRule<R> {
         Ok(())
     }
 
-    /// As [`Learner::is_unfinished`](super::Learner::is_unfinished).
-    #[inline]
-    fn is_unfinished(&self) -> bool {
-        false
-    }
-
-    /// Continues to learn from the last step.
-    fn resume(&mut self, agent: &mut Agent, critic: Option<&mut Critic>) {
-        let (_, _) = (agent, critic);
-    }
-
     /// Called after the last step of every episode, and where an episode is given up.
     fn end_episode(&mut self);
 
@@ -92,17 +81,6 @@ impl<R: Copy + AsRef<[u32]>, U: PolicyGradientRule<R>> Learner<R> for PolicyGrad
 
     fn reserve(&mut self, work: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
         self.rule.reserve(self.agent.table.shape(), work, memory)
-    }
-
-    #[inline]
-    fn is_unfinished(&self) -> bool {
-        self.rule.is_unfinished()
-    }
-
-    /// Only the end of an episode is left unfinished: there is no next action.
-    fn resume(&mut self, _next: Next<R>, _rng: &mut impl Rng) -> usize {
-        self.rule.resume(&mut self.agent, self.critic.as_mut());
-        0
     }
 
     fn end_episode(&mut self) {

@@ -1,7 +1,7 @@
 //! A model of a stochastic environment: how often each outcome followed each state-action pair.
 
 use super::outcome_trees::{OutcomeTrees, Root};
-use super::{DynaModel, Model, ModelEntry, PlanningProgress};
+use super::{DynaModel, Model, ModelEntry};
 use crate::StopFlag;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::memory::{AllocationError, MemoryRoom, RunMemory, filled};
@@ -70,10 +70,6 @@ impl DynaModel for StochasticModel {
 
     fn reserve(&mut self, transitions: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
         self.trees.reserve(usize::try_from(transitions).unwrap_or(usize::MAX), memory)
-    }
-
-    fn check_planning(&self, progress: &PlanningProgress, checkpoint: &Checkpoint<'_>) -> Result<(), CheckpointError> {
-        self.tried.check_planning(progress, checkpoint)
     }
 }
 
