@@ -1,20 +1,16 @@
-//! The environments that Rust steps, one file each, and the registry of them.
+//! The environments that Rust steps, and the registry of them.
 //!
-//! To add an environment, implement [`NativeEnv`] for it in a file of its own ([`classic_control::ClassicEnv`] brings an
+//! To add an environment, implement [`NativeEnv`] for it ([`classic_control::ClassicEnv`] brings an
 //! implementation for what has Gymnasium-style parameters), and add its line to the registry.
 
-mod changing_maze;
+mod book;
 mod classic_control;
 mod gymnasium;
-mod k_armed_bandit;
-mod maximization_bias;
 mod native_env;
 mod py_classic_control;
 mod py_native_env;
 mod py_vector_env;
-mod racetrack;
 mod registry;
-mod short_corridor;
 mod toy_text;
 
 pub(crate) use classic_control::{numpy_uses_libm, step_cart_poles};

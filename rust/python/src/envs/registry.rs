@@ -5,13 +5,9 @@ use std::sync::Arc;
 use pyo3::prelude::*;
 use qtab_core::envs::classic_control::{Acrobot, CartPole, ContinuousMountainCar, MountainCar, Pendulum};
 
-use super::changing_maze::ChangingMazeEnv;
+use super::book::{ChangingMazeEnv, KArmedBanditEnv, MaximizationBiasEnv, RacetrackEnv, ShortCorridorEnv};
 use super::classic_control::DynClassicEnv;
-use super::k_armed_bandit::KArmedBanditEnv;
-use super::maximization_bias::MaximizationBiasEnv;
 use super::native_env::NativeEnv;
-use super::racetrack::RacetrackEnv;
-use super::short_corridor::ShortCorridorEnv;
 use super::toy_text::{BlackjackEnv, TableEnv, TaxiEnv};
 use crate::error::invalid;
 

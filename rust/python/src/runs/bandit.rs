@@ -5,7 +5,7 @@ use std::sync::Arc;
 use qtab_core::StopFlag;
 use qtab_core::tasks::{KArmedBandit, Testbed};
 
-use super::factory::{Batching, Factory};
+use super::factory::BoxedFactory;
 use super::generic::boxed_run;
 use super::{AnyRecordings, RunFactory};
 use crate::convert::Seed;
@@ -22,5 +22,5 @@ pub(crate) fn testbed_runs(testbed: Testbed, spec: &Arc<RunSpec>) -> Box<dyn Run
         let (run, _) = boxed_run(task, (1, 1), seed, &spec, stop, AnyRecordings::Native)?;
         Ok((run, AnyRecordings::OptimalActions(optimal)))
     };
-    Box::new(Factory { build, batching: Batching::one_by_one() })
+    Box::new(BoxedFactory(build))
 }

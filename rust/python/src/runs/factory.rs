@@ -12,7 +12,7 @@ use crate::error::RunError;
 /// A batch of at least this many runs is faster than single runs.
 const HALF: usize = LANES / 2;
 
-/// Builds the runs of one spec in one environment. All of them have one type, which only the factory knows.
+/// Builds the runs of one spec in one environment.
 pub(crate) trait RunFactory: Send + Sync {
     /// Builds a run. What takes long stops when `stop` is set.
     fn build(&self, seed: &Seed, stop: &StopFlag<'_>) -> PyResult<BuiltRun>;
@@ -21,7 +21,7 @@ pub(crate) trait RunFactory: Send + Sync {
     fn batch(&self, room: &MemoryRoom) -> Box<dyn RunBatch + '_>;
 }
 
-/// Runs of one type that advance together.
+/// Runs that advance together.
 pub(crate) trait RunBatch {
     /// How many runs advance together best.
     fn lanes(&self) -> usize;
@@ -41,28 +41,21 @@ pub(crate) trait RunBatch {
 /// Advances some of several runs. An error comes with the index of the run that failed.
 type AdvanceRuns<R> = fn(&mut [R], Budget) -> Result<(), (usize, RunError)>;
 
-/// How several runs of type `R` advance.
-pub(super) struct Batching<R> {
-    lanes: usize,
-    advance: AdvanceRuns<R>,
-}
+/// How several runs of type `R` advance: together, or `None` for one after the other.
+pub(super) struct Batching<R>(Option<AdvanceRuns<R>>);
 
-impl<R: Run> Batching<R> {
+impl<R> Batching<R> {
     /// One run at a time.
     pub(super) fn one_by_one() -> Self {
-        Self { lanes: 1, advance: advance_first }
+        Self(None)
     }
 }
 
 impl<R: Run + BatchedRun> Batching<R> {
     /// As many runs in the processor's vector registers as there are lanes.
     pub(super) fn in_lanes() -> Self {
-        Self { lanes: LANES, advance: advance_lanes }
+        Self(Some(advance_lanes))
     }
-}
-
-fn advance_first<R: Run>(runs: &mut [R], budget: Budget) -> Result<(), (usize, RunError)> {
-    runs.first_mut().map_or(Ok(()), |run| run.advance(budget).map_err(|error| (0, error)))
 }
 
 fn advance_lanes<R: Run + BatchedRun>(runs: &mut [R], budget: Budget) -> Result<(), (usize, RunError)> {
@@ -71,7 +64,7 @@ fn advance_lanes<R: Run + BatchedRun>(runs: &mut [R], budget: Budget) -> Result<
     } else if let Some(runs) = runs.first_chunk_mut::<HALF>() {
         R::advance_all(runs, budget)
     } else {
-        return advance_first(runs, budget);
+        return runs.first_mut().map_or(Ok(()), |run| Run::advance(run, budget).map_err(|error| (0, error)));
     };
     advanced.map_err(|(lane, error)| (lane, error.into()))?;
     for (lane, run) in runs.iter().enumerate() {
@@ -89,42 +82,100 @@ pub(super) struct Factory<R, B> {
 impl<R, B> RunFactory for Factory<R, B>
 where
     R: Run + 'static,
-    B: Fn(&Seed, &StopFlag<'_>) -> PyResult<(R, AnyRecordings)> + Send + Sync,
+    B: Fn(&Seed, &StopFlag<'_>) -> PyResult<R> + Send + Sync,
 {
     fn build(&self, seed: &Seed, stop: &StopFlag<'_>) -> PyResult<BuiltRun> {
-        let (run, recordings) = (self.build)(seed, stop)?;
-        Ok(BuiltRun { run: Box::new(run), recordings, steps_python: false })
+        let run = Box::new((self.build)(seed, stop)?);
+        Ok(BuiltRun { run, recordings: AnyRecordings::None, steps_python: false })
     }
 
     fn batch(&self, room: &MemoryRoom) -> Box<dyn RunBatch + '_> {
-        Box::new(TypedBatch { factory: self, runs: Vec::with_capacity(self.batching.lanes), room: room.clone() })
+        match self.batching {
+            Batching(None) => Box::new(SingleRun { factory: self, run: None, room: room.clone() }),
+            Batching(Some(advance)) => {
+                let runs = Vec::with_capacity(LANES);
+                Box::new(LaneBatch { build: &self.build, advance, runs, room: room.clone() })
+            }
+        }
     }
 }
 
-struct TypedBatch<'a, R, B> {
-    factory: &'a Factory<R, B>,
+/// Builds runs of any type, boxed, by a function of the seed.
+pub(super) struct BoxedFactory<B>(pub(super) B);
+
+impl<B> RunFactory for BoxedFactory<B>
+where
+    B: Fn(&Seed, &StopFlag<'_>) -> PyResult<(Box<dyn Run>, AnyRecordings)> + Send + Sync,
+{
+    fn build(&self, seed: &Seed, stop: &StopFlag<'_>) -> PyResult<BuiltRun> {
+        let (run, recordings) = (self.0)(seed, stop)?;
+        Ok(BuiltRun { run, recordings, steps_python: false })
+    }
+
+    fn batch(&self, room: &MemoryRoom) -> Box<dyn RunBatch + '_> {
+        Box::new(SingleRun { factory: self, run: None, room: room.clone() })
+    }
+}
+
+/// A batch of at most one run.
+struct SingleRun<'a> {
+    factory: &'a dyn RunFactory,
+    run: Option<Box<dyn Run>>,
+    room: MemoryRoom,
+}
+
+impl RunBatch for SingleRun<'_> {
+    fn lanes(&self) -> usize {
+        1
+    }
+
+    fn push(&mut self, seed: &Seed, stop: &StopFlag<'_>) -> PyResult<()> {
+        let mut run = self.factory.build(seed, stop)?.run;
+        run.limit_memory(self.room.clone());
+        self.run = Some(run);
+        Ok(())
+    }
+
+    fn advance(&mut self, budget: Budget) -> Result<(), (usize, RunError)> {
+        self.run.as_mut().map_or(Ok(()), |run| run.advance(budget).map_err(|error| (0, error)))
+    }
+
+    fn run(&self, _index: usize) -> &dyn Run {
+        let Some(run) = &self.run else { unreachable!("a batch is asked for the runs that were added") };
+        &**run
+    }
+
+    fn swap_remove(&mut self, _index: usize) {
+        self.run = None;
+    }
+}
+
+/// Runs of one type in the lanes of vector registers.
+struct LaneBatch<'a, R, B> {
+    build: &'a B,
+    advance: AdvanceRuns<R>,
     runs: Vec<R>,
     room: MemoryRoom,
 }
 
-impl<R, B> RunBatch for TypedBatch<'_, R, B>
+impl<R, B> RunBatch for LaneBatch<'_, R, B>
 where
     R: Run,
-    B: Fn(&Seed, &StopFlag<'_>) -> PyResult<(R, AnyRecordings)>,
+    B: Fn(&Seed, &StopFlag<'_>) -> PyResult<R>,
 {
     fn lanes(&self) -> usize {
-        self.factory.batching.lanes
+        LANES
     }
 
     fn push(&mut self, seed: &Seed, stop: &StopFlag<'_>) -> PyResult<()> {
-        let (mut run, _) = (self.factory.build)(seed, stop)?;
+        let mut run = (self.build)(seed, stop)?;
         run.limit_memory(self.room.clone());
         self.runs.push(run);
         Ok(())
     }
 
     fn advance(&mut self, budget: Budget) -> Result<(), (usize, RunError)> {
-        (self.factory.batching.advance)(&mut self.runs, budget)
+        (self.advance)(&mut self.runs, budget)
     }
 
     fn run(&self, index: usize) -> &dyn Run {

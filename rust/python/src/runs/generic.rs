@@ -3,14 +3,15 @@
 use std::sync::Arc;
 
 use pyo3::prelude::*;
-use qtab_core::features::{ActiveRows, FixedTileCoding, MAX_TILINGS};
+use qtab_core::features::{ActiveRows, MAX_TILINGS};
 use qtab_core::learners::{CountBonus, LearnerVisitor, TruncationHandling};
 use qtab_core::random::AgentRng;
 use qtab_core::tasks::{BoxedTask, EpisodeRecorder, NativeTask, Recordings, RngSnapshot, TimeAware, VisitCounter};
 use qtab_core::{Env, Features, Learner, StopFlag, Task, Trainer, TrainingError};
 
 use super::agent::generic_agent;
-use super::factory::{Batching, Factory};
+use super::factory::BoxedFactory;
+use super::fixed_tilings::{fixed_tiles, match_tilings};
 use super::observed::observed_box;
 use super::path::RunPath;
 use super::{AnyRecordings, Run, RunFactory};
@@ -38,12 +39,11 @@ where
     }
     match &spec.discretizer {
         // Compiled for the usual numbers of tilings, but not once more for what is rarely asked for besides.
-        DiscretizerSpec::Tiles(tiles) if !path.has_wrappers() => match tiles.tilings {
-            8 => fixed_tilings::<E, M, 8>(env, tiles, spec),
-            16 => fixed_tilings::<E, M, 16>(env, tiles, spec),
-            32 => fixed_tilings::<E, M, 32>(env, tiles, spec),
+        DiscretizerSpec::Tiles(tiles) if !path.has_wrappers() => match_tilings!(
+            tiles.tilings,
+            N => fixed_tilings::<E, M, N>(env, tiles, spec),
             _ => generic(env, tiles.tile_coding::<f32, MAX_TILINGS>(), spec),
-        },
+        ),
         DiscretizerSpec::Tiles(tiles) => generic(env, tiles.tile_coding::<f32, MAX_TILINGS>(), spec),
         grid => generic(env, grid.grid(|bound| bound as f32)?, spec),
     }
@@ -58,9 +58,7 @@ fn fixed_tilings<E, const M: usize, const N: usize>(
 where
     E: Env<Action = usize, Observation = [f32; M], State: Send> + Clone + Send + Sync + 'static,
 {
-    let Some(features) = FixedTileCoding::<f32, M, N>::new(&tiles.tile_coding()) else {
-        return Err(invalid("discretizer", format!("{N} tilings of {M} components"), "others"));
-    };
+    let features = fixed_tiles::<M, N>(tiles)?;
     check_actions(&env, spec)?;
     let (spec, shape) = (Arc::clone(spec), (features.len(), N));
     let build = move |seed: &Seed, stop: &StopFlag<'_>| {
@@ -68,7 +66,7 @@ where
         let rng = spec.bit_generator.agent_rng(seed)?;
         Ok((build_learner(BoxedTask::new(task), shape, rng, &spec, stop)?, AnyRecordings::None))
     };
-    Ok(Box::new(Factory { build, batching: Batching::one_by_one() }))
+    Ok(Box::new(BoxedFactory(build)))
 }
 
 /// Refuses a spec for another number of actions.
@@ -91,7 +89,7 @@ where
         let task = NativeTask::new(env.clone(), features.clone(), Some(spec.max_episode_steps), environment_rng(seed));
         boxed_run(task, shape, seed, &spec, stop, AnyRecordings::Native)
     };
-    Ok(Box::new(Factory { build, batching: Batching::one_by_one() }))
+    Ok(Box::new(BoxedFactory(build)))
 }
 
 /// Boxed runs of a task that is made from a seed. `shape` is the number of rows and of active rows.
@@ -108,7 +106,7 @@ where
 {
     let spec = Arc::clone(spec);
     let build = move |seed: &Seed, stop: &StopFlag<'_>| boxed_run(new_task(seed), shape, seed, &spec, stop, keep);
-    Box::new(Factory { build, batching: Batching::one_by_one() })
+    Box::new(BoxedFactory(build))
 }
 
 /// A run of any learner, with recordings if asked for. `shape` is the number of rows and of active rows.

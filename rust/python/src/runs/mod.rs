@@ -5,6 +5,7 @@ mod agent;
 mod answers;
 mod bandit;
 mod factory;
+mod fixed_tilings;
 mod generic;
 mod observed;
 mod path;

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use pyo3::prelude::*;
-use qtab_core::features::{ActiveRows, FixedTileCoding};
+use qtab_core::features::ActiveRows;
 use qtab_core::learners::TruncationHandling;
 use qtab_core::prediction::{
     FromTask, ObservableTask, ObservationPolicy, Observed, PolicyTask, PredictionRule, Predictor, RowSets,
@@ -12,13 +12,14 @@ use qtab_core::random::AgentRng;
 use qtab_core::tasks::{BoxedTask, NativeTask};
 use qtab_core::{Env, Features, StopFlag, Trainer};
 
-use super::factory::{Batching, Factory};
+use super::factory::BoxedFactory;
+use super::fixed_tilings::{fixed_tiles, match_tilings};
 use super::{AnyRecordings, Run, RunFactory};
 use crate::convert::Seed;
-use crate::error::{RunError, invalid};
+use crate::error::RunError;
 use crate::prediction::{BoxFeatures, ObservedVisitor, PredictionSpec};
 use crate::rng::environment_rng;
-use crate::spec::{DiscretizerSpec, RunSpec, TilesSpec};
+use crate::spec::{DiscretizerSpec, RunSpec};
 
 /// Runs of any method in an environment whose observations are `M` float32 numbers.
 pub(super) fn observed_box<E, const M: usize>(
@@ -30,24 +31,18 @@ where
     E: Env<Action = usize, Observation = [f32; M], State: Send> + Clone + Send + Sync + 'static,
 {
     Ok(match &spec.discretizer {
-        // Compiled for the usual numbers of tilings: fewer rows are copied at each step.
-        DiscretizerSpec::Tiles(tiles) if tiles.tilings == 8 => {
-            factory(env, fixed_tiles::<M, 8>(tiles)?, spec, prediction)
-        }
-        DiscretizerSpec::Tiles(tiles) if tiles.tilings == 16 => {
-            factory(env, fixed_tiles::<M, 16>(tiles)?, spec, prediction)
-        }
-        DiscretizerSpec::Tiles(tiles) if tiles.tilings == 32 => {
-            factory(env, fixed_tiles::<M, 32>(tiles)?, spec, prediction)
-        }
-        any => factory(env, BoxFeatures::<f32>::new(any, |bound| bound as f32)?, spec, prediction),
+        // Fewer rows are copied at each step.
+        DiscretizerSpec::Tiles(tiles) => match_tilings!(
+            tiles.tilings,
+            N => factory(env, fixed_tiles::<M, N>(tiles)?, spec, prediction),
+            _ => factory(env, any_features(&spec.discretizer)?, spec, prediction),
+        ),
+        grid => factory(env, any_features(grid)?, spec, prediction),
     })
 }
 
-/// Exactly `N` tilings of `M` components.
-fn fixed_tiles<const M: usize, const N: usize>(tiles: &TilesSpec) -> PyResult<FixedTileCoding<f32, M, N>> {
-    FixedTileCoding::new(&tiles.tile_coding())
-        .ok_or_else(|| invalid("discretizer", format!("{N} tilings of {M} components"), "others"))
+fn any_features(discretizer: &DiscretizerSpec) -> PyResult<BoxFeatures<f32>> {
+    BoxFeatures::new(discretizer, |bound| bound as f32)
 }
 
 fn factory<E, F, const M: usize>(
@@ -66,7 +61,7 @@ where
         let policies = prediction.policies(&spec, |own| BoxFeatures::<f32>::new(own, |bound| bound as f32))?;
         Ok((observed_run(task, policies, seed, &spec, &prediction, stop)?, AnyRecordings::None))
     };
-    Box::new(Factory { build, batching: Batching::one_by_one() })
+    Box::new(BoxedFactory(build))
 }
 
 /// A run of any method on a task with a policy.

@@ -7,7 +7,7 @@ use qtab_core::random::Pcg64;
 use qtab_core::tasks::NativeTask;
 use qtab_core::{Env, Features, Learner, StopFlag, Task, Trainer};
 
-use super::factory::{Batching, Factory};
+use super::factory::BoxedFactory;
 use super::{AnyRecordings, Run, RunFactory};
 use crate::convert::Seed;
 use crate::error::RunError;
@@ -33,7 +33,7 @@ where
         let run = prediction.visit(&spec, stop, PendingRun { task, rng: agent_pcg64(seed) })?;
         Ok((run, AnyRecordings::None))
     };
-    Box::new(Factory { build, batching: Batching::one_by_one() })
+    Box::new(BoxedFactory(build))
 }
 
 /// A task and the agent's generator. With a learner, whatever its type, they become a boxed run.

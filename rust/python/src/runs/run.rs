@@ -112,56 +112,6 @@ where
     }
 }
 
-impl Run for Box<dyn Run> {
-    fn advance(&mut self, budget: Budget) -> Result<(), RunError> {
-        (**self).advance(budget)
-    }
-
-    fn check(&self) -> Result<(), RunError> {
-        (**self).check()
-    }
-
-    fn episodes(&self) -> &EpisodeLog {
-        (**self).episodes()
-    }
-
-    fn take_episodes(&mut self) -> EpisodeLog {
-        (**self).take_episodes()
-    }
-
-    fn tables(&self) -> Vec<&[f64]> {
-        (**self).tables()
-    }
-
-    fn visits(&self) -> Option<&[i64]> {
-        (**self).visits()
-    }
-
-    fn action_masks(&self) -> Option<&[bool]> {
-        (**self).action_masks()
-    }
-
-    fn planning_updates(&self) -> Option<u64> {
-        (**self).planning_updates()
-    }
-
-    fn average_reward(&self) -> Option<f64> {
-        (**self).average_reward()
-    }
-
-    fn limit_memory(&mut self, room: MemoryRoom) {
-        (**self).limit_memory(room);
-    }
-
-    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<EpisodeProgress, CheckpointError> {
-        (**self).persist(checkpoint)
-    }
-
-    fn restore(&mut self, episodes: EpisodeLog, tables: &[&[f64]]) -> Result<(), CheckpointError> {
-        (**self).restore(episodes, tables)
-    }
-}
-
 /// The last episodes of a run, where it records them.
 pub(crate) enum AnyRecordings {
     None,

@@ -15,7 +15,7 @@ use super::agent::policy;
 use super::factory::{Batching, Factory};
 use super::path::{PlainSpec, RunPath};
 use super::prediction::predicting;
-use super::{AnyRecordings, Run, RunFactory, generic};
+use super::{Run, RunFactory, generic};
 use crate::convert::Seed;
 use crate::error::allocation;
 use crate::rng::{agent_pcg64, environment_rng};
@@ -212,13 +212,13 @@ where
                 let (task, learner, rng) = parts(seed, stop)?;
                 let task =
                     VisitCounter::new(task, learner.agent.table.values().len() / N, N, stop).map_err(allocation)?;
-                Ok((Trainer::new(task, learner, rng), AnyRecordings::None))
+                Ok(Trainer::new(task, learner, rng))
             };
             return Box::new(Factory { build, batching: Batching::one_by_one() });
         }
         let build = move |seed: &Seed, stop: &StopFlag<'_>| {
             let (task, learner, rng) = parts(seed, stop)?;
-            Ok((Trainer::new(task, learner, rng), AnyRecordings::None))
+            Ok(Trainer::new(task, learner, rng))
         };
         Box::new(Factory { build, batching })
     }

@@ -5,30 +5,26 @@ use std::sync::Arc;
 use pyo3::prelude::*;
 use qtab_core::Env;
 use qtab_core::envs::SimdEnv;
-use qtab_core::features::FixedTileCoding;
 use qtab_core::learners::{AnyAlgorithm, ExpectedSarsa, QLearning, Sarsa};
 use qtab_core::schedules::LearningRate;
 
 use super::factory::Batching;
+use super::fixed_tilings::{fixed_tiles, match_tilings};
 use super::path::{PlainSpec, RunPath};
 use super::specialized::{Builder, fits, plain_epsilon_greedy};
 use super::{RunFactory, generic_box};
 use crate::spec::{DiscretizerSpec, LearningRateSpec, RunSpec, TilesSpec};
 
 /// Runs of `N` actions that train in batches where the spec asks for Q-learning, Sarsa or Expected Sarsa on a usual number of
-/// tilings (Sutton & Barto, section 9.5.4: a power of two that is at least four times the number of dimensions); the generic
-/// ones otherwise.
+/// tilings; the generic ones otherwise.
 pub(crate) fn tiled_box<E, const M: usize, const N: usize>(env: E, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>>
 where
     E: SimdEnv<M> + Env<Observation = [f32; M], State: Send> + Send + Sync + 'static,
 {
     let runs = match (&spec.discretizer, RunPath::of(spec)) {
-        (DiscretizerSpec::Tiles(tiles), RunPath::Plain(plain)) => match tiles.tilings {
-            8 => of_tilings::<E, M, N, 8>(&env, tiles, plain),
-            16 => of_tilings::<E, M, N, 16>(&env, tiles, plain),
-            32 => of_tilings::<E, M, N, 32>(&env, tiles, plain),
-            _ => None,
-        },
+        (DiscretizerSpec::Tiles(tiles), RunPath::Plain(plain)) => {
+            match_tilings!(tiles.tilings, TILINGS => of_tilings::<E, M, N, TILINGS>(&env, tiles, plain), _ => None)
+        }
         _ => None,
     };
     runs.map_or_else(|| generic_box(env, spec), Ok)
@@ -48,7 +44,7 @@ where
     }
     let LearningRateSpec::Schedule(learning_rate) = spec.learning_rate else { return None };
     let policy = plain_epsilon_greedy(&spec)?;
-    let features = FixedTileCoding::<f32, M, TILINGS>::new(&tiles.tile_coding())?;
+    let features = fixed_tiles::<M, TILINGS>(tiles).ok()?;
     let learning_rate = LearningRate::scheduled(learning_rate.build(spec.episodes), TILINGS);
     let algorithm = spec.algorithm;
     let builder = Builder::<E, _, N> { env: *env, features, spec };
