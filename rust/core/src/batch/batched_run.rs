@@ -1,19 +1,27 @@
 //! The trait of runs that can be trained in batches.
 
+use super::BatchRule;
 use super::batch_loop::BatchLoop;
-use super::{BatchRule, SimdTrainer};
 use crate::envs::{Env, SimdEnv};
 use crate::features::{BatchFeatures, Features, OutOfBounds};
-use crate::learners::{Agent, UpdateRule};
+use crate::learners::{Agent, TdLearner, UpdateRule};
 use crate::policies::EpsilonGreedy;
+use crate::random::Pcg64;
 use crate::schedules::StepSize;
 use crate::simd::SimdLevel;
-use crate::trainer::Budget;
+use crate::tasks::NativeTask;
+use crate::trainer::{Budget, Trainer};
 use crate::training_error::TrainingError;
 
 /// With rewards of at most 1 per step, the values of single rows below this bound cannot reach infinity. Sums over several
 /// rows can: of these a batch checks the errors.
 const FAR_FROM_OVERFLOW: f64 = 1e300;
+
+/// An ε-greedy one-step learner with `N` actions. It can be trained in a batch if its update rule `U` is a
+/// [`BatchRule`](super::BatchRule), its environment `E` steps in SIMD lanes and its features `F` are
+/// [`BatchFeatures`](crate::features::BatchFeatures).
+pub type SimdTrainer<E, F, const N: usize, A, U> =
+    Trainer<NativeTask<E, F>, TdLearner<U, Agent<N, EpsilonGreedy, A>>, Pcg64>;
 
 /// A run that can be trained together with others of its type.
 pub trait BatchedRun: Sized {

@@ -11,13 +11,11 @@ mod episode_lanes;
 mod lane_values;
 mod learning_steps;
 mod row_buffers;
-mod simd_trainer;
 #[cfg(test)]
 mod tests;
 mod updates;
 
 pub use batch_rule::{BatchRule, NextValue};
-pub use batched_run::BatchedRun;
-pub use simd_trainer::SimdTrainer;
+pub use batched_run::{BatchedRun, SimdTrainer};
 
 pub use crate::simd::LANES;

@@ -48,3 +48,14 @@ pub trait Env {
     /// The observation of a state.
     fn observe(&self, state: &Self::State) -> Self::Observation;
 }
+
+/// An environment that knows the probability of each step, as Gymnasium's toy text environments report it in `info`.
+pub trait TransitionProbability: Env {
+    /// One step, and the probability of what was sampled.
+    fn step_with_probability(
+        &self,
+        state: Self::State,
+        action: Self::Action,
+        rng: &mut impl Rng,
+    ) -> (Step<Self::State>, f64);
+}

@@ -6,10 +6,8 @@ mod parameters;
 mod simd_env;
 pub mod tabular;
 pub mod toy_text;
-mod transition_probability;
 pub mod wrappers;
 
-pub use env::{Env, Step};
+pub use env::{Env, Step, TransitionProbability};
 pub use parameters::{Flag, Parameters};
 pub use simd_env::SimdEnv;
-pub use transition_probability::TransitionProbability;

@@ -1,8 +1,17 @@
 //! Linear function approximation with binary features: an action value is the sum over the active rows, from left to
 //! right (Sutton & Barto, equation 9.8). With one active row, as on a grid, it is the value of that row.
 
-use super::{QTable, TerminalUpdate, sum_rows, sum_values};
+use super::QTable;
 use crate::schedules::{LoggedUpdate, StepSize};
+
+/// The update at a terminal state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TerminalUpdate {
+    /// Q ← R, the article's rule. It is right only if the last reward is always the same.
+    Assign,
+    /// Q ← Q + α (R - Q): the value of a terminal state is zero (Sutton & Barto, section 6.1).
+    Target,
+}
 
 impl<const N: usize> QTable<N> {
     /// The action values of an observation with these active rows.
@@ -49,12 +58,6 @@ impl<const N: usize> QTable<N> {
     #[inline]
     pub fn weight_index(&self, row: u32, action: usize) -> usize {
         row as usize * self.num_actions() + action
-    }
-
-    /// The weight at an index.
-    #[inline]
-    pub fn weight_mut(&mut self, weight_index: usize) -> &mut f64 {
-        &mut self.values[weight_index]
     }
 
     /// Q ← Q + α (target - Q). The step size is the share of each row.
@@ -143,6 +146,27 @@ impl<const N: usize> QTable<N> {
         // As integers, which compare faster. It is never -0.
         self.divergence.to_bits() != 0
     }
+}
+
+/// The sums of the values of all actions, in registers.
+#[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
+#[inline(always)]
+pub(crate) fn sum_rows<const A: usize>(mut rows: impl Iterator<Item = [f64; A]>) -> [f64; A] {
+    let mut sums = rows.next().unwrap_or([0.0; A]);
+    for values in rows {
+        for (sum, value) in sums.iter_mut().zip(values) {
+            *sum += value;
+        }
+    }
+    sums
+}
+
+/// The sum of the values of one action.
+#[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
+#[inline(always)]
+pub(crate) fn sum_values(mut values: impl Iterator<Item = f64>) -> f64 {
+    let first = values.next().unwrap_or(0.0);
+    values.fold(first, |sum, value| sum + value)
 }
 
 #[cfg(test)]

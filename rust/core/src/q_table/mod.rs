@@ -2,10 +2,8 @@
 
 mod linear;
 mod moved_values;
-mod row_sums;
 mod table;
-mod terminal_update;
 
-pub(crate) use row_sums::{sum_rows, sum_values};
+pub use linear::TerminalUpdate;
+pub(crate) use linear::{sum_rows, sum_values};
 pub use table::QTable;
-pub use terminal_update::TerminalUpdate;

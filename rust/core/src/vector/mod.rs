@@ -1,6 +1,5 @@
 //! Vector environments: many sub-environments of one kind, stepped together.
 
-mod autoreset;
 mod flags;
 mod lane_states;
 mod shard;
@@ -8,11 +7,9 @@ mod states;
 mod step_buffers;
 #[cfg(test)]
 mod tests;
-mod vector_config;
 mod vector_env;
 
-pub use autoreset::Autoreset;
 pub use lane_states::LaneStates;
 pub use states::{States, StepOutputs};
 pub use step_buffers::StepBuffers;
-pub use vector_env::VectorEnv;
+pub use vector_env::{Autoreset, VectorEnv};

@@ -2,7 +2,7 @@
 
 use super::flags::{CHUNK, Flags};
 use super::states::{States, StepOutputs};
-use super::vector_config::VectorConfig;
+use super::vector_env::VectorConfig;
 use super::{Autoreset, StepBuffers};
 use crate::StopFlag;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};

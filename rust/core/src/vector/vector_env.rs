@@ -5,12 +5,29 @@ use std::sync::{Mutex, PoisonError};
 use std::thread;
 
 use super::shard::Shard;
-use super::vector_config::VectorConfig;
-use super::{Autoreset, States, StepBuffers};
+use super::{States, StepBuffers};
 use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::envs::Env;
 use crate::memory::AllocationError;
 use crate::random::{NoRng, Rng};
+
+/// What happens to a sub-environment when its episode ends: Gymnasium's `AutoresetMode`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Autoreset {
+    /// The next step resets it and ignores its action.
+    NextStep,
+    /// The same step resets it. Its last state is in [`VectorEnv::final_states`].
+    SameStep,
+    /// Nothing. The caller must reset it before the next step.
+    Disabled,
+}
+
+/// The settings that all sub-environments share.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct VectorConfig {
+    pub(super) max_episode_steps: u64,
+    pub(super) autoreset: Autoreset,
+}
 
 /// Several sub-environments of one kind that step together, each with a random generator and a step count. Their
 /// results are those of the same environments stepped one by one. `S` is how their states are stored: `LaneStates` steps

@@ -66,8 +66,8 @@ impl<R: AsRef<[u32]>, L: Learner<R>> Learner<R> for TruncationHandling<L> {
 mod tests {
     use super::*;
     use crate::learners::Sarsa;
-    use crate::learners::common::TdLearner;
-    use crate::learners::common::test_support::{agent, rng};
+    use crate::learners::TdLearner;
+    use crate::learners::test_support::{agent, rng};
 
     #[test]
     fn treating_truncation_as_termination_ignores_the_next_state() {

@@ -1,0 +1,102 @@
+//! Dyna-Q+: Dyna-Q with an exploration bonus (R. Sutton, 1990; Sutton & Barto, section 8.3).
+
+use super::{Model, ModelEntry, single_row};
+use crate::StopFlag;
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
+use crate::learners::{Agent, UpdateRule, row_work};
+use crate::memory::{AllocationError, filled};
+use crate::random::Rng;
+use crate::tasks::Next;
+
+/// Dyna-Q whose planning updates use the reward R + κ √τ, where τ is the number of steps since the pair was last tried in
+/// the environment. Planning considers all actions that a visited state has. An action that was never tried is assumed to lead
+/// back to the same state with a reward of 0 (the book's footnote), and its τ counts from the start of the run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DynaQPlus {
+    /// The model.
+    pub model: Model,
+    /// The number of planning updates per step, n.
+    pub planning_steps: u32,
+    /// The weight of the bonus, κ.
+    pub time_weight: f64,
+    /// The number of steps taken.
+    now: u64,
+    /// The step at which each pair was last tried.
+    last_tried: Vec<u64>,
+}
+
+impl DynaQPlus {
+    /// An update rule before the first step.
+    ///
+    /// # Errors
+    /// `OutOfMemory`; `Stopped` after `stop` was set.
+    pub fn new(
+        model: Model,
+        planning_steps: u32,
+        time_weight: f64,
+        stop: &StopFlag<'_>,
+    ) -> Result<Self, AllocationError> {
+        let last_tried = filled(&0, model.num_pairs(), stop)?;
+        Ok(Self { model, planning_steps, time_weight, now: 0, last_tried })
+    }
+}
+
+impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for DynaQPlus {
+    #[inline]
+    fn learn(
+        &mut self,
+        agent: &mut Agent,
+        state: R,
+        action: usize,
+        reward: f64,
+        next: Next<R>,
+        rng: &mut impl Rng,
+    ) -> usize {
+        let (row, entry) = (single_row(&state), ModelEntry::new(reward, &next));
+        self.now += 1;
+        self.last_tried[agent.table.weight_index(row, action)] = self.now;
+        agent.update_from_entry(row, action, entry);
+        self.model.record(row, action, entry);
+        for _ in 0..self.planning_steps {
+            let row = self.model.sample_state(rng);
+            let action = agent.sample_action([row], rng);
+            let ModelEntry { reward, next } =
+                self.model.entry(row, action).unwrap_or(ModelEntry { reward: 0.0, next: Some(row) });
+            let elapsed = (self.now - self.last_tried[agent.table.weight_index(row, action)]) as f64;
+            let reward = reward + self.time_weight * elapsed.sqrt();
+            agent.update_from_entry(row, action, ModelEntry { reward, next });
+        }
+        agent.next_action(next, rng)
+    }
+
+    #[inline]
+    fn work(&self, _agent: &Agent) -> u64 {
+        (1 + u64::from(self.planning_steps)) * row_work(self.model.num_actions())
+    }
+
+    fn persist(&mut self, _shape: (usize, usize), checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        self.model.persist(checkpoint)?;
+        self.now.persist(checkpoint)?;
+        self.last_tried.persist(checkpoint)?;
+        checkpoint.check(self.last_tried.iter().all(|&step| step <= self.now), "step of a visit")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::learners::test_support::{agent, rng};
+    use crate::learners::{Learner, TdLearner};
+
+    #[test]
+    fn an_action_that_was_not_tried_for_long_gains_value() {
+        let rule = DynaQPlus::new(Model::new(1, 2, &StopFlag::new()).expect("a few pairs"), 64, 1.0, &StopFlag::new())
+            .expect("a few pairs");
+        let mut learner = TdLearner { agent: agent(&[0.0, 0.0]), rule };
+        learner.learn([0], 0, 0.0, Next::Terminal, &mut rng());
+        // Action 1 was never tried: it is assumed to lead back with κ √1, so its value tends to v = 1 + 0.5 v = 2.
+        let &[tried, untried] = learner.agent.table.values() else { unreachable!("two actions") };
+        assert_eq!(tried, 0.0);
+        assert!((untried - 2.0).abs() < 1e-3);
+    }
+}

@@ -1,0 +1,94 @@
+//! Differential Sarsa for continuing tasks (Sutton & Barto, equation 10.10, and the box in section 10.3).
+
+use super::AverageReward;
+use crate::checkpoint::{Checkpoint, CheckpointError};
+use crate::features::ActiveRows;
+use crate::learners::{Agent, UpdateRule};
+use crate::random::Rng;
+use crate::tasks::Next;
+
+/// δ = R - R̄ + Q(S′, A′) - Q(S, A), R̄ ← R̄ + β δ, Q(S, A) ← Q(S, A) + α δ.
+///
+/// R̄ estimates the average reward; there is no discount.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DifferentialSarsa<R> {
+    average_reward: AverageReward<R>,
+}
+
+impl<R: ActiveRows> DifferentialSarsa<R> {
+    /// An update rule before the first step, with the step size β of the average reward.
+    pub fn new(step_size: f64) -> Self {
+        Self { average_reward: AverageReward::new(step_size) }
+    }
+}
+
+impl<R: ActiveRows> UpdateRule<R, Agent> for DifferentialSarsa<R> {
+    fn first_action(&mut self, agent: &mut Agent, state: R, rng: &mut impl Rng) -> Option<usize> {
+        let action = agent.choose(state, rng);
+        if let Some(step) = self.average_reward.take_waiting() {
+            let following = agent.value(state, action);
+            self.average_reward.learn(agent, step, following);
+        }
+        Some(action)
+    }
+
+    #[inline]
+    fn learn(
+        &mut self,
+        agent: &mut Agent,
+        state: R,
+        action: usize,
+        reward: f64,
+        next: Next<R>,
+        rng: &mut impl Rng,
+    ) -> usize {
+        let step = (state, action, reward);
+        let Some((next_state, next_action)) = agent.sample_next(next, rng) else {
+            self.average_reward.wait(step);
+            return 0;
+        };
+        let following = agent.value(next_state, next_action);
+        self.average_reward.learn(agent, step, following);
+        next_action
+    }
+
+    #[inline]
+    fn work(&self, agent: &Agent) -> u64 {
+        agent.work()
+    }
+
+    fn average_reward(&self) -> Option<f64> {
+        Some(self.average_reward.value())
+    }
+
+    fn persist(&mut self, shape: (usize, usize), checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        self.average_reward.persist(shape, checkpoint)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::learners::test_support::{agent, rng};
+    use crate::learners::{Learner, TdLearner};
+
+    #[test]
+    fn two_updates_by_hand() {
+        let mut learner = TdLearner { agent: agent(&[1.0, 0.0, 2.0, 3.0]), rule: DifferentialSarsa::new(0.25) };
+        assert_eq!(learner.learn([0], 0, 6.0, Next::NonTerminal([1]), &mut rng()), 1);
+        // δ = 6 + 3 - 1 = 8
+        assert_eq!((learner.agent.table.values()[0], learner.average_reward()), (5.0, Some(2.0)));
+        learner.learn([0], 0, 6.0, Next::Truncated([1]), &mut rng());
+        // δ = 6 - 2 + 3 - 5 = 2
+        assert_eq!((learner.agent.table.values()[0], learner.average_reward()), (6.0, Some(2.5)));
+    }
+
+    #[test]
+    fn the_last_update_of_an_episode_waits_for_the_next_one() {
+        let mut learner = TdLearner { agent: agent(&[1.0, 0.0, 2.0, 3.0]), rule: DifferentialSarsa::new(0.25) };
+        learner.learn([0], 0, 6.0, Next::Terminal, &mut rng());
+        assert_eq!(learner.agent.table.values()[0], 1.0);
+        assert_eq!(learner.first_action([1], &mut rng()), 1);
+        assert_eq!((learner.agent.table.values()[0], learner.average_reward()), (5.0, Some(2.0)));
+    }
+}

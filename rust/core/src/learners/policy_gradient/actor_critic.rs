@@ -1,0 +1,100 @@
+//! One-step actor-critic (Sutton & Barto, the box in section 13.5).
+
+use super::{Critic, PolicyGradientRule};
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
+use crate::learners::Agent;
+use crate::tasks::Next;
+
+/// In each step:
+///
+/// - δ = R + γ v̂(S′, w) - v̂(S, w)
+/// - w ← w + αʷ δ ∇v̂(S, w)
+/// - θ ← θ + α I δ ∇ln π(A | S, θ)
+/// - I ← γ I
+#[derive(Clone, Debug, PartialEq)]
+pub struct ActorCritic {
+    /// I = γᵗ
+    power: f64,
+}
+
+impl ActorCritic {
+    /// Before the first episode.
+    #[expect(clippy::new_without_default, reason = "as for the other learners")]
+    pub fn new() -> Self {
+        Self { power: 1.0 }
+    }
+}
+
+/// δ = R + γ v̂(S′, w) - v̂(S, w)
+#[inline]
+pub(super) fn td_error<R: Copy + AsRef<[u32]>>(
+    agent: &mut Agent,
+    critic: &Critic,
+    state: R,
+    reward: f64,
+    next: Next<R>,
+) -> f64 {
+    let target = match next {
+        Next::NonTerminal(next_state) | Next::Truncated(next_state) => {
+            reward + agent.discount * critic.value(next_state)
+        }
+        Next::Terminal => reward,
+    };
+    let error = target - critic.value(state);
+    agent.table.check_finite(error);
+    error
+}
+
+impl<R: Copy + AsRef<[u32]>> PolicyGradientRule<R> for ActorCritic {
+    #[inline]
+    fn learn(
+        &mut self,
+        agent: &mut Agent,
+        critic: Option<&mut Critic>,
+        state: R,
+        action: usize,
+        reward: f64,
+        next: Next<R>,
+    ) {
+        let Some(critic) = critic else { return };
+        let error = td_error(agent, critic, state, reward, next);
+        critic.update(state, error);
+        agent.ascend(state, action, self.power * error);
+        self.power *= agent.discount;
+    }
+
+    #[inline]
+    fn work(&self, agent: &Agent) -> u64 {
+        agent.work()
+    }
+
+    fn end_episode(&mut self) {
+        self.power = 1.0;
+    }
+
+    fn persist(&mut self, _shape: (usize, usize), checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        self.power.persist(checkpoint)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::learners::test_support::{agent, rng};
+    use crate::learners::{Learner, PolicyGradientLearner};
+    use crate::policies::AnyPolicy;
+    use crate::q_table::QTable;
+
+    #[test]
+    fn two_steps_by_hand() {
+        let agent = Agent { policy: AnyPolicy::softmax(1.0, 2), ..agent(&[0.0; 4]) };
+        let critic = Critic { table: QTable::new(vec![1.0, 1.0, 4.0, 4.0], 2), step_size: 0.25 };
+        let mut learner = PolicyGradientLearner { agent, critic: Some(critic), rule: ActorCritic::new() };
+        // δ = 3 + 0.5 · 4 - 1
+        learner.learn([0], 0, 3.0, Next::NonTerminal([1]), &mut rng());
+        assert_eq!(Learner::<[u32; 1]>::tables(&learner), [&[1.0, -1.0, 0.0, 0.0], &[2.0, 2.0, 4.0, 4.0]]);
+        // δ = 8 - 4, and I = 0.5
+        learner.learn([1], 0, 8.0, Next::Terminal, &mut rng());
+        assert_eq!(Learner::<[u32; 1]>::tables(&learner), [&[1.0, -1.0, 0.5, -0.5], &[2.0, 2.0, 5.0, 5.0]]);
+    }
+}

@@ -1,0 +1,177 @@
+//! Actor-critic with eligibility traces (Sutton & Barto, the box in section 13.5).
+
+use super::actor_critic::td_error;
+use super::{Critic, PolicyGradientRule};
+use crate::StopFlag;
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
+use crate::learners::{Agent, VALUES_PER_WORK};
+use crate::memory::{AllocationError, RunMemory, filled, reserve};
+use crate::tasks::Next;
+
+/// The mark of a row without traces.
+const NONE: u32 = u32::MAX;
+
+/// In each step, with the traces zʷ and zᶿ that are 0 when an episode begins:
+///
+/// - δ = R + γ v̂(S′, w) - v̂(S, w)
+/// - zʷ ← γλ zʷ + ∇v̂(S, w)
+/// - zᶿ ← γλ zᶿ + I ∇ln π(A | S, θ)
+/// - w ← w + αʷ δ zʷ
+/// - θ ← θ + α δ zᶿ
+/// - I ← γ I
+///
+/// Both traces have the same λ.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ActorCriticLambda {
+    trace_decay: f64,
+    /// I = γᵗ
+    power: f64,
+    /// The rows visited in this episode, in the order of their first visits.
+    visited: Vec<u32>,
+    /// Where each row is in `visited`, or `NONE`.
+    positions: Vec<u32>,
+    /// zʷ of the visited rows.
+    value_traces: Vec<f64>,
+    /// zᶿ of the visited rows, all actions of a row together.
+    preference_traces: Vec<f64>,
+}
+
+impl ActorCriticLambda {
+    /// With the trace decay λ, for a table of so many rows.
+    ///
+    /// # Errors
+    /// `OutOfMemory`; `Stopped` after `stop` was set.
+    pub fn new(trace_decay: f64, n_rows: usize, stop: &StopFlag<'_>) -> Result<Self, AllocationError> {
+        let positions = filled(&NONE, n_rows, stop)?;
+        let (visited, value_traces, preference_traces) = (Vec::new(), Vec::new(), Vec::new());
+        Ok(Self { trace_decay, power: 1.0, visited, positions, value_traces, preference_traces })
+    }
+
+    /// The position of a row, which gets traces if it has none.
+    #[inline]
+    fn position(&mut self, row: u32, num_actions: usize) -> usize {
+        let position = &mut self.positions[row as usize];
+        if *position == NONE {
+            *position = self.visited.len() as u32;
+            self.visited.push(row);
+            self.value_traces.push(0.0);
+            self.preference_traces.resize(self.preference_traces.len() + num_actions, 0.0);
+        }
+        *position as usize
+    }
+
+    /// Makes room for the traces of all rows.
+    fn make_room(&mut self, n_rows: usize, num_actions: usize) -> Result<(), AllocationError> {
+        let missing = n_rows - self.visited.len();
+        reserve(&mut self.visited, missing)?;
+        reserve(&mut self.value_traces, missing)?;
+        reserve(&mut self.preference_traces, missing * num_actions)
+    }
+}
+
+impl<R: Copy + AsRef<[u32]>> PolicyGradientRule<R> for ActorCriticLambda {
+    #[inline]
+    fn learn(
+        &mut self,
+        agent: &mut Agent,
+        critic: Option<&mut Critic>,
+        state: R,
+        action: usize,
+        reward: f64,
+        next: Next<R>,
+    ) {
+        let Some(critic) = critic else { return };
+        let error = td_error(agent, critic, state, reward, next);
+        let num_actions = agent.table.num_actions();
+        let decay = agent.discount * self.trace_decay;
+        for trace in self.value_traces.iter_mut().chain(&mut self.preference_traces) {
+            *trace *= decay;
+        }
+        for &row in state.as_ref() {
+            let position = self.position(row, num_actions);
+            self.value_traces[position] += 1.0;
+        }
+        let gradient = agent.log_gradient(state, action);
+        for &row in state.as_ref() {
+            let first = self.positions[row as usize] as usize * num_actions;
+            for (trace, part) in self.preference_traces[first..][..num_actions].iter_mut().zip(gradient) {
+                *trace += self.power * part;
+            }
+        }
+        let step = agent.step_size() * error;
+        let traces = self.value_traces.iter().zip(self.preference_traces.chunks_exact(num_actions));
+        for (&row, (value_trace, preference_traces)) in self.visited.iter().zip(traces) {
+            critic.add(row, critic.step_size * error * value_trace);
+            for (action, trace) in preference_traces.iter().enumerate() {
+                *agent.table.value_mut(row, action) += step * trace;
+            }
+        }
+        self.power *= agent.discount;
+    }
+
+    #[inline]
+    fn work(&self, agent: &Agent) -> u64 {
+        agent.work() + (self.value_traces.len() + self.preference_traces.len()) as u64 / VALUES_PER_WORK
+    }
+
+    /// The caller knows of these bytes: they are those of a table.
+    fn reserve(&mut self, shape: (usize, usize), _work: u64, _memory: &mut RunMemory) -> Result<(), AllocationError> {
+        self.make_room(shape.0, shape.1)
+    }
+
+    fn end_episode(&mut self) {
+        for &row in &self.visited {
+            self.positions[row as usize] = NONE;
+        }
+        self.visited.clear();
+        self.value_traces.clear();
+        self.preference_traces.clear();
+        self.power = 1.0;
+    }
+
+    fn persist(
+        &mut self,
+        (num_rows, num_actions): (usize, usize),
+        checkpoint: &mut Checkpoint<'_>,
+    ) -> Result<(), CheckpointError> {
+        let mut count = self.visited.len();
+        checkpoint.index(&mut count, num_rows + 1, "number of rows")?;
+        if checkpoint.is_restoring() {
+            PolicyGradientRule::<[u32; 1]>::end_episode(self);
+            self.make_room(num_rows, num_actions).map_err(|_| CheckpointError::OutOfMemory)?;
+        }
+        for index in 0..count {
+            let mut row = self.visited.get(index).copied().unwrap_or_default();
+            checkpoint.index_u32(&mut row, num_rows, "row")?;
+            checkpoint.check(self.position(row, num_actions) == index, "row")?;
+        }
+        self.power.persist(checkpoint)?;
+        self.value_traces.persist(checkpoint)?;
+        self.preference_traces.persist(checkpoint)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::learners::test_support::{agent, rng};
+    use crate::learners::{Learner, PolicyGradientLearner};
+    use crate::policies::AnyPolicy;
+    use crate::q_table::QTable;
+
+    #[test]
+    fn an_error_updates_earlier_states_along_the_traces() {
+        let agent = Agent { policy: AnyPolicy::softmax(1.0, 2), ..agent(&[0.0; 4]) };
+        let critic = Critic { table: QTable::new(vec![1.0, 1.0, 4.0, 4.0], 2), step_size: 0.25 };
+        let rule = ActorCriticLambda::new(0.5, 2, &StopFlag::new()).expect("two rows");
+        let mut learner = PolicyGradientLearner { agent, critic: Some(critic), rule };
+        learner.rule.make_room(2, 2).expect("two rows");
+        // δ = 3 + 0.5 · 4 - 1
+        learner.learn([0], 0, 3.0, Next::NonTerminal([1]), &mut rng());
+        assert_eq!(learner.agent.table.values(), [1.0, -1.0, 0.0, 0.0]);
+        // δ = 8 - 4, I = 0.5, and the first state's traces are a quarter of 1 and of ±0.5
+        learner.learn([1], 0, 8.0, Next::Terminal, &mut rng());
+        assert_eq!(learner.agent.table.values(), [1.25, -1.25, 0.5, -0.5]);
+        assert_eq!(Learner::<[u32; 1]>::tables(&learner)[1], [2.25, 2.25, 5.0, 5.0]);
+    }
+}

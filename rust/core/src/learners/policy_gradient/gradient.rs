@@ -1,0 +1,33 @@
+//! The gradient of an agent's policy with respect to its table, which then holds preferences.
+
+use crate::learners::{Agent, available};
+use crate::schedules::StepSize;
+
+impl Agent {
+    /// ∇ln π(A | S), the part of each action; it is the same for each active row.
+    #[inline]
+    pub(in crate::learners) fn log_gradient(&mut self, rows: impl AsRef<[u32]>, action: usize) -> &[f64] {
+        let values = available::<0>(&mut self.masks, rows.as_ref(), self.table.action_values(&rows));
+        self.policy.log_gradient(values, action)
+    }
+
+    /// θ ← θ + α scale ∇ln π(A | S, θ)
+    #[inline]
+    pub(in crate::learners) fn ascend(&mut self, rows: impl AsRef<[u32]>, action: usize, scale: f64) {
+        self.table.check_finite(scale);
+        let step = self.step_size() * scale;
+        let values = available::<0>(&mut self.masks, rows.as_ref(), self.table.action_values(&rows));
+        let gradient = self.policy.log_gradient(values, action);
+        for &row in rows.as_ref() {
+            for (preference, part) in self.table.row_mut(row).iter_mut().zip(gradient) {
+                *preference += step * part;
+            }
+        }
+    }
+
+    /// The step size α, divided by the number of active rows.
+    #[inline]
+    pub(in crate::learners) fn step_size(&self) -> f64 {
+        self.learning_rate.uniform().unwrap_or_default()
+    }
+}

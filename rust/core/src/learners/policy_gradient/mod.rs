@@ -1,0 +1,14 @@
+//! Policy gradient methods (Sutton & Barto, chapter 13).
+
+mod actor_critic;
+mod actor_critic_lambda;
+mod critic;
+mod gradient;
+mod learner;
+mod reinforce;
+
+pub use actor_critic::ActorCritic;
+pub use actor_critic_lambda::ActorCriticLambda;
+pub use critic::Critic;
+pub use learner::{PolicyGradientLearner, PolicyGradientRule};
+pub use reinforce::Reinforce;

@@ -1,0 +1,129 @@
+//! Watkins's Q(λ) (C. Watkins, 1989; Sutton & Barto, section 12.10, and the box in section 7.6 of the first edition).
+
+#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
+
+use super::{TraceKind, Traces};
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
+use crate::learners::{Agent, UpdateRule, VALUES_PER_WORK, available};
+use crate::memory::{AllocationError, RunMemory};
+use crate::numeric::maximum;
+use crate::policies::Policy;
+use crate::random::Rng;
+use crate::tasks::Next;
+
+/// With the weights w (the Q table) and the traces z, after z has changed for the visit of (S, A):
+///
+/// - δ = R + γ maxₐ Q(S′, a) - Q(S, A)
+/// - w ← w + α δ z
+/// - z ← γλ z if A′ is greedy, otherwise z ← 0
+#[derive(Clone, Debug, PartialEq)]
+pub struct WatkinsQLambda {
+    /// The traces z.
+    pub traces: Traces,
+    /// How a visit changes them.
+    pub kind: TraceKind,
+    /// The trace decay λ.
+    pub trace_decay: f64,
+}
+
+impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for WatkinsQLambda {
+    const HAS_VECTOR_PASSES: bool = true;
+
+    #[inline(always)]
+    fn learn(
+        &mut self,
+        agent: &mut Agent,
+        state: R,
+        action: usize,
+        reward: f64,
+        next: Next<R>,
+        rng: &mut impl Rng,
+    ) -> usize {
+        agent.visit(state, action);
+        self.traces.begin_step(&mut agent.table);
+        let value = self.traces.visit(self.kind, &mut agent.table, state, action);
+        let (next_action, target, greedy) = match next {
+            Next::NonTerminal(next_state) | Next::Truncated(next_state) => {
+                let values = self.traces.action_values(&mut agent.table, next_state);
+                let values = available::<0>(&mut agent.masks, next_state.as_ref(), values);
+                let next_action = agent.policy.choose_in(next_state.as_ref(), values, rng);
+                let largest = maximum(values);
+                // An action that ties for the maximum is greedy, even if it was chosen by exploring.
+                (next_action, reward + agent.discount * largest, values[next_action] == largest)
+            }
+            Next::Terminal => (0, reward, false),
+        };
+        let error = target - value;
+        agent.table.check_finite(error);
+        if greedy {
+            let decay = agent.discount * self.trace_decay;
+            self.traces.apply_td_error_and_decay(&mut agent.table, &agent.learning_rate, error, decay);
+        } else {
+            self.traces.apply_td_error(&mut agent.table, &agent.learning_rate, error);
+            self.traces.clear(&mut agent.table);
+        }
+        next_action
+    }
+
+    #[inline]
+    fn work(&self, agent: &Agent) -> u64 {
+        agent.work() + self.traces.pass_len() as u64 / VALUES_PER_WORK
+    }
+
+    fn end_episode(&mut self, agent: &mut Agent) {
+        self.traces.clear(&mut agent.table);
+    }
+
+    fn complete_tables(&mut self, agent: &mut Agent) {
+        self.traces.complete_table(&mut agent.table);
+    }
+
+    fn reserve(&mut self, agent: &mut Agent, _work: u64, _memory: &mut RunMemory) -> Result<(), AllocationError> {
+        self.traces.reserve(&mut agent.table)
+    }
+
+    fn persist(&mut self, _shape: (usize, usize), checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        self.traces.persist(checkpoint)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::StopFlag;
+    use crate::learners::test_support::{agent, rng};
+    use crate::learners::{Learner, TdLearner};
+    use crate::policies::{AnyPolicy, TieBreaking};
+    use crate::schedules::Schedule;
+
+    fn learner(epsilon: f64) -> TdLearner<WatkinsQLambda> {
+        let mut agent = agent(&[1.0, 0.0, 2.0, 3.0]);
+        agent.policy = AnyPolicy::EpsilonGreedy { epsilon: Schedule::constant(epsilon), ties: TieBreaking::First };
+        let rule = WatkinsQLambda {
+            traces: Traces::new(4, 0.0, &StopFlag::new()).expect("a few weights"),
+            kind: TraceKind::Replacing,
+            trace_decay: 0.5,
+        };
+        TdLearner { agent, rule }
+    }
+
+    #[test]
+    fn an_error_updates_earlier_pairs_while_actions_are_greedy() {
+        let mut learner = learner(0.0);
+        assert_eq!(learner.learn([0], 0, -1.0, Next::NonTerminal([1]), &mut rng()), 1);
+        // δ = -1 - 3, and the first pair's trace is 1/4
+        learner.learn([1], 1, -1.0, Next::Terminal, &mut rng());
+        Learner::<[u32; 1]>::complete_tables(&mut learner);
+        assert_eq!(learner.agent.table.values(), [0.25, 0.0, 2.0, 1.0]);
+    }
+
+    #[test]
+    fn a_non_greedy_action_clears_the_traces() {
+        let mut learner = learner(1.0);
+        let mut rng = rng();
+        while learner.learn([0], 0, -1.0, Next::NonTerminal([1]), &mut rng) == 1 {
+            assert!(!learner.rule.traces.is_empty());
+        }
+        assert!(learner.rule.traces.is_empty());
+    }
+}
