@@ -216,7 +216,7 @@ fn a_state_that_was_watched_from_the_start_needs_no_second_run() {
 }
 
 #[test]
-fn planning_in_parts_is_shown_update_by_update() {
+fn planning_is_shown_update_by_update() {
     let corridor = r#"{"kind": "grid", "layout": ["S.G"], "step_reward": -1, "goal_reward": 5}"#;
     let settings = of_table(r#""dyna_q", "planning_steps": 20000"#);
     let mut playground = Playground::default();
@@ -237,6 +237,26 @@ fn planning_in_parts_is_shown_update_by_update() {
             check_equation(update, 0.9, true, "dyna_q");
         }
         check_that_none_is_missing(updates, &learned, (cell, 4), "dyna_q");
+    }
+}
+
+#[test]
+fn a_step_in_parts_is_shown_update_by_update() {
+    // Nothing leads to the goal: all steps are learned from when the time limit ends the episode.
+    let enclosed = r#"{"kind": "grid", "layout": ["S.#G"], "step_reward": -1, "goal_reward": 5}"#;
+    let settings = of_table(r#""n_step_sarsa", "n_steps": 3000"#).replace(": 60", ": 3000").replace(": 30", ": 1");
+    let mut playground = Playground::default();
+    start(&mut playground, enclosed, &settings, "[1]");
+    finish(&mut playground, 1000);
+    let learned = table(&mut playground, 0);
+    for cell in 0..2 {
+        let inspected = inspect(&mut playground, cell);
+        let updates = inspected.get("updates").and_then(Json::array).expect("updates");
+        assert!(updates.iter().any(|update| text(update, "kind") == "n_step"));
+        for update in updates {
+            check_equation(update, 0.9, true, "n_step_sarsa");
+        }
+        check_that_none_is_missing(updates, &learned, (cell, 4), "n_step_sarsa");
     }
 }
 
