@@ -61,7 +61,7 @@ REFUSED: list[tuple[str, str]] = [
     ("book 10.4 --runs x", "--runs must be an integer, got 'x'"),
     ("book 99", "NAME must be one of "),
     ("bench --seconds x", "--seconds must be a number, got 'x'"),
-    ("bench --part foo", "--part must be one of "),
+    ("bench --part foo", "--part must be training, got 'foo'; python benchmarks/compare.py"),
 ]
 
 

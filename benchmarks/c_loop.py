@@ -4,23 +4,15 @@ import ctypes
 import shutil
 import subprocess
 import tempfile
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-EPISODES = 5000
 COMPILERS = ("cc", "gcc", "clang")
 FLAGS = ("-O3", "-march=native", "-ffp-contract=off", "-shared", "-fPIC")
 """Contraction would fuse multiplications with additions, which Gymnasium and NumPy do not."""
-
-
-def compiled() -> Callable[[int], int] | None:
-    """Returns a function from the seed of a run to its number of steps; None without a compiler of C."""
-    q_learning = build()
-    return None if q_learning is None else lambda seed: train(q_learning, seed, EPISODES)[1]
 
 
 def build() -> Any:
@@ -30,14 +22,12 @@ def build() -> Any:
         return None
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
         built = Path(folder, "article.so")
-        source = Path(__file__).with_name("article.c")
-        command = [compiler, *FLAGS, "-o", str(built), str(source), "-lm"]
+        command = [compiler, *FLAGS, "-o", str(built), str(Path(__file__).with_name("article.c")), "-lm"]
         if subprocess.run(command, capture_output=True, check=False).returncode != 0:  # noqa: S603 - our own file
             return None
         function = ctypes.CDLL(str(built)).q_learning
     function.restype = ctypes.c_int64
-    pointers = [ctypes.c_void_p] * 3
-    function.argtypes = [*pointers, ctypes.c_int64, *[ctypes.c_double] * 4]
+    function.argtypes = [*[ctypes.c_void_p] * 3, ctypes.c_int64, *[ctypes.c_double] * 4]
     return function
 
 

@@ -2,7 +2,6 @@
 
 import subprocess
 import sys
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -28,26 +27,21 @@ print((peak() - before) / 1e6)
 """
 
 
-@dataclass(frozen=True)
-class Footprint:
-    """Import times and memory."""
-
-    gymnasium_milliseconds: float
-    """The time of ``import gymnasium``."""
-    qtab_milliseconds: float
-    """The time that ``import qtab`` adds to it."""
-    megabytes: float | None
-    """The peak memory that a run with default settings adds to the imports; None where it cannot be measured."""
-
-
-def footprint(repeats: int = 5) -> Footprint:
-    """Measures the footprint; the import times are medians over ``repeats`` processes."""
+def footprint(repeats: int = 5) -> str:
+    """Returns the footprint as text; the import times are medians over ``repeats`` processes."""
     _output(_IMPORTS)  # loads the files into the disk cache
-    seconds = np.median([[float(part) for part in _output(_IMPORTS).split()] for _ in range(repeats)], axis=0)
-    megabytes = None if sys.platform == "win32" else float(_output(_MEMORY))
-    return Footprint(float(seconds[0] * 1e3), float(seconds[1] * 1e3), megabytes)
+    times = [[float(seconds) for seconds in _output(_IMPORTS).split()] for _ in range(repeats)]
+    gymnasium, package = np.median(times, axis=0) * 1e3
+    text = f"import qtab adds {package:.1f} ms to the {gymnasium:.0f} ms of import gymnasium"
+    if sys.platform == "win32":  # which does not report the peak memory in this way
+        return text
+    return f"{text}; a default run adds {float(_output(_MEMORY)):.1f} MB to the peak memory after the imports"
 
 
 def _output(program: str) -> str:
     finished = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)  # noqa: S603
     return finished.stdout
+
+
+if __name__ == "__main__":
+    print(footprint())

@@ -6,13 +6,11 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab.bench.timing import Benchmark, Timings
-from qtab.training.train import train
+import qtab
+from tables import Column, Table, added_time
 
 EPISODES, EPISODE_STEPS = 100, 200
-
 BARE, LEARNING = "an idle environment in a bare Python loop", "qtab.train on the idle environment"
-Step = tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]
 
 
 class IdleEnv(gym.Env[NDArray[np.float32], Any]):
@@ -22,22 +20,20 @@ class IdleEnv(gym.Env[NDArray[np.float32], Any]):
     action_space = gym.spaces.Discrete(3)
 
     def __init__(self) -> None:
-        self._step: Step = np.full(2, 0.5, np.float32), -1.0, False, False, {}
+        self._step: Any = np.full(2, 0.5, np.float32), -1.0, False, False, {}
 
-    def reset(
-        self, *, seed: int | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[NDArray[np.float32], dict[str, Any]]:
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> Any:
         """Returns the observation."""
         super().reset(seed=seed, options=options)
         return self._step[0], {}
 
-    def step(self, action: int) -> Step:  # noqa: ARG002 - it has no effect
+    def step(self, action: int) -> Any:  # noqa: ARG002 - it has no effect
         """Returns the observation, a reward of -1, and flags that are False."""
         return self._step
 
 
-def python_stepping() -> dict[str, Benchmark]:
-    """Returns the benchmarks on the idle environment: stepping only, and learning on a grid of 10 x 10 cells."""
+def learning() -> Table:
+    """Returns the table of the idle environment: stepping only, and learning on a grid of 10 x 10 cells."""
     env = IdleEnv()
 
     def bare(index: int) -> int:
@@ -50,14 +46,9 @@ def python_stepping() -> dict[str, Benchmark]:
                     break
         return EPISODES * EPISODE_STEPS
 
-    def learning(index: int) -> int:
-        run = train(env, episodes=EPISODES, max_episode_steps=EPISODE_STEPS, scale=(10, 10), seed=index, progress=False)
-        return int(run.episode_lengths.sum())
+    def learn(index: int) -> int:
+        settings: dict[str, Any] = {"episodes": EPISODES, "max_episode_steps": EPISODE_STEPS, "scale": (10, 10)}
+        return int(qtab.train(env, seed=index, progress=False, **settings).episode_lengths.sum())
 
-    return {BARE: bare, LEARNING: learning}
-
-
-def sentence(timings: Timings) -> str:
-    """Returns the time that learning adds, the median over the rounds of the differences, as a sentence."""
-    added = float(np.median(timings.nanoseconds[LEARNING] - timings.nanoseconds[BARE]))
-    return f"learning adds {added:.0f} ns per step to an environment stepped in Python"
+    title = "Learning on an environment stepped in Python"
+    return Table(title, {BARE: bare, LEARNING: learn}, [Column("added ns", {LEARNING: BARE}, added_time)])

@@ -1,47 +1,18 @@
-"""Q-learning on a transition table, written so that numba can compile it: Gymnasium's toy text with a preset."""
+"""Q-learning on a transition table, written for Numba: Gymnasium's toy text with its default preset."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
+from numba_loops import compiled
 from qtab.config.presets import preset
 from qtab.reference import agent_stream
 
 
-@dataclass(frozen=True, eq=False)
-class TransitionArrays:
-    """A transition table as arrays, (states, actions, outcomes). Of pairs with fewer outcomes, the last is repeated."""
-
-    cumulative: NDArray[np.float64]
-    """The sums of the probabilities, as ``np.cumsum`` has them."""
-    states: NDArray[np.int64]
-    rewards: NDArray[np.float64]
-    terminal: NDArray[np.bool_]
-    initial: NDArray[np.float64]
-    """(states,): the sums of the probabilities of the initial states."""
-
-
-def transition_arrays(env: Any) -> TransitionArrays:
-    """Returns the table of an environment of Gymnasium's toy text."""
-    outcomes = max(len(row) for pairs in env.P.values() for row in pairs.values())
-    shape = (len(env.P), len(env.P[0]), outcomes)
-    cumulative, rewards = np.ones(shape), np.zeros(shape)
-    states, terminal = np.zeros(shape, np.int64), np.zeros(shape, np.bool_)
-    for state, pairs in env.P.items():
-        for action, row in pairs.items():
-            cumulative[state, action, : len(row)] = np.cumsum([outcome[0] for outcome in row])
-            for index in range(outcomes):
-                _, next_state, reward, done = row[min(index, len(row) - 1)]
-                states[state, action, index] = next_state
-                rewards[state, action, index] = reward
-                terminal[state, action, index] = done
-    return TransitionArrays(cumulative, states, rewards, terminal, np.cumsum(env.initial_state_distrib))
-
-
+@compiled
 def q_learning(
     cumulative: NDArray[np.float64],
     states: NDArray[np.int64],
@@ -59,7 +30,11 @@ def q_learning(
     epsilon: float,
     epsilon_reduction: float,
 ) -> int:
-    """Trains a Q table, (states, actions), in place, and returns the number of steps."""
+    """Trains a Q table, (states, actions), in place, on a transition table; returns the number of steps.
+
+    The arrays of the table are (states, actions, outcomes), with the sums of the probabilities in ``cumulative`` and
+    those of the initial states in ``initial``.
+    """
     steps = 0
     for _ in range(episodes):
         number, state = env_rng.random(), 0
@@ -89,13 +64,25 @@ def q_learning(
 
 
 def arguments(name: str, episodes: int) -> Callable[[int], tuple[Any, ...]]:
-    """Returns a function from a seed to the arguments of :func:`q_learning`, with the environment's default preset.
+    """Returns a function from a seed to the arguments of :func:`q_learning`, with the default preset.
 
     The arrays of the environment are made once; each call makes a new Q table and new random generators.
     """
     env: Any = gym.make(name)
-    table, settings = transition_arrays(env.unwrapped), dict[str, Any](preset(name, None)[1])
-    arrays = (table.cumulative, table.states, table.rewards, table.terminal, table.initial)
+    table, settings = env.unwrapped.P, dict[str, Any](preset(name, None)[1])
+    outcomes = max(len(row) for pairs in table.values() for row in pairs.values())
+    shape = (len(table), len(table[0]), outcomes)
+    cumulative, rewards = np.ones(shape), np.zeros(shape)
+    states, terminal = np.zeros(shape, np.int64), np.zeros(shape, np.bool_)
+    for state, pairs in table.items():
+        for action, row in pairs.items():
+            cumulative[state, action, : len(row)] = np.cumsum([outcome[0] for outcome in row])
+            for index in range(outcomes):  # of pairs with fewer outcomes, the last is repeated
+                _, next_state, reward, done = row[min(index, len(row) - 1)]
+                states[state, action, index] = next_state
+                rewards[state, action, index] = reward
+                terminal[state, action, index] = done
+    arrays = (cumulative, states, rewards, terminal, np.cumsum(env.unwrapped.initial_state_distrib))
     learning_rate, epsilon = settings["learning_rate"], settings["epsilon"]
     falls = settings.get("learning_rate_schedule") == "linear"
     numbers = (
@@ -105,19 +92,8 @@ def arguments(name: str, episodes: int) -> Callable[[int], tuple[Any, ...]]:
     )
 
     def with_seed(seed: int) -> tuple[Any, ...]:
-        q = np.full(table.states.shape[:2], float(settings["initial_q"]))
+        q = np.full(shape[:2], float(settings["initial_q"]))
         env_rng = np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed)))
         return *arrays, q, env_rng, agent_stream(seed, "PCG64"), *numbers
 
     return with_seed
-
-
-def compiled(name: str) -> Callable[[int], int] | None:
-    """Returns a function from the seed of a run, compiled by numba, to its number of steps; None without numba."""
-    try:
-        from numba import njit
-    except ModuleNotFoundError:
-        return None
-    fast: Any = njit(q_learning)
-    with_seed = arguments(name, preset(name, None)[1]["episodes"])
-    return lambda seed: int(fast(*with_seed(seed)))

@@ -1,0 +1,50 @@
+"""Times qtab beside Gymnasium, NumPy loops, Numba and C, and prints the tables of docs/explanation/speed.md.
+
+python benchmarks/compare.py training stepping --seconds 60
+"""
+
+import argparse
+from collections.abc import Callable, Mapping, Sequence
+
+import algorithms
+import environment_presets
+import idle_env
+import mountain_car
+import numba_loops
+import vector_envs
+from qtab._utils.versions import versions
+from tables import Table
+
+PARTS: Mapping[str, Sequence[Callable[[], Table]]] = {
+    "training": [mountain_car.training],
+    "environments": [environment_presets.training],
+    "learners": [algorithms.learners],
+    "book": [algorithms.book],
+    "stepping": [mountain_car.stepping, idle_env.learning],
+    "vectors": [vector_envs.stepping],
+}
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Times the parts that are named, or all."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("parts", nargs="*", metavar="PART", help=f"{', '.join(PARTS)}; by default all of them")
+    parser.add_argument("--seconds", type=float, default=10.0, help="the approximate duration of a table (10)")
+    parser.add_argument("--rounds", type=int, help="the number of rounds; by default as many as fit, at least 3")
+    options = parser.parse_args(arguments)
+    if unknown := set(options.parts) - set(PARTS):
+        parser.error(f"PART must be one of {', '.join(PARTS)}, got {', '.join(sorted(unknown))}")
+    found = versions()
+    if found["build"] != "release":
+        print(f"WARNING: this is a {found['build']} build, many times slower: maturin develop --release\n")
+    if not numba_loops.numba:
+        print("numba is not installed, and its loops are left out: pip install numba\n")
+    for part in options.parts or PARTS:
+        for table in PARTS[part]:
+            print(f"{table().measured(options.seconds, options.rounds)}\n", flush=True)
+    print("ns/step is the median over the rounds, × (times as fast) and rel. time the medians of the ratios in a round")
+    print(", ".join(f"{name} {value}" for name, value in found.items()))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,85 @@
+"""The table of a group of benchmarks: nanoseconds per step, and how the benchmarks compare with each other.
+
+Ratios are computed within each round, in which all benchmarks of a table take turns. pytest-benchmark and pyperf time
+one benchmark after the other, and asv interleaves processes only, in each of which Numba would compile again.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab.cli.bench import measure
+
+Benchmark = Callable[[int], int]
+"""Runs one round, given its number, and returns the number of environment steps."""
+Times: TypeAlias = NDArray[np.float64]
+"""(rounds,): nanoseconds per step."""
+
+
+def speed_up(times: Times, base: Times) -> Times:
+    """Returns how many times as fast a benchmark is as the one that it is compared with, in each round."""
+    return base / times
+
+
+def relative_time(times: Times, base: Times) -> Times:
+    """Returns the time of a benchmark relative to the one that it is compared with, in each round."""
+    return times / base
+
+
+def added_time(times: Times, base: Times) -> Times:
+    """Returns the nanoseconds per step that a benchmark takes longer, in each round."""
+    return times - base
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column that compares benchmarks with others."""
+
+    head: str
+    bases: Mapping[str, str]
+    """For each benchmark with an entry in the column: the one that it is compared with."""
+    compare: Callable[[Times, Times], Times] = speed_up
+
+
+@dataclass(frozen=True)
+class Table:
+    """Benchmarks that are timed in the same rounds."""
+
+    title: str
+    benchmarks: Mapping[str, Benchmark]
+    columns: Sequence[Column]
+
+    def measured(self, seconds: float, rounds: int | None) -> str:
+        """Runs the benchmarks and returns the table as text. See :func:`qtab.cli.bench.measure`."""
+        return self.text(measure(self.benchmarks, seconds, rounds))
+
+    def text(self, times: Mapping[str, Times]) -> str:
+        """Returns the table of benchmarks with these times."""
+        lines = [_line(self.title, "ns/step", *(column.head for column in self.columns))]
+        for name, row in times.items():
+            cells = [self._cell(column, name, times) for column in self.columns]
+            lines.append(_line(name, _number(row), *cells))
+        return "\n".join(lines)
+
+    def _cell(self, column: Column, name: str, times: Mapping[str, Times]) -> str:
+        base = column.bases.get(name)
+        return "" if base is None or base not in times else _number(column.compare(times[name], times[base]))
+
+
+def relative_to(base: str, names: Sequence[str]) -> dict[str, str]:
+    """Returns the bases of a column in which these benchmarks are compared with a single one."""
+    return dict.fromkeys(names, base)
+
+
+def _line(name: str, *columns: str) -> str:
+    return f"{name:55}{''.join(f'{column:>13}' for column in columns)}".rstrip()
+
+
+def _number(values: Times) -> str:
+    median = float(np.median(values))
+    if abs(median) < 1:
+        return f"{median:.2g}"
+    return f"{median:,.1f}" if median < 100 else f"{median:,.0f}"
