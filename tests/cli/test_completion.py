@@ -56,8 +56,8 @@ def test_every_command_and_every_setting_is_in_the_script() -> None:
     for shell in ("bash", "zsh"):
         text = script(shell)
         for name in SUBCOMMANDS:
-            assert f"'{name} -'*) words='" in text
-        train = text.split("'train -'*) words='")[1].split("'")[0].split()
+            assert f"'{name} '*' -'*) words='" in text
+        train = text.split("'train '*' -'*) words='")[1].split("'")[0].split()
         assert {f"--{name.replace('_', '-')}" for name in DEFAULTS} <= set(train)
     assert script("zsh").startswith("# Completion of qtab for zsh.")
     assert "bashcompinit" in script("zsh")

@@ -25,7 +25,7 @@ def test_letters_that_an_encoding_lacks_are_written_as_words(tmp_path, monkeypat
     assert "?" not in outputs[encoding]
 
 
-def test_the_help_can_be_read_without_box_characters(monkeypatch):
+def test_the_help_can_be_read_in_ascii(monkeypatch):
     stream = io.TextIOWrapper(io.BytesIO(), encoding="ascii")
     monkeypatch.setattr(sys, "stdout", stream)
     with pytest.raises(SystemExit):

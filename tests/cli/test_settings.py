@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from qtab.cli.train_arguments import parse_arguments
+from qtab.cli.train import parse_arguments
 from qtab.cli.usage import UsageError
 from qtab.config.explanations import explanations
 from support.command import qtab_here
@@ -14,7 +14,7 @@ def help_of(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
     with pytest.raises(SystemExit) as leaving:
         parse_arguments([*arguments, "--help"])
     assert not leaving.value.code
-    return " ".join(capsys.readouterr().out.replace("│", "").split())
+    return " ".join(capsys.readouterr().out.split())
 
 
 @pytest.fixture(autouse=True)

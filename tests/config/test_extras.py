@@ -9,7 +9,7 @@ from qtab._utils import extras
 
 DECLARED = [
     "gymnasium>=1.4",
-    "tyro>=1.0 ; extra == 'cli'",
+    "rich>=1.0 ; extra == 'cli'",
     'tqdm>=4.66; extra == "cli"',
     "tomli>=2.0 ; python_full_version < '3.11' and extra == 'cli'",
     "typing-extensions>=4; (python_version < '3.11') and extra == 'cli'",
@@ -23,7 +23,7 @@ def test_the_advice_depends_on_the_version_of_python(monkeypatch, version, bring
     monkeypatch.setattr(sys, "version_info", version)
     error = extras.missing(ModuleNotFoundError("No module named 'tomli'", name="tomli"), "cli")
     old = " 'tomli>=2.0' 'typing-extensions>=4'" if brings else ""
-    assert str(error) == f"this needs tomli, which is not installed; run: pip install 'tyro>=1.0' 'tqdm>=4.66'{old}"
+    assert str(error) == f"this needs tomli, which is not installed; run: pip install 'rich>=1.0' 'tqdm>=4.66'{old}"
     assert error.name == "tomli"
 
 

@@ -1,9 +1,8 @@
-"""``qtab bench``: the speed of training beside the article's plain loop. The repository's benchmarks/ time the rest."""
+"""Compare the speed of qtab.train with the article's plain loop, in interleaved rounds of one process."""
 
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
@@ -11,38 +10,35 @@ from numpy.typing import NDArray
 
 from qtab._utils import checks
 from qtab._utils.versions import versions
-from qtab.cli.constructors import FLOAT, OPTIONAL_INT
-from qtab.cli.parsing import parse
-from qtab.cli.reporting import OutputFlags, Report
+from qtab.cli.parser import Parser
+from qtab.cli.reporting import Report
 from qtab.cli.usage import UsageError, usage_errors
+from qtab.cli.values import integer, number
 from qtab.reference import agent_stream
 from qtab.training.train import train
 
-COMMAND = "qtab bench"
 ARTICLE, TRAIN = "the article's loop (NumPy on gymnasium.make)", "qtab.train"
 ENV, EPISODES = "MountainCar-v0", 10
 """The environment, and the episodes of the article's loop in a round, to which its schedule is compressed."""
 
 
-@dataclass(frozen=True)
-class Arguments(OutputFlags):
-    """Compare the speed of qtab.train with the article's plain loop, in interleaved rounds of one process."""
-
-    seconds: Annotated[float, FLOAT] = 10.0
-    """The approximate duration; there are at least three rounds."""
-    rounds: Annotated[int | None, OPTIONAL_INT] = None
-    """The number of rounds; by default as many as fit into the duration."""
-    part: str | None = None
-    """Only training; python benchmarks/compare.py, in the repository, times the other parts."""
+def parser() -> Parser:
+    """Returns the parser of ``qtab bench``."""
+    parser = Parser("bench", __doc__)
+    parser.output_flags()
+    parser.option("seconds", number, "The approximate duration; there are at least three rounds.", 10.0)
+    parser.option("rounds", integer, "The number of rounds; by default as many as fit into the duration.")
+    parser.option("part", str, "Only training; python benchmarks/compare.py, in the repository, times the other parts.")
+    return parser
 
 
 def run(arguments: list[str]) -> int:
     """Runs the command and returns its exit code."""
-    options = parse(Arguments, COMMAND, arguments)
+    options = parser().read(arguments)
     if options.part not in (None, "training"):
         others = "python benchmarks/compare.py, in the repository, times the other parts"
         raise UsageError(f"--part must be training, got {options.part!r:.100}; {others}")
-    with Report(COMMAND, options) as report:
+    with Report(options) as report:
         with usage_errors(("seconds", "rounds")):
             seconds = checks.real("seconds", options.seconds, 0, 86_400)
             rounds = None if options.rounds is None else checks.integer("rounds", options.rounds, least=1)

@@ -1,46 +1,40 @@
-"""``qtab book``."""
+"""Run an experiment of Sutton & Barto's book, and print the results."""
 
-from dataclasses import dataclass
+from argparse import Namespace
 from pathlib import Path
-from typing import Annotated
-
-import tyro
 
 from qtab import book
 from qtab._utils.files import check_writable
 from qtab._utils.progress import print_above
-from qtab.cli.constructors import INT, OPTIONAL_INT
-from qtab.cli.parsing import parse
+from qtab.cli.parser import Parser
 from qtab.cli.usage import UsageError, usage_errors
+from qtab.cli.values import integer
 from qtab.plots.axes import check_format
 
-COMMAND = "qtab book"
 ALL = "all"
 
 
-@dataclass(frozen=True)
-class Arguments:
-    """Run an experiment of Sutton & Barto's book, and print the results."""
-
-    experiment: Annotated[tyro.conf.Positional[str | None], tyro.conf.arg(metavar="NAME")] = None
-    """figure-10.4, or 10.4 if no example has the same number, or all; without a name, the experiments are listed."""
-    runs: Annotated[int | None, OPTIONAL_INT] = None
-    """The number of runs of each setting; by default that of the full figure."""
-    seed: Annotated[int, INT] = 0
-    """The seed of the first run; the other runs have the seeds after it."""
-    plot: Path | None = None
-    """Draw the figure to this file; its suffix determines the format."""
-    save: Path | None = None
-    """Write all points to this CSV file."""
-    out: Path | None = None
-    """With all: the folder for the table, the points and the picture of each experiment; what is there is left out."""
-    threads: Annotated[int | None, OPTIONAL_INT] = None
-    """The number of threads; by default one per core. It does not change the results."""
+def parser() -> Parser:
+    """Returns the parser of ``qtab book``."""
+    parser = Parser("book", __doc__)
+    name = "figure-10.4, or 10.4 if no example has the same number, or all; without a name, the experiments are listed."
+    parser.positional("experiment", name, str, default=None, metavar="NAME")
+    parser.option("runs", integer, "The number of runs of each setting; by default that of the full figure.")
+    parser.option("seed", integer, "The seed of the first run; the other runs have the seeds after it.", 0)
+    parser.option("plot", Path, "Draw the figure to this file; its suffix determines the format.")
+    parser.option("save", Path, "Write all points to this CSV file.")
+    out = (
+        "With all: the folder for the table, the points and the picture of each experiment; what is there is left out."
+    )
+    parser.option("out", Path, out, metavar="FOLDER")
+    threads = "The number of threads; by default one per core. It does not change the results."
+    parser.option("threads", integer, threads)
+    return parser
 
 
 def run(arguments: list[str]) -> int:
     """Runs the command and returns its exit code."""
-    options = parse(Arguments, COMMAND, arguments)
+    options = parser().read(arguments)
     if options.experiment is None:
         if any(path is not None for path in (options.plot, options.save, options.out)):
             raise UsageError("NAME must be given with --plot, --save or --out; qtab book lists the names")
@@ -79,7 +73,7 @@ def _list() -> None:
             print_above(f"  {experiment.name:14}{experiment.title}")
 
 
-def _run_all(options: Arguments) -> int:
+def _run_all(options: Namespace) -> int:
     if options.out is None or options.plot is not None or options.save is not None:
         raise UsageError("--out must name a folder for qtab book all, without --plot and --save")
     with usage_errors(("runs", "seed", "threads"), "name"):

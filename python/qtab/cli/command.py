@@ -3,7 +3,6 @@
 import sys
 from importlib import import_module
 
-from qtab._utils.extras import missing
 from qtab._utils.shown import shown
 from qtab._utils.suggestions import did_you_mean
 from qtab.cli.interruption import discard_output, exit_code
@@ -54,9 +53,6 @@ def run(arguments: list[str]) -> int:
     except BrokenPipeError:
         discard_output()
         return EXIT_ERROR
-    except ModuleNotFoundError as error:
-        # All commands need tyro; Python 3.10 has no parser of TOML.
-        return _fail(name, one_line(missing(error, "cli") if error.name in ("tyro", "tomli") else error), EXIT_ERROR)
     except USER_ERRORS as error:
         return _fail(name, one_line(error), EXIT_ERROR)
     except KeyboardInterrupt as error:

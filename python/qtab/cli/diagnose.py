@@ -1,41 +1,34 @@
-"""``qtab diagnose``."""
+"""Look for reasons why a saved run did not solve its environment, and for what to change."""
 
-from dataclasses import dataclass
-from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
-import tyro
 
 from qtab._utils import checks
-from qtab.cli.constructors import INT
-from qtab.cli.parsing import parse
-from qtab.cli.reporting import OutputFlags, Report
+from qtab.cli.parser import Parser
+from qtab.cli.reporting import Report
 from qtab.cli.usage import reading, usage_errors
+from qtab.cli.values import integer
 from qtab.diagnosis.diagnose import diagnose
 from qtab.diagnosis.diagnosis import SEEDS
 from qtab.diagnosis.what_if import WhatIf
 from qtab.results.storage import load
 
-COMMAND = "qtab diagnose"
 
-
-@dataclass(frozen=True)
-class Arguments(OutputFlags):
-    """Look for reasons why a saved run did not solve its environment, and for what to change."""
-
-    run: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="RUN")]
-    """A file written by qtab train --save."""
-    what_if: tyro.conf.FlagCreatePairsOff[bool] = False
-    """Also try the advised changes, one at a time, over many seeds."""
-    seeds: Annotated[int, INT] = SEEDS
-    """The number of seeds for --what-if."""
+def parser() -> Parser:
+    """Returns the parser of ``qtab diagnose``."""
+    parser = Parser("diagnose", __doc__)
+    parser.positional("run", "A file written by qtab train --save.")
+    parser.output_flags()
+    parser.switch("what_if", "Also try the advised changes, one at a time, over many seeds.")
+    parser.option("seeds", integer, "The number of seeds for --what-if.", SEEDS)
+    return parser
 
 
 def run(arguments: list[str]) -> int:
     """Runs the command and returns its exit code."""
-    options = parse(Arguments, COMMAND, arguments)
-    with Report(COMMAND, options) as report:
+    options = parser().read(arguments)
+    with Report(options) as report:
         with usage_errors(("seeds",), "run"):
             if options.what_if:
                 checks.integer("seeds", options.seeds, least=2)

@@ -6,7 +6,6 @@ import unicodedata
 
 HANDLER = "qtab.names"
 """The name of the error handler that writes letters as words."""
-_BOX_LINES = {"HORIZONTAL": "-", "VERTICAL": "|"}
 _SIGNS = {
     **{"≥": ">=", "≤": "<=", "←": "<-", "→": "->", "−": "-", "·": "*", "×": "x"},
     **{"±": "+-", "√": "sqrt ", "…": "...", "ᵀ": "^T"},
@@ -32,11 +31,9 @@ def _in_words(error: UnicodeError) -> tuple[str, int]:
 
 
 def _plain(letter: str) -> str:
-    """A character in ASCII: the name of a Greek letter, a line of a box, a sign in signs, or a question mark."""
+    """A character in ASCII: the name of a Greek letter, a sign in signs, or a question mark."""
     name = unicodedata.name(letter, "")
     if name.startswith("GREEK"):
         word = name.split(" WITH ")[0].split()[-1].replace("LAMDA", "LAMBDA")  # Unicode spells it so
         return word.lower() if "SMALL" in name else word.capitalize()
-    if name.startswith("BOX DRAWINGS"):
-        return _BOX_LINES.get(name.split()[-1], "+")
     return _SIGNS.get(letter, "?")

@@ -1,39 +1,28 @@
-"""``qtab explain``."""
+"""Show steps of an episode of a saved run: why each action was chosen, and each update with its numbers."""
 
-from dataclasses import dataclass
-from pathlib import Path
-from typing import Annotated
-
-import tyro
-
-from qtab.cli.constructors import INT
-from qtab.cli.parsing import parse
-from qtab.cli.reporting import OutputFlags, Report
+from qtab.cli.parser import Parser
+from qtab.cli.reporting import Report
 from qtab.cli.usage import reading, usage_errors
+from qtab.cli.values import integer
 from qtab.explanation.explain import explain
 from qtab.results.storage import load
 
-COMMAND = "qtab explain"
 
-
-@dataclass(frozen=True)
-class Arguments(OutputFlags):
-    """Show steps of an episode of a saved run: why each action was chosen, and each update with its numbers."""
-
-    run: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="RUN")]
-    """A file written by qtab train --save."""
-    episode: Annotated[int, INT] = 0
-    """The number of the episode, from 0."""
-    steps: Annotated[int, INT] = 5
-    """How many steps to show."""
-    start: Annotated[int, INT] = 0
-    """The first of these steps, from 0."""
+def parser() -> Parser:
+    """Returns the parser of ``qtab explain``."""
+    parser = Parser("explain", __doc__)
+    parser.positional("run", "A file written by qtab train --save.")
+    parser.output_flags()
+    parser.option("episode", integer, "The number of the episode, from 0.", 0)
+    parser.option("steps", integer, "How many steps to show.", 5)
+    parser.option("start", integer, "The first of these steps, from 0.", 0)
+    return parser
 
 
 def run(arguments: list[str]) -> int:
     """Runs the command and returns its exit code."""
-    options = parse(Arguments, COMMAND, arguments)
-    with Report(COMMAND, options) as report:
+    options = parser().read(arguments)
+    with Report(options) as report:
         with usage_errors(("episode", "steps", "start"), "run"):
             with reading("RUN", options.run):
                 saved = load(options.run)

@@ -1,34 +1,28 @@
-"""``qtab playground``."""
+"""Open a page that trains agents in the browser: move a slider, and the agent learns anew."""
 
 import tempfile
 import webbrowser
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
-
-import tyro
 
 from qtab._utils.files import replacing
 from qtab._utils.progress import print_above
-from qtab.cli.parsing import parse
+from qtab.cli.parser import Parser
 
-COMMAND = "qtab playground"
 FILE = "qtab-playground.html"
 
 
-@dataclass(frozen=True)
-class Arguments:
-    """Open a page that trains agents in the browser: move a slider, and the agent learns anew."""
-
-    out: Annotated[Path | None, tyro.conf.arg(metavar="PATH")] = None
-    """Where to write the page, one HTML file that needs nothing else; by default into a temporary folder."""
-    no_open: Annotated[bool, tyro.conf.FlagCreatePairsOff] = False
-    """Write the page without opening it."""
+def parser() -> Parser:
+    """Returns the parser of ``qtab playground``."""
+    parser = Parser("playground", __doc__)
+    out = "Where to write the page, one HTML file that needs nothing else; by default into a temporary folder."
+    parser.option("out", Path, out, metavar="PATH")
+    parser.switch("no_open", "Write the page without opening it.")
+    return parser
 
 
 def run(arguments: list[str]) -> int:
     """Runs the command and returns its exit code."""
-    options = parse(Arguments, COMMAND, arguments)
+    options = parser().read(arguments)
     from qtab.playground import page
 
     html = page()

@@ -1,34 +1,28 @@
-"""``qtab report``."""
+"""Write the tables and plots of a sweep into a folder, with one self-contained HTML page."""
 
 import shlex
-from dataclasses import dataclass
 from pathlib import Path
 
-import tyro
-
-from qtab.cli.parsing import parse
-from qtab.cli.reporting import OutputFlags, Report
+from qtab.cli.parser import Parser
+from qtab.cli.reporting import Report
 from qtab.cli.usage import usage_errors
 from qtab.sweeps import load_sweep
 from qtab.sweeps.report import report
 
-COMMAND = "qtab report"
 
-
-@dataclass(frozen=True)
-class Arguments(OutputFlags):
-    """Write the tables and plots of a sweep into a folder, with one self-contained HTML page."""
-
-    store: tyro.conf.Positional[Path]
-    """The store of a qtab sweep, which may still be running."""
-    out: Path | None = None
-    """The folder; by default the name of the store with -report."""
+def parser() -> Parser:
+    """Returns the parser of ``qtab report``."""
+    parser = Parser("report", __doc__)
+    parser.positional("store", "The store of a qtab sweep, which may still be running.")
+    parser.output_flags()
+    parser.option("out", Path, "The folder; by default the name of the store with -report.", metavar="FOLDER")
+    return parser
 
 
 def run(arguments: list[str]) -> int:
     """Runs the command and returns its exit code."""
-    options = parse(Arguments, COMMAND, arguments)
-    with Report(COMMAND, options) as output:
+    options = parser().read(arguments)
+    with Report(options) as output:
         with usage_errors():
             folder = options.out or options.store.with_name(f"{options.store.stem}-report")
             command = shlex.join(["qtab", "report", *arguments])

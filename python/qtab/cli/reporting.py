@@ -6,31 +6,18 @@ import logging
 import math
 import sys
 import warnings
+from argparse import Namespace
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
-import tyro
 
 from qtab._utils.progress import print_above
 from qtab.cli.interruption import discard_output
 from qtab.cli.usage import UsageError, one_line
-
-_Flag = Annotated[bool, tyro.conf.FlagCreatePairsOff]
-
-
-@dataclass(frozen=True, kw_only=True)
-class OutputFlags:
-    """The flags of every command that reports something."""
-
-    quiet: _Flag = False
-    """Print nothing but errors."""
-    json: _Flag = False
-    """Print one JSON object instead of text; progress is shown on standard error only."""
 
 
 class Report:
@@ -39,26 +26,25 @@ class Report:
     After an exception it is printed as well, with what was added until then.
 
     Args:
-        command: The command's name, such as ``qtab train``.
-        flags: What was asked for.
+        options: The arguments of the command, with those of :meth:`~qtab.cli.parser.Parser.output_flags`.
 
     Raises:
         UsageError: if both flags are given.
     """
 
-    def __init__(self, command: str, flags: OutputFlags) -> None:
-        if flags.json and flags.quiet:
+    def __init__(self, options: Namespace) -> None:
+        if options.json and options.quiet:
             raise UsageError("--json must be given without --quiet, which prints nothing")
-        self._command, self._flags = command, flags
+        self._options = options
         self._facts: dict[str, Any] = {}
         self._on_exit = ExitStack()
-        self.progress: bool | None = False if flags.quiet else None
+        self.progress: bool | None = False if options.quiet else None
         """Whether to show progress bars, as the argument ``progress`` of the API."""
         self.writes_files = False
         """Whether the command writes files: it then finishes even if its output is closed, as ``| head`` does."""
 
     def __enter__(self) -> "Report":
-        if self._flags.quiet:
+        if self._options.quiet:
             self._on_exit.enter_context(_without_messages())
         return self
 
@@ -66,12 +52,12 @@ class Report:
         self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
     ) -> None:
         self._on_exit.close()
-        if self._flags.json and self._facts:
-            self._print(json_text({"command": self._command, **self._facts}))
+        if self._options.json and self._facts:
+            self._print(json_text({"command": self._options.command, **self._facts}))
 
     def text(self, lines: str) -> None:
         """Prints text for people."""
-        if not (self._flags.quiet or self._flags.json):
+        if not (self._options.quiet or self._options.json):
             self._print(lines)
 
     def _print(self, lines: str) -> None:
@@ -84,8 +70,8 @@ class Report:
 
     def problem(self, error: Exception) -> None:
         """Reports an error after which the command continues: as text, or on standard error."""
-        if self._flags.quiet or self._flags.json:
-            sys.stderr.write(f"{self._command}: error: {one_line(error)}\n")
+        if self._options.quiet or self._options.json:
+            sys.stderr.write(f"{self._options.command}: error: {one_line(error)}\n")
         else:
             self._print(str(error))
 

@@ -1,17 +1,13 @@
-"""``qtab resume``."""
+"""Continue a saved run exactly where it stopped, or train a finished one for more episodes."""
 
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
 
-import tyro
-
-from qtab.cli.constructors import OPTIONAL_INT
 from qtab.cli.outputs import Outputs
-from qtab.cli.parsing import parse
-from qtab.cli.reporting import OutputFlags, Report
-from qtab.cli.training_report import Training, backend_words, optimum_of
+from qtab.cli.parser import ENV_OF_RUN, Parser
+from qtab.cli.reporting import Report
+from qtab.cli.training_report import OPTIMUM, Training, backend_words, optimum_of
 from qtab.cli.usage import reading, usage_errors
+from qtab.cli.values import integer
 from qtab.config.layers import over
 from qtab.results.run import Run
 from qtab.results.storage import load
@@ -20,38 +16,32 @@ from qtab.training.options import TrainingOptions
 from qtab.training.resolve import resolve
 from qtab.training.resolved_run import ResolvedRun
 
-COMMAND = "qtab resume"
-
-
-@dataclass(frozen=True)
-class Arguments(OutputFlags):
-    """Continue a saved run exactly where it stopped, or train a finished one for more episodes."""
-
-    run: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="RUN")]
-    """A file written by qtab train --save."""
-    episodes: Annotated[int | None, OPTIONAL_INT] = None
-    """The number of episodes of the whole run, those that are finished included; by default that of the run."""
-    save: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
-    """Save the run to this file; by default to RUN, which is replaced. Ctrl-C saves what was learned so far."""
-    checkpoint: Annotated[int | None, tyro.conf.arg(metavar="EPISODES")] = None
-    """Save the run so far, to the same file as the result, each time this many more episodes are finished."""
-    plot: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
-    """Draw the learning curve of the whole run to this file. Its ending gives the format."""
-    snapshots: Annotated[int | None, OPTIONAL_INT] = None
-    """Keep so many copies of the tables, evenly spaced over the whole run, besides those of RUN."""
-    env: Annotated[str | None, tyro.conf.arg(metavar="ENV")] = None
-    """The environment's id, for one that a package registers (package:Name-v0): a file imports nothing."""
-    optimum: tyro.conf.FlagCreatePairsOff[bool] = False
-    """Report how far the run is from the optimum, and draw it. Always done for small tables."""
-
-
 FLAGS = ("episodes", "snapshots", "save", "checkpoint", "plot", "env", "optimum")
+
+
+def parser() -> Parser:
+    """Returns the parser of ``qtab resume``."""
+    parser = Parser("resume", __doc__)
+    parser.positional("run", "A file written by qtab train --save.")
+    parser.output_flags()
+    episodes = "The number of episodes of the whole run, those that are finished included; by default that of the run."
+    parser.option("episodes", integer, episodes)
+    save = "Save the run to this file; by default to RUN, which is replaced. Ctrl-C saves what was learned so far."
+    parser.option("save", Path, save)
+    every = "Save the run so far, to the same file as the result, each time this many more episodes are finished."
+    parser.option("checkpoint", integer, every, metavar="EPISODES")
+    parser.option("plot", Path, "Draw the learning curve of the whole run to this file. Its ending gives the format.")
+    snapshots = "Keep so many copies of the tables, evenly spaced over the whole run, besides those of RUN."
+    parser.option("snapshots", integer, snapshots)
+    parser.option("env", str, ENV_OF_RUN, metavar="ENV")
+    parser.switch("optimum", OPTIMUM)
+    return parser
 
 
 def run(arguments: list[str]) -> int:
     """Runs the command and returns its exit code."""
-    asked = parse(Arguments, COMMAND, arguments)
-    with Report(COMMAND, asked) as report:
+    asked = parser().read(arguments)
+    with Report(asked) as report:
         with usage_errors(FLAGS, "run"):
             with reading("RUN", asked.run):
                 earlier = load(asked.run)

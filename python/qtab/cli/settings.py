@@ -1,47 +1,39 @@
 """The settings of a run as flags, with the explanations of the API's docstrings, and as a TOML file."""
 
-import sys
-from collections.abc import Mapping
-from dataclasses import field, make_dataclass
-from functools import partial
+from argparse import SUPPRESS, Namespace
+from collections.abc import Callable, Mapping
+from functools import cache
 from pathlib import Path
 from types import NoneType
-from typing import Annotated, Any, get_args, get_type_hints
+from typing import Any, get_args, get_type_hints
 
 import numpy as np
-import tyro
 
 from qtab._utils.shown import shown
-from qtab.cli import constructors
-from qtab.cli.usage import reading
+from qtab.cli import values
+from qtab.cli.parser import Parser, Together
+from qtab.cli.toml_file import read_toml
+from qtab.cli.usage import flag, reading
 from qtab.config import DEFAULTS, Config
 from qtab.config.choices import CHOICES
 from qtab.config.explanations import applicability, explanations, groups
 from qtab.config.unknown import check_names
 from qtab.results.storage import load
 
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
-
-_BY_NAME: Mapping[str, Any] = {
-    "env_kwargs": ("[KEY VALUE ...]", "*", constructors.read_pairs),
-    "edges": ("[NUMBER,...] ...", "*", constructors.read_edges),
-    "actions": ("COUNT|ACTION ACTION ...", "*", constructors.read_actions),
-    "action_mask": ("{True,False}", 1, constructors.read_flag),
-    "baseline": ("{True,False}", 1, constructors.read_flag),
-    "time_aware": ("{True,False}", 1, constructors.read_flag),
-    "initial_q": ("LOW HIGH|VALUE|FILE", "*", constructors.read_initial_q),
+_READERS: Mapping[Any, tuple[Callable[[Any], Any], str, bool]] = {
+    "env_kwargs": (values.pairs, "KEY VALUE", True),
+    "edges": (values.edges, "[NUMBER,...]", True),
+    "actions": (values.actions, "COUNT|ACTION", True),
+    "initial_q": (values.initial_q, "LOW HIGH|VALUE|FILE", True),
+    "action_mask": (values.true_or_false, "{True,False}", False),
+    bool: (values.true_or_false, "{True,False}", False),
+    float: (values.number, "FLOAT", False),
+    int: (values.integer, "INT", False),
+    str: (str, "STR", False),
+    tuple[float, ...]: (values.numbers, "FLOAT", True),
+    tuple[int, ...]: (values.integers, "INT", True),
 }
-_BY_TYPE: Mapping[Any, Any] = {
-    float: ("FLOAT", 1, constructors.read_float),
-    int: ("INT", 1, constructors.read_int),
-    str: ("STR", 1, constructors.read_str),
-    tuple[float, ...]: ("[FLOAT ...]", "*", constructors.read_floats),
-    tuple[int, ...]: ("[INT ...]", "*", constructors.read_ints),
-}
-"""What ``--help`` shows after the flag, how many words follow it, and how they are read."""
+"""By the name or type of a setting: how its words are read, what ``--help`` shows for them, whether it has several."""
 _EXPLANATIONS = {
     "edges": "The inner edges between the bins of each component of the observation, such as [-0.5,0,0.5] [0].",
     "actions": "The actions to choose from if the action space is a Box: the number of evenly spaced values along each "
@@ -51,53 +43,56 @@ _EXPLANATIONS = {
     "initial_q": "The initial Q table: drawn uniformly from a range, one number everywhere, or that of a saved run.",
 }
 """The settings whose values look different on the command line."""
+_LONG = 60
+"""Choices that take more characters are listed in the help text."""
 
 
-NOT_GIVEN = object()
-"""What stands for a setting that is not given on the command line."""
-
-
-def flag_groups(defaults: Mapping[str, Any]) -> dict[str, Any]:
-    """Returns the flags of each group of settings, by its title: a dataclass, whose defaults are ``NOT_GIVEN``.
+def add_settings(parser: Parser, defaults: Mapping[str, Any]) -> None:
+    """Adds a flag for each setting but ``env``. A flag that is not given is not in the result.
 
     Args:
+        parser: The parser.
         defaults: The defaults that ``--help`` shows.
     """
-    types = get_type_hints(Config)
-    return {
-        title: make_dataclass(
-            title,
-            [(name, _flag(name, types[name], defaults[name]), field(default=NOT_GIVEN)) for name in names],
-        )
-        for title, names in groups(DEFAULTS.keys() - {"env"}).items()
-    }
+    for title, names in groups(DEFAULTS.keys() - {"env"}).items():
+        group = parser.add_argument_group(f"{title.lower()} options")
+        for name in names:
+            group.add_argument(flag(name), dest=name, default=SUPPRESS, **_flag(name, defaults[name]))
 
 
-def given_flags(group: Any) -> dict[str, Any]:
-    """Returns the settings of a group of flags that are given on the command line."""
-    return {name: value for name, value in vars(group).items() if value is not NOT_GIVEN}
+def given_settings(options: Namespace) -> dict[str, Any]:
+    """Returns the settings that are given as flags."""
+    return {name: getattr(options, name) for name in DEFAULTS if name != "env" and name in options}
 
 
-def _flag(name: str, type_: Any, default: Any) -> Any:
+def _flag(name: str, default: Any) -> dict[str, Any]:
+    """Returns the arguments of ``add_argument``."""
+    text = f"{_EXPLANATIONS.get(name, explanations().get(name, ''))} {applicability(name)}".strip()
+    type_ = _types()[name]
     optional = NoneType in get_args(type_)
+    kind = get_args(type_)[0] if optional else type_
+    read, metavar, several = _READERS.get(name) or _READERS.get(kind) or (str, "NAME", False)
     if name in CHOICES:
-        words = CHOICES[name]
-        kind: Any = f"{{{','.join(words)}}}", 1, partial(constructors.read_choice, choices=words)
-    else:
-        kind = _BY_NAME.get(name) or _BY_TYPE[get_args(type_)[0] if optional else type_]
-    argument = tyro.conf.arg(
-        help=f"{_EXPLANATIONS.get(name, explanations().get(name, ''))} {applicability(name)}".strip(),
-        prefix_name=False,
-        help_behavior_hint=f"(default: {_shown(default)})",
-    )
-    # Of any type: tyro would check Any with typeguard, which takes 30 ms to load.
-    return Annotated[object, constructors.constructor(*kind, optional=optional), argument]
+        read, listed = values.choice(CHOICES[name]), ",".join(CHOICES[name])
+        if len(listed) <= _LONG:
+            metavar = f"{{{listed}}}"
+        else:
+            text += f" One of {', '.join(CHOICES[name])}."
+    if optional:
+        read = values.or_none(read)
+    how = {"action": Together, "nargs": "*", "read": read} if several else {"type": read}
+    return {**how, "metavar": metavar, "help": f"{text} (default: {_shown(default)})".replace("%", "%%")}
+
+
+@cache
+def _types() -> dict[str, Any]:
+    return get_type_hints(Config)
 
 
 def _shown(value: Any) -> str:
     if isinstance(value, np.ndarray):
         return f"an array of shape {value.shape}"
-    return constructors.words_of(value) or "none"
+    return values.words_of(value) or "none"
 
 
 def read_config(path: Path) -> dict[str, Any]:
@@ -107,13 +102,7 @@ def read_config(path: Path) -> dict[str, Any]:
         OSError: if the file cannot be read.
         ValueError: if it is not TOML, or holds an unknown setting.
     """
-    with reading("--config", path), path.open("rb") as file:
-        try:
-            settings = tomllib.load(file)
-        except ValueError as error:
-            raise ValueError(f"--config must be a TOML file, got {shown(str(path))}: {error}") from None
-        except RecursionError:
-            raise ValueError(f"--config must be a TOML file, got {shown(str(path))}: it is nested too deeply") from None
+    settings = read_toml("--config", path)
     try:
         check_names(settings, DEFAULTS)
     except TypeError as error:

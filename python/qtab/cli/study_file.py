@@ -1,20 +1,15 @@
 """The study file of ``qtab sweep``: a TOML file that describes a sweep."""
 
-import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from qtab._utils.suggestions import did_you_mean
+from qtab.cli.toml_file import read_toml
 from qtab.config import DEFAULTS
 from qtab.config.unknown import check_names
 from qtab.sweeps import designs
-
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
 
 KEYS = ("env", "seeds", "block", "store", "threads", "memory_limit", "grid", "design", "config")
 _DESIGN_KEYS = ("kind", "points", "seed", "space")
@@ -42,25 +37,14 @@ def read_study(path: Path) -> StudyFile:
     """Returns what a study file holds. The values of settings are checked later, by :func:`qtab.sweep`.
 
     Raises:
-        OSError: if the file cannot be read.
+        UsageError: if the file cannot be read.
         ValueError: if it is not TOML, or does not describe a sweep; the message names the file and the key.
     """
-    content = _toml(path)
+    content = read_toml("study", path)
     try:
         return _study(content)
     except (ValueError, TypeError) as error:
         raise ValueError(f"{path}: {error}") from None
-
-
-def _toml(path: Path) -> dict[str, Any]:
-    try:
-        with path.open("rb") as file:
-            return tomllib.load(file)
-    except OSError as error:
-        raise type(error)(f"study must be a file that can be read, got {str(path)!r}: {error.strerror}") from None
-    except (ValueError, RecursionError) as error:
-        reason = "its brackets are nested too deeply" if isinstance(error, RecursionError) else error
-        raise ValueError(f"study must be a TOML file, got {str(path)!r}: {reason}") from None
 
 
 def _study(content: Mapping[str, Any]) -> StudyFile:

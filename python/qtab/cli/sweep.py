@@ -1,62 +1,67 @@
-"""``qtab sweep``."""
+"""Train every setting of a study with the same seeds. An interrupted sweep resumes if it is called again."""
 
+from argparse import Namespace
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import gymnasium as gym
-import tyro
 
 from qtab._utils import checks
 from qtab._utils.files import check_writable
 from qtab._utils.shown import counted, shown
-from qtab.cli.parsing import parse
-from qtab.cli.reporting import OutputFlags, Report
+from qtab.cli.parser import Parser
+from qtab.cli.reporting import Report
 from qtab.cli.study_file import read_study
 from qtab.cli.usage import UsageError, flag, one_line, usage_errors
+from qtab.cli.values import integer
 from qtab.sweeps import StoreError, Sweep, sweep
 from qtab.sweeps.confirm import MAX_SEEDS
 from qtab.sweeps.run_versions import runs_by_versions, versions_note
 from qtab.sweeps.stored import read_store, store_path
 from qtab.sweeps.study import settings_of
 
-COMMAND = "qtab sweep"
 DEFAULT_SEEDS = 100
 
 
-@dataclass(frozen=True)
-class Arguments(OutputFlags):
-    """Train every setting of a study with the same seeds. An interrupted sweep resumes if it is called again."""
-
-    study: tyro.conf.Positional[Path]
-    """A TOML file: env, seeds, [grid] (or [design] with kind, points, seed and space), [config], block, store, threads
-    and memory_limit."""
-    store: Path | None = None
-    """The SQLite file for the results; by default the one that the study names, or the study's name with suffix .db."""
-    threads: int | None = None
-    """The number of threads, or of processes for environments stepped in Python; by default one per core."""
-    confirm: int | None = None
-    """Train the best settings again with this many other seeds: their means in the sweep are too high on average."""
-    top: int | None = None
-    """How many settings --confirm trains again; by default 1."""
-    per: str | None = None
-    """Train the best settings again for each value of this setting in the grid, such as algorithm."""
-    confirm_store: Path | None = None
-    """The SQLite file for the results of --confirm, which can then be interrupted, too."""
+def parser() -> Parser:
+    """Returns the parser of ``qtab sweep``."""
+    parser = Parser("sweep", __doc__)
+    study = (
+        "A TOML file: env, seeds, [grid] (or [design] with kind, points, seed and space), [config], block, store, "
+        "threads and memory_limit."
+    )
+    parser.positional("study", study)
+    parser.output_flags()
+    store = (
+        "The SQLite file for the results; by default the one that the study names, or the study's name with suffix .db."
+    )
+    parser.option("store", Path, store)
+    threads = "The number of threads, or of processes for environments stepped in Python; by default one per core."
+    parser.option("threads", integer, threads)
+    confirm = (
+        "Train the best settings again with this many other seeds: their means in the sweep are too high on average."
+    )
+    parser.option("confirm", integer, confirm)
+    parser.option("top", integer, "How many settings --confirm trains again; by default 1.")
+    per = "Train the best settings again for each value of this setting in the grid, such as algorithm."
+    parser.option("per", str, per)
+    confirm_store = "The SQLite file for the results of --confirm, which can then be interrupted, too."
+    parser.option("confirm_store", Path, confirm_store)
+    return parser
 
 
 def run(arguments: list[str]) -> int:
     """Runs the command and returns its exit code."""
-    options = parse(Arguments, COMMAND, arguments)
-    with Report(COMMAND, options) as report:
+    options = parser().read(arguments)
+    with Report(options) as report:
         report.writes_files = True
         _run(options, report)
     return 0
 
 
-def _run(options: Arguments, report: Report) -> None:
+def _run(options: Namespace, report: Report) -> None:
     with usage_errors():
         if options.threads is not None:
             checks.threads(options.threads)
@@ -92,7 +97,7 @@ def _run(options: Arguments, report: Report) -> None:
         report.add(confirmation=[{"setting": setting, "mean_final_return": mean} for setting, mean in chosen])
 
 
-def _check_confirmation(options: Arguments, settings: Sequence[Mapping[str, Any]], store: Path) -> None:
+def _check_confirmation(options: Namespace, settings: Sequence[Mapping[str, Any]], store: Path) -> None:
     """Refuses before the sweep what cannot be confirmed after it.
 
     Raises:

@@ -1,22 +1,66 @@
-"""``qtab train``."""
+"""Train a tabular agent. The defaults shown are those of the environment, the preset and the file given."""
+
+from argparse import BooleanOptionalAction, Namespace
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
 
 from qtab._utils.shown import counted
 from qtab.cli.outputs import Outputs
+from qtab.cli.parser import Parser
 from qtab.cli.reporting import Report
-from qtab.cli.settings import with_initial_q
-from qtab.cli.train_arguments import COMMAND, flags_of, parse_arguments
-from qtab.cli.training_report import Training, backend_words, optimum_of
-from qtab.cli.usage import usage_errors
+from qtab.cli.settings import add_settings, given_settings, read_config, with_initial_q
+from qtab.cli.training_report import OPTIMUM, Training, backend_words, optimum_of
+from qtab.cli.usage import UsageError, usage_errors
+from qtab.cli.values import integer
+from qtab.config import DEFAULTS, Config
+from qtab.config.explanations import default
+from qtab.config.merge import merge
+from qtab.config.options import is_set
+from qtab.envs.registry import spec_of, versioned
 from qtab.results.snapshots import snapshot_episodes
 from qtab.training.resolve import resolve, time_limit_notice
 from qtab.training.resolved_run import ResolvedRun
+
+OUTPUTS = ("save", "checkpoint", "plot", "watch", "record")
+"""The arguments that are not settings and say where a run is written or shown."""
+
+
+def parser(defaults: Mapping[str, Any] = DEFAULTS) -> Parser:
+    """Returns the parser of the command.
+
+    Args:
+        defaults: The defaults of the settings that ``--help`` shows.
+    """
+    parser = Parser("train", __doc__)
+    parser.positional("env", f"The environment's id in Gymnasium (default: {Config.env}).", str, default=None)
+    parser.output_flags()
+    parser.add_argument("--env", dest="env_flag", metavar="ENV", help="The same, as an option.")
+    parser.option("config", Path, "A TOML file of settings. Flags override it.")
+    parser.option("plot", Path, "Draw the learning curve to this file. Its ending gives the format.")
+    save = (
+        "Save the run to this file, for qtab.load, qtab verify and --initial-q. Ctrl-C saves what was learned so far."
+    )
+    parser.option("save", Path, save)
+    every = "Save the run so far to the file of --save each time this many more episodes are finished."
+    parser.option("checkpoint", integer, every, metavar="EPISODES")
+    parser.option("watch", integer, "Show this many of the last training episodes on the screen.")
+    record = "Write the last training episodes, 20 or the number given by --watch, to videos in this folder."
+    parser.option("record", Path, record, metavar="FOLDER")
+    visits = "Count how often each action was taken in each cell, for the file of --save."
+    parser.add_argument("--visits", action=BooleanOptionalAction, default=False, help=visits)
+    snapshots = "Keep this many copies of the tables, evenly spaced over the episodes, in the file of --save."
+    parser.option("snapshots", integer, snapshots)
+    parser.add_argument("--optimum", action=BooleanOptionalAction, default=False, help=OPTIMUM)
+    add_settings(parser, defaults)
+    return parser
 
 
 def run(arguments: list[str]) -> int:
     """Trains and reports; returns the exit code."""
     asked, env, settings = parse_arguments(arguments)
-    flags = flags_of(asked)
-    with Report(COMMAND, asked) as report:
+    flags = _flags(asked)
+    with Report(asked) as report:
         with usage_errors(flags, "env"):
             resolved = resolve(env, with_initial_q(settings))
         try:
@@ -33,6 +77,57 @@ def run(arguments: list[str]) -> int:
         finally:
             resolved.close()
     return 0
+
+
+def parse_arguments(arguments: list[str]) -> tuple[Namespace, str, dict[str, Any]]:
+    """Returns the arguments, the environment, and the settings given as flags or in the file.
+
+    ``--help`` prints the help, with the defaults of the environment, the preset and the file given, and exits.
+
+    Raises:
+        UsageError: for arguments that cannot be parsed, and a file that cannot be read.
+    """
+    words = [word for word in arguments if word not in ("-h", "--help")]
+    help_wanted = len(words) < len(arguments)
+    try:
+        asked = parser().read(words)
+    except UsageError:
+        if not help_wanted:
+            raise
+        asked = parser().read([])
+    with usage_errors():
+        env, settings = _env_and_settings(asked)
+    if help_wanted:
+        with usage_errors(_flags(asked)):
+            shown = _effective_defaults(env, settings)
+        parser(shown).read(["--help"])
+    return asked, env, settings
+
+
+def _env_and_settings(asked: Namespace) -> tuple[str, dict[str, Any]]:
+    settings = {} if asked.config is None else read_config(asked.config)
+    settings |= given_settings(asked)
+    if asked.env is not None and asked.env_flag is not None:
+        raise ValueError(f"env must be given once, got {asked.env!r} and {asked.env_flag!r}")
+    named = settings.pop("env", Config.env)
+    if not isinstance(named, str):
+        raise TypeError(f"env must be an environment id, got {named!r}")
+    return asked.env or asked.env_flag or named, settings
+
+
+def _flags(asked: Namespace) -> tuple[str, ...]:
+    """Returns the arguments that messages spell as flags: all but the settings that only the file gives."""
+    in_file = () if asked.config is None else read_config(asked.config).keys() - given_settings(asked).keys()
+    return (*OUTPUTS, *(name for name in DEFAULTS if name not in in_file and name != "env"))
+
+
+def _effective_defaults(env: str, settings: Mapping[str, Any]) -> dict[str, Any]:
+    """Returns the values of the settings that are not given as flags."""
+    env = versioned(env)
+    given = {name: value for name, value in settings.items() if not isinstance(value, Path)}
+    merged = vars(merge(env, {"env_kwargs": dict(spec_of(env).kwargs)}, given))
+    shown = {name: value if is_set(value) else default(name) for name, value in merged.items()}
+    return {**shown, **{name: settings[name] for name in settings.keys() - given.keys()}}
 
 
 def _header(resolved: ResolvedRun) -> str:

@@ -25,6 +25,10 @@ if TYPE_CHECKING:
     from qtab.planning import Gap, Optimum
 
 
+OPTIMUM = "Report how far the run is from the optimum, and draw it. Always done for small tables."
+"""The help of ``--optimum``."""
+
+
 def backend_words(config: Config) -> str:
     """Returns the environment and where it is stepped."""
     return f"{config.env} {'in Rust' if config.backend == 'rust' else 'stepped by Gymnasium in Python'}"

@@ -1,45 +1,37 @@
-"""``qtab verify``."""
+"""Repeat a saved run with Gymnasium and NumPy, and compare the results; the exit code is 1 if they differ."""
 
 import logging
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
-from pathlib import Path
-from typing import Annotated
-
-import tyro
 
 from qtab._utils.progress import ProgressBar
-from qtab.cli.constructors import OPTIONAL_INT
-from qtab.cli.parsing import parse
-from qtab.cli.reporting import OutputFlags, Report
+from qtab.cli.parser import ENV_OF_RUN, Parser
+from qtab.cli.reporting import Report
 from qtab.cli.usage import reading, usage_errors
+from qtab.cli.values import integer
 from qtab.envs.registry import spec_of
 from qtab.results.run import Run
 from qtab.results.storage import load
 from qtab.training.verify import verify
 
-COMMAND = "qtab verify"
 SILENT_SECONDS = 2.0
 """After this time without a progress bar, a message reports how long it will take."""
 
 
-@dataclass(frozen=True)
-class Arguments(OutputFlags):
-    """Repeat a saved run with Gymnasium and NumPy, and compare the results; the exit code is 1 if they differ."""
-
-    run: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="RUN")]
-    """A file written by qtab train --save."""
-    episodes: Annotated[int | None, OPTIONAL_INT] = None
-    """Compare only the first episodes, using the schedules of the full run."""
-    env: Annotated[str | None, tyro.conf.arg(metavar="ENV")] = None
-    """The environment's id, for one that a package registers (package:Name-v0): a file imports nothing."""
+def parser() -> Parser:
+    """Returns the parser of ``qtab verify``."""
+    parser = Parser("verify", __doc__)
+    parser.positional("run", "A file written by qtab train --save.")
+    parser.output_flags()
+    parser.option("episodes", integer, "Compare only the first episodes, using the schedules of the full run.")
+    parser.option("env", str, ENV_OF_RUN, metavar="ENV")
+    return parser
 
 
 def run(arguments: list[str]) -> int:
     """Runs the command and returns its exit code."""
-    options = parse(Arguments, COMMAND, arguments)
-    with Report(COMMAND, options) as report:
+    options = parser().read(arguments)
+    with Report(options) as report:
         with usage_errors(("episodes", "env"), "run"):
             with reading("RUN", options.run):
                 saved = load(options.run)

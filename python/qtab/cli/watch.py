@@ -1,44 +1,40 @@
-"""``qtab watch``, and what ``qtab record`` shares with it."""
+"""Show episodes that the greedy policy of a saved run plays in a window. Closing it ends the command."""
 
-from dataclasses import dataclass
-from pathlib import Path
-from typing import Annotated
-
-import tyro
+from argparse import Namespace
 
 from qtab._utils.progress import print_above
-from qtab.cli.constructors import OPTIONAL_FLOAT, OPTIONAL_INT
-from qtab.cli.parsing import parse
+from qtab.cli.parser import Parser
 from qtab.cli.usage import UsageError, reading, usage_errors
+from qtab.cli.values import integer, number
 from qtab.rendering.play import Playback, play
 from qtab.rendering.window import display_problem
 from qtab.results.run import Run
 from qtab.results.storage import load
 
-COMMAND = "qtab watch"
 FLAGS = ("episodes", "seed", "fps", "max_episode_steps")
 """The arguments that messages spell as flags."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Arguments:
-    """Show episodes that the greedy policy of a saved run plays in a window. Closing it ends the command."""
+def parser() -> Parser:
+    """Returns the parser of ``qtab watch``."""
+    parser = Parser("watch", __doc__)
+    add_arguments(parser)
+    return parser
 
-    run: Annotated[Path, tyro.conf.Positional, tyro.conf.arg(metavar="RUN")]
-    """A file written by qtab train --save."""
-    episodes: int = 1
-    """The number of episodes."""
-    seed: Annotated[int | None, OPTIONAL_INT] = None
-    """The seed of the environment; by default a random one, which is printed."""
-    fps: Annotated[float | None, OPTIONAL_FLOAT] = None
-    """Pictures per second; by default the environment's."""
-    max_episode_steps: Annotated[int | None, OPTIONAL_INT] = None
-    """The time limit of an episode in steps; by default that of the run."""
+
+def add_arguments(parser: Parser) -> None:
+    """Adds the arguments that ``qtab record`` has as well."""
+    parser.positional("run", "A file written by qtab train --save.")
+    parser.option("episodes", integer, "The number of episodes.", 1)
+    parser.option("seed", integer, "The seed of the environment; by default a random one, which is printed.")
+    parser.option("fps", number, "Pictures per second; by default the environment's.")
+    limit = "The time limit of an episode in steps; by default that of the run."
+    parser.option("max_episode_steps", integer, limit)
 
 
 def run(arguments: list[str]) -> int:
     """Runs the command and returns its exit code."""
-    options = parse(Arguments, COMMAND, arguments)
+    options = parser().read(arguments)
     with usage_errors(FLAGS):
         saved = load_run(options)
         problem = display_problem()
@@ -50,13 +46,13 @@ def run(arguments: list[str]) -> int:
     return 0
 
 
-def load_run(options: Arguments) -> Run:
+def load_run(options: Namespace) -> Run:
     """Returns the run of the file."""
     with reading("RUN", options.run):
         return load(options.run)
 
 
-def played_by(saved: Run, options: Arguments, window: bool) -> Playback:
+def played_by(saved: Run, options: Namespace, window: bool) -> Playback:
     """Plays the episodes that the arguments ask for."""
     limit = options.max_episode_steps
     return play(saved, options.episodes, options.seed, window=window, fps=options.fps, max_episode_steps=limit)
