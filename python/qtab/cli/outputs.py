@@ -1,6 +1,6 @@
 """The files, the window and the videos of ``qtab train``: checked before the training, written after it."""
 
-from collections.abc import Callable
+from argparse import Namespace
 from contextlib import ExitStack, closing
 from pathlib import Path
 from types import TracebackType
@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 from qtab._utils import checks
 from qtab._utils.files import check_writable
-from qtab._utils.progress import print_above
 from qtab._utils.shown import counted
 from qtab.callbacks import Checkpoint
+from qtab.cli.reporting import Report
 from qtab.config import Config
 from qtab.rendering.replay import replay_all
 from qtab.rendering.video import VideoRecorder
@@ -30,12 +30,8 @@ class Outputs:
 
     Args:
         config: The resolved config of the run.
-        save: The file to save the run to, or None.
-        plot: The file to draw the learning curve to, or None.
-        watch: The number of last episodes to show in a window, or None.
-        record: The folder for videos of the last episodes, or None.
-        say: Prints a line about what was written.
-        checkpoint: The number of episodes after which to save the run so far to ``save`` each time, or None.
+        asked: The arguments ``save``, ``plot``, ``checkpoint``, ``watch`` and ``record``: what was asked for, or None.
+        report: Where to report what was written.
 
     Raises:
         ModuleNotFoundError: if an optional library is missing; it names the ``pip install``.
@@ -43,45 +39,36 @@ class Outputs:
         ValueError: if there is no display for the window, or the environment cannot be rendered.
     """
 
-    def __init__(
-        self,
-        config: Config,
-        save: Path | None,
-        plot: Path | None,
-        watch: int | None,
-        record: Path | None,
-        say: Callable[[str], None] = print_above,
-        checkpoint: int | None = None,
-    ) -> None:
-        self._save, self._plot, self._record, self._say = save, plot, record, say
+    def __init__(self, config: Config, asked: Namespace, report: Report) -> None:
+        self._save, self._plot, self._record, self._say = asked.save, asked.plot, asked.record, report.text
         self.files: dict[str, Path] = {}
         """What was written, by the argument that asked for it."""
         self.written: list[str] = []
         """Lines about what :meth:`keep` wrote, to be printed."""
-        self.has_files = save is not None or plot is not None or record is not None
-        """Whether there is anything to write."""
-        if watch is not None:
-            checks.integer("watch", watch, least=1)
-        if plot is not None:
+        report.writes_files = any(path is not None for path in (asked.save, asked.plot, asked.record))
+        if asked.watch is not None:
+            checks.integer("watch", asked.watch, least=1)
+        if asked.plot is not None:
             from qtab.plots.axes import check_format
 
-            check_format("plot", plot)
-            check_writable("plot", plot)
-        if save is not None:
-            check_writable("save", save)
+            check_format("plot", asked.plot)
+            check_writable("plot", asked.plot)
+        if asked.save is not None:
+            check_writable("save", asked.save)
         self.callbacks: tuple[Callback, ...] = ()
         """What saves the run while it is in progress."""
-        if checkpoint is not None:
-            if save is None:
+        if asked.checkpoint is not None:
+            if asked.save is None:
                 raise ValueError("--checkpoint needs --save, the file that it writes")
-            self.callbacks = (Checkpoint(save, checks.integer("checkpoint", checkpoint, least=1)),)
-        self.shown = watch or (DEFAULT_SHOWN if record is not None else 0)
+            self.callbacks = (Checkpoint(asked.save, checks.integer("checkpoint", asked.checkpoint, least=1)),)
+        self.shown = asked.watch or (0 if asked.record is None else DEFAULT_SHOWN)
         """The number of last episodes to replay."""
         with ExitStack() as opened:
-            if watch is not None and record is not None and (problem := display_problem()) is not None:
+            window, folder = asked.watch is not None, asked.record
+            if window and folder is not None and (problem := display_problem()) is not None:
                 raise ValueError(f"watch needs a display ({problem}); leave out --watch: --record works without one")
-            self._screen = None if watch is None else opened.enter_context(closing(open_window(config)))
-            self._recorder = None if record is None else opened.enter_context(closing(VideoRecorder(config, record)))
+            self._screen = opened.enter_context(closing(open_window(config))) if window else None
+            self._recorder = None if folder is None else opened.enter_context(closing(VideoRecorder(config, folder)))
             self._opened = opened.pop_all()
 
     def __enter__(self) -> "Outputs":
@@ -112,7 +99,7 @@ class Outputs:
     def show(self, run: Run) -> None:
         """Replays the recorded episodes in videos and in the window."""
         different = 0
-        if self._recorder is not None and self._record is not None:
+        if self._recorder is not None:
             different = self._recorder.record(run)
             self.files["record"] = self._record
             self._say(f"Saved {counted(len(run.recordings), 'video')} to {self._record}")

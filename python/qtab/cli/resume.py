@@ -1,5 +1,6 @@
 """Continue a saved run exactly where it stopped, or train a finished one for more episodes."""
 
+from contextlib import closing
 from pathlib import Path
 
 from qtab.cli.outputs import Outputs
@@ -35,6 +36,7 @@ def parser() -> Parser:
     parser.option("snapshots", integer, snapshots)
     parser.option("env", str, ENV_OF_RUN, metavar="ENV")
     parser.switch("optimum", OPTIMUM)
+    parser.set_defaults(watch=None, record=None)  # which qtab train has
     return parser
 
 
@@ -49,16 +51,19 @@ def run(arguments: list[str]) -> int:
             visits = counts_visits(earlier, False)
             options = TrainingOptions(visits=visits, snapshots=asked.snapshots)
             finished = has_finished(earlier, asked.episodes, options)
-            resolved = _resolved_again(earlier) if finished else resolve_again("run", earlier, asked.episodes, None)
-        try:
+            if finished:
+                resolved = resolve(earlier.config.env, over(earlier.config, {}))
+            else:
+                resolved = resolve_again("run", earlier, asked.episodes, None)
+        with closing(resolved):
             with usage_errors(FLAGS):
-                save = asked.run if asked.save is None and not finished else asked.save
-                outputs = Outputs(
-                    resolved.config, save, asked.plot, None, None, report.text, None if finished else asked.checkpoint
-                )
+                if finished:
+                    asked.checkpoint = None
+                elif asked.save is None:
+                    asked.save = asked.run
+                outputs = Outputs(resolved.config, asked, report)
                 snapshots = snapshots_of(options, resolved.config.episodes, earlier)
                 best = optimum_of(resolved, asked.optimum, report.progress)
-            report.writes_files = outputs.has_files
             with outputs:
                 report.text(_header(earlier, resolved))
                 wanted = tuple(number for number in snapshots if number > len(earlier.episode_returns))
@@ -67,14 +72,7 @@ def run(arguments: list[str]) -> int:
                     training.keep_and_report(earlier)
                 else:
                     training.run()
-        finally:
-            resolved.close()
     return 0
-
-
-def _resolved_again(earlier: Run) -> ResolvedRun:
-    """Resolves a run that has finished."""
-    return resolve(earlier.config.env, over(earlier.config, {}))
 
 
 def _header(earlier: Run, resolved: ResolvedRun) -> str:

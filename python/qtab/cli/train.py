@@ -2,6 +2,7 @@
 
 from argparse import BooleanOptionalAction, Namespace
 from collections.abc import Mapping
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -63,19 +64,14 @@ def run(arguments: list[str]) -> int:
     with Report(asked) as report:
         with usage_errors(flags, "env"):
             resolved = resolve(env, with_initial_q(settings))
-        try:
+        with closing(resolved):
             with usage_errors(flags, "env"):
-                outputs = Outputs(
-                    resolved.config, asked.save, asked.plot, asked.watch, asked.record, report.text, asked.checkpoint
-                )
+                outputs = Outputs(resolved.config, asked, report)
                 snapshots = snapshot_episodes(asked.snapshots, resolved.config.episodes)
                 best = optimum_of(resolved, asked.optimum, report.progress)
-            report.writes_files = outputs.has_files
             with outputs:
                 report.text(_header(resolved))
                 Training(resolved, report, outputs, best, asked.visits, snapshots).run()
-        finally:
-            resolved.close()
     return 0
 
 
