@@ -8,7 +8,7 @@ import numpy as np
 import c_loop
 import numba_loops
 import qtab
-from qtab.cli import bench
+from qtab.cli.commands import bench
 from tables import Benchmark, Column, Table, relative_to
 
 ENV = "MountainCar-v0"

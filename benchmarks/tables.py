@@ -11,7 +11,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab.cli.bench import measure
+from qtab.cli.commands.bench import measure
 
 Benchmark = Callable[[int], int]
 """Runs one round, given its number, and returns the number of environment steps."""
@@ -53,7 +53,7 @@ class Table:
     columns: Sequence[Column]
 
     def measured(self, seconds: float, rounds: int | None) -> str:
-        """Runs the benchmarks and returns the table as text. See :func:`qtab.cli.bench.measure`."""
+        """Runs the benchmarks and returns the table as text. See :func:`qtab.cli.commands.bench.measure`."""
         return self.text(measure(self.benchmarks, seconds, rounds))
 
     def text(self, times: Mapping[str, Times]) -> str:

@@ -22,7 +22,7 @@ import qtab as package
 import tables
 import vector_envs
 from qtab._utils.versions import versions
-from qtab.cli import bench
+from qtab.cli.commands import bench
 from support.command import environment, qtab_here, refused
 from support.repository import ROOT
 from tables import Benchmark, Column, Table

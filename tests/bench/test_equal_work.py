@@ -17,7 +17,7 @@ import plain_loop
 import qtab
 import table_loop
 from algorithms import CUT, CUTOFF, LEARNERS
-from qtab.cli import bench
+from qtab.cli.commands import bench
 from support.repository import ROOT
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from qtab.cli import main
-from qtab.cli.usage import as_flags
+from qtab.cli.errors import as_flags
 from support.command import qtab, qtab_here, refused
 
 FILES = {

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from qtab.cli.command import SUBCOMMANDS
-from qtab.cli.completion import script
+from qtab.cli.commands.completion import script
 from qtab.config import DEFAULTS
 from support.command import qtab_here, refused
 

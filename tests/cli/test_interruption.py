@@ -152,7 +152,7 @@ def test_sigterm_is_turned_into_an_interruption_and_back(tmp_path: Path, monkeyp
         os.kill(os.getpid(), signal.SIGTERM)
         os.kill(os.getpid(), signal.SIGTERM)  # ignored, so that it does not interrupt the saving
 
-    monkeypatch.setattr("qtab.cli.train._header", terminate)
+    monkeypatch.setattr("qtab.cli.commands.train._header", terminate)
     assert qtab_here("train", *LAKE, cwd=tmp_path).returncode == 143
     assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
     seen: list[int] = []

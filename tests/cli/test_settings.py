@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from qtab.cli.train import parse_arguments
-from qtab.cli.usage import UsageError
+from qtab.cli.commands.train import parse_arguments
+from qtab.cli.errors import UsageError
 from qtab.config.explanations import explanations
 from support.command import qtab_here
 

@@ -6,7 +6,7 @@ import pytest
 from PIL import Image
 
 import qtab
-from qtab.cli import watch
+from qtab.cli.commands import watch
 from qtab.rendering import play
 from support.command import qtab_here, refused, with_run
 

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import assume, given, settings
 
 import qtab
-from qtab.cli.train import run as command
-from qtab.cli.usage import UsageError
+from qtab.cli.commands.train import run as command
+from qtab.cli.errors import UsageError
 from qtab.config.choices import Algorithm
 from qtab.reference import LEARNERS
 from qtab.reference.actions import actions

@@ -5,8 +5,8 @@ from importlib import import_module
 
 from qtab._utils.shown import shown
 from qtab._utils.suggestions import did_you_mean
+from qtab.cli.errors import USER_ERRORS, UsageError, one_line, with_origin
 from qtab.cli.interruption import discard_output, exit_code
-from qtab.cli.usage import USER_ERRORS, UsageError, one_line, with_origin
 
 SUBCOMMANDS = {
     "train": "train a tabular agent, save and plot the run, replay its last episodes",
@@ -24,7 +24,7 @@ SUBCOMMANDS = {
     "bench": "compare the speed of this package with Gymnasium and the article's loop",
     "completion": "print the script with which bash or zsh completes commands, flags and choices",
 }
-"""The subcommands with their help. Each is a module of this package with ``run(arguments) -> exit code``."""
+"""The subcommands with their help. Each is a module of ``commands``."""
 
 EXIT_ERROR, EXIT_USAGE = 1, 2
 
@@ -45,7 +45,7 @@ def run(arguments: list[str]) -> int:
             suggestion = did_you_mean(arguments[0], [*SUBCOMMANDS, "--help", "--version"])
             raise UsageError(f"unknown command {shown(arguments[0])}{suggestion}; use {', '.join(SUBCOMMANDS)}")
         name = f"qtab {arguments[0]}"
-        code = import_module(f"qtab.cli.{arguments[0]}").run(arguments[1:])
+        code = import_module(f"qtab.cli.commands.{arguments[0]}").run(arguments[1:])
         sys.stdout.flush()
         return int(code)
     except UsageError as error:

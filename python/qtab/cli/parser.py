@@ -9,7 +9,7 @@ from typing import Any
 
 from qtab._utils.shown import shown
 from qtab.cli import values
-from qtab.cli.usage import UsageError, flag
+from qtab.cli.errors import UsageError, flag
 from qtab.config.unknown import meant
 
 REQUIRED = object()

@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 
 from qtab._utils.progress import print_above
+from qtab.cli.errors import UsageError, one_line
 from qtab.cli.interruption import discard_output
-from qtab.cli.usage import UsageError, one_line
 
 
 class Report:

@@ -2,7 +2,6 @@
 
 from argparse import SUPPRESS, Namespace
 from collections.abc import Callable, Mapping
-from functools import cache
 from pathlib import Path
 from types import NoneType
 from typing import Any, get_args, get_type_hints
@@ -11,9 +10,9 @@ import numpy as np
 
 from qtab._utils.shown import shown
 from qtab.cli import values
+from qtab.cli.errors import flag, reading
 from qtab.cli.parser import Parser, Together
 from qtab.cli.toml_file import read_toml
-from qtab.cli.usage import flag, reading
 from qtab.config import DEFAULTS, Config
 from qtab.config.choices import CHOICES
 from qtab.config.explanations import applicability, explanations, groups
@@ -54,10 +53,11 @@ def add_settings(parser: Parser, defaults: Mapping[str, Any]) -> None:
         parser: The parser.
         defaults: The defaults that ``--help`` shows.
     """
+    types = get_type_hints(Config)
     for title, names in groups(DEFAULTS.keys() - {"env"}).items():
         group = parser.add_argument_group(f"{title.lower()} options")
         for name in names:
-            group.add_argument(flag(name), dest=name, default=SUPPRESS, **_flag(name, defaults[name]))
+            group.add_argument(flag(name), dest=name, default=SUPPRESS, **_flag(name, types[name], defaults[name]))
 
 
 def given_settings(options: Namespace) -> dict[str, Any]:
@@ -65,10 +65,9 @@ def given_settings(options: Namespace) -> dict[str, Any]:
     return {name: getattr(options, name) for name in DEFAULTS if name != "env" and name in options}
 
 
-def _flag(name: str, default: Any) -> dict[str, Any]:
+def _flag(name: str, type_: Any, default: Any) -> dict[str, Any]:
     """Returns the arguments of ``add_argument``."""
     text = f"{_EXPLANATIONS.get(name, explanations().get(name, ''))} {applicability(name)}".strip()
-    type_ = _types()[name]
     optional = NoneType in get_args(type_)
     kind = get_args(type_)[0] if optional else type_
     read, metavar, several = _READERS.get(name) or _READERS.get(kind) or (str, "NAME", False)
@@ -82,11 +81,6 @@ def _flag(name: str, default: Any) -> dict[str, Any]:
         read = values.or_none(read)
     how = {"action": Together, "nargs": "*", "read": read} if several else {"type": read}
     return {**how, "metavar": metavar, "help": f"{text} (default: {_shown(default)})".replace("%", "%%")}
-
-
-@cache
-def _types() -> dict[str, Any]:
-    return get_type_hints(Config)
 
 
 def _shown(value: Any) -> str:

@@ -6,7 +6,7 @@ from typing import Any
 
 from qtab._utils.extras import missing
 from qtab._utils.shown import shown
-from qtab.cli.usage import reading
+from qtab.cli.errors import reading
 
 
 def read_toml(argument: str, path: Path) -> dict[str, Any]:

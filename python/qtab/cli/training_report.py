@@ -202,14 +202,10 @@ def _summary(run: Run, verdict: Verdict, gap: "Gap[float] | None") -> dict[str, 
 
 
 def _gap_facts(run: Run, gap: "Gap[float] | None") -> dict[str, Any] | None:
-    if gap is None and not is_usual_mountain_car(run.config):
+    names = ("label", "optimum", "final", "greedy", "greedy_return", "attainable", "standard_error")
+    if gap is not None:
+        return {name: getattr(gap, name) for name in names}
+    if not is_usual_mountain_car(run.config):
         return None
-    return {
-        "label": "best known" if gap is None else gap.label,
-        "optimum": BEST_KNOWN_MOUNTAIN_CAR if gap is None else gap.optimum,
-        "final": BEST_KNOWN_MOUNTAIN_CAR - _final_return(run) if gap is None else gap.final,
-        "greedy": None if gap is None else gap.greedy,
-        "greedy_return": None if gap is None else gap.greedy_return,
-        "attainable": None if gap is None else gap.attainable,
-        "standard_error": None if gap is None else gap.standard_error,
-    }
+    final = BEST_KNOWN_MOUNTAIN_CAR - _final_return(run)
+    return {**dict.fromkeys(names), "label": "best known", "optimum": BEST_KNOWN_MOUNTAIN_CAR, "final": final}

@@ -3,8 +3,8 @@
 from argparse import Namespace
 
 from qtab._utils.progress import print_above
+from qtab.cli.errors import UsageError, reading, usage_errors
 from qtab.cli.parser import Parser
-from qtab.cli.usage import UsageError, reading, usage_errors
 from qtab.cli.values import integer, number
 from qtab.rendering.play import Playback, play
 from qtab.rendering.window import display_problem

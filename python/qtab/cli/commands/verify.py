@@ -5,9 +5,9 @@ import time
 from collections.abc import Callable
 
 from qtab._utils.progress import ProgressBar
+from qtab.cli.errors import reading, usage_errors
 from qtab.cli.parser import ENV_OF_RUN, Parser
 from qtab.cli.reporting import Report
-from qtab.cli.usage import reading, usage_errors
 from qtab.cli.values import integer
 from qtab.envs.registry import spec_of
 from qtab.results.run import Run

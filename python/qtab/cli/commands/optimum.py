@@ -1,8 +1,8 @@
 """Compute the best policy of an environment: exact from its transition table, or the best known."""
 
+from qtab.cli.errors import usage_errors
 from qtab.cli.parser import Parser, Together
 from qtab.cli.reporting import Report
-from qtab.cli.usage import usage_errors
 from qtab.cli.values import integer, number, pairs
 from qtab.config import Config
 from qtab.planning import optimum

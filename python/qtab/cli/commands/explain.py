@@ -1,8 +1,8 @@
 """Show steps of an episode of a saved run: why each action was chosen, and each update with its numbers."""
 
+from qtab.cli.errors import reading, usage_errors
 from qtab.cli.parser import Parser
 from qtab.cli.reporting import Report
-from qtab.cli.usage import reading, usage_errors
 from qtab.cli.values import integer
 from qtab.explanation.explain import explain
 from qtab.results.storage import load

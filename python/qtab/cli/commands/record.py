@@ -1,9 +1,9 @@
 """Write a video of episodes that the greedy policy of a saved run plays. No display is needed."""
 
 from qtab._utils.progress import print_above
-from qtab.cli import watch
+from qtab.cli.commands import watch
+from qtab.cli.errors import usage_errors
 from qtab.cli.parser import Parser
-from qtab.cli.usage import usage_errors
 from qtab.rendering.formats import check_video_path
 
 

@@ -3,11 +3,11 @@
 from contextlib import closing
 from pathlib import Path
 
+from qtab.cli.errors import reading, usage_errors
 from qtab.cli.outputs import Outputs
 from qtab.cli.parser import ENV_OF_RUN, Parser
 from qtab.cli.reporting import Report
 from qtab.cli.training_report import OPTIMUM, Training, backend_words, optimum_of
-from qtab.cli.usage import reading, usage_errors
 from qtab.cli.values import integer
 from qtab.config.layers import over
 from qtab.results.run import Run

@@ -49,7 +49,7 @@ def script(shell: str) -> str:
     # The cases are the command, the word before and the word to be completed; the first that matches counts.
     values, flags, others = [], [], []
     for command in SUBCOMMANDS:
-        actions = import_module(f"qtab.cli.{command}").parser()._actions
+        actions = import_module(f"qtab.cli.commands.{command}").parser()._actions
         flags.append((f"'{command} '*' -'*", [name for action in actions for name in action.option_strings]))
         for action in (action for action in actions if action.dest in words):
             values += [(f"'{command} {name} '*", words[action.dest]) for name in action.option_strings]

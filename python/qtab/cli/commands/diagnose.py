@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 
 from qtab._utils import checks
+from qtab.cli.errors import reading, usage_errors
 from qtab.cli.parser import Parser
 from qtab.cli.reporting import Report
-from qtab.cli.usage import reading, usage_errors
 from qtab.cli.values import integer
 from qtab.diagnosis.diagnose import diagnose
 from qtab.diagnosis.diagnosis import SEEDS

@@ -11,10 +11,10 @@ import gymnasium as gym
 from qtab._utils import checks
 from qtab._utils.files import check_writable
 from qtab._utils.shown import counted, shown
+from qtab.cli.errors import UsageError, flag, one_line, usage_errors
 from qtab.cli.parser import Parser
 from qtab.cli.reporting import Report
 from qtab.cli.study_file import read_study
-from qtab.cli.usage import UsageError, flag, one_line, usage_errors
 from qtab.cli.values import integer
 from qtab.sweeps import StoreError, Sweep, sweep
 from qtab.sweeps.confirm import MAX_SEEDS

@@ -6,8 +6,8 @@ from pathlib import Path
 from qtab import book
 from qtab._utils.files import check_writable
 from qtab._utils.progress import print_above
+from qtab.cli.errors import UsageError, usage_errors
 from qtab.cli.parser import Parser
-from qtab.cli.usage import UsageError, usage_errors
 from qtab.cli.values import integer
 from qtab.plots.axes import check_format
 

@@ -3,9 +3,9 @@
 import shlex
 from pathlib import Path
 
+from qtab.cli.errors import usage_errors
 from qtab.cli.parser import Parser
 from qtab.cli.reporting import Report
-from qtab.cli.usage import usage_errors
 from qtab.sweeps import load_sweep
 from qtab.sweeps.report import report
 

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from qtab._utils import checks
 from qtab._utils.versions import versions
+from qtab.cli.errors import UsageError, usage_errors
 from qtab.cli.parser import Parser
 from qtab.cli.reporting import Report
-from qtab.cli.usage import UsageError, usage_errors
 from qtab.cli.values import integer, number
 from qtab.reference import agent_stream
 from qtab.training.train import train

@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import Any
 
 from qtab._utils.shown import counted
+from qtab.cli.errors import UsageError, usage_errors
 from qtab.cli.outputs import Outputs
 from qtab.cli.parser import Parser
 from qtab.cli.reporting import Report
 from qtab.cli.settings import add_settings, given_settings, read_config, with_initial_q
 from qtab.cli.training_report import OPTIMUM, Training, backend_words, optimum_of
-from qtab.cli.usage import UsageError, usage_errors
 from qtab.cli.values import integer
 from qtab.config import DEFAULTS, Config
 from qtab.config.explanations import default

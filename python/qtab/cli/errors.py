@@ -1,4 +1,4 @@
-"""Usage errors: what the user can correct, reported in one line before any work starts."""
+"""Errors in one line, with the arguments as they are typed; usage errors are what the user can correct."""
 
 import re
 import traceback
