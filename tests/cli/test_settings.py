@@ -4,7 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from qtab.cli.commands.train import parse_arguments
+from qtab.cli.command import parser_of
+from qtab.cli.commands import train
+from qtab.cli.commands.train import env_and_settings
 from qtab.cli.errors import UsageError
 from qtab.config.explanations import explanations
 from support.command import qtab_here
@@ -12,7 +14,7 @@ from support.command import qtab_here
 
 def help_of(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
     with pytest.raises(SystemExit) as leaving:
-        parse_arguments([*arguments, "--help"])
+        parser_of("train", [*arguments, "--help"]).read()
     assert not leaving.value.code
     return " ".join(capsys.readouterr().out.split())
 
@@ -50,9 +52,8 @@ def test_help_shows_what_a_run_would_use(
 
 def test_only_the_flags_that_are_given_are_settings(tmp_path: Path) -> None:
     (tmp_path / "run.toml").write_text("episodes = 7\nseed = 1\ninitial_q = [[0.0, 1.0]]\n[env_kwargs]\nx = 1\n")
-    _, env, settings = parse_arguments(
-        ["Taxi-v4", "--config", str(tmp_path / "run.toml"), "--seed", "2", "--epsilon", "None"]
-    )
+    words = ["Taxi-v4", "--config", str(tmp_path / "run.toml"), "--seed", "2", "--epsilon", "None"]
+    env, settings = env_and_settings(parser_of("train", words).read())
     assert env == "Taxi-v4"
     assert settings.pop("initial_q").tolist() == [[0.0, 1.0]]
     assert settings == {"episodes": 7, "seed": 2, "epsilon": None, "env_kwargs": {"x": 1}}
@@ -76,7 +77,7 @@ def test_only_the_flags_that_are_given_are_settings(tmp_path: Path) -> None:
 )
 def test_a_bad_flag_is_named_with_what_fits(arguments: list[str], message: str) -> None:
     with pytest.raises(UsageError) as caught:
-        parse_arguments(arguments)
+        train.run(parser_of("train", arguments).read())
     assert str(caught.value).startswith(message)
 
 

@@ -8,7 +8,8 @@ import pytest
 from hypothesis import assume, given, settings
 
 import qtab
-from qtab.cli.commands.train import run as command
+from qtab.cli.command import parser_of
+from qtab.cli.commands import train
 from qtab.cli.errors import UsageError
 from qtab.config.choices import Algorithm
 from qtab.reference import LEARNERS
@@ -209,11 +210,11 @@ def test_damaged_visits_and_snapshots_are_refused(tmp_path: Any, name: str, valu
 
 def test_the_command_line_saves_them(tmp_path: Any, capsys: Any) -> None:
     arguments = ["FrozenLake-v1", "--episodes", "20", "--seed", "0", "--save", str(tmp_path / "run.npz")]
-    assert command([*arguments, "--visits", "--snapshots", "4"]) == 0
+    assert train.run(parser_of("train", [*arguments, "--visits", "--snapshots", "4"]).read()) == 0
     run = qtab.load(tmp_path / "run.npz")
     assert run.visits is not None
     assert run.snapshots is not None
     assert run.snapshots.episodes.tolist() == [5, 10, 15, 20]
     capsys.readouterr()
     with pytest.raises(UsageError, match="snapshots must be an integer of at least 0, got -1"):
-        command([*arguments, "--snapshots", "-1"])
+        train.run(parser_of("train", [*arguments, "--snapshots", "-1"]).read())

@@ -1,12 +1,17 @@
 """The choice of the subcommand, and the exit codes of errors."""
 
 import sys
+from collections.abc import Sequence
 from importlib import import_module
+from typing import TYPE_CHECKING
 
 from qtab._utils.shown import shown
 from qtab._utils.suggestions import did_you_mean
 from qtab.cli.errors import USER_ERRORS, UsageError, one_line, with_origin
 from qtab.cli.interruption import discard_output, exit_code
+
+if TYPE_CHECKING:
+    from qtab.cli.parser import Parser
 
 SUBCOMMANDS = {
     "train": "train a tabular agent, save and plot the run, replay its last episodes",
@@ -45,7 +50,8 @@ def run(arguments: list[str]) -> int:
             suggestion = did_you_mean(arguments[0], [*SUBCOMMANDS, "--help", "--version"])
             raise UsageError(f"unknown command {shown(arguments[0])}{suggestion}; use {', '.join(SUBCOMMANDS)}")
         name = f"qtab {arguments[0]}"
-        code = import_module(f"qtab.cli.commands.{arguments[0]}").run(arguments[1:])
+        options = parser_of(arguments[0], arguments[1:]).read()
+        code = import_module(f"qtab.cli.commands.{arguments[0]}").run(options)
         sys.stdout.flush()
         return int(code)
     except UsageError as error:
@@ -59,6 +65,16 @@ def run(arguments: list[str]) -> int:
         return exit_code(error)
     except Exception as error:
         return _fail(name, with_origin(error), EXIT_ERROR)
+
+
+def parser_of(name: str, words: Sequence[str] = ()) -> "Parser":
+    """Returns the parser of a subcommand for the words that follow its name."""
+    from qtab.cli.parser import Parser
+
+    module = import_module(f"qtab.cli.commands.{name}")
+    parser = Parser(f"qtab {name}", module.__doc__, words)
+    module.add_arguments(parser)
+    return parser
 
 
 def _fail(name: str, message: str, code: int) -> int:

@@ -21,17 +21,19 @@ _METAVARS = {values.integer: "INT", values.number: "FLOAT", Path: "FILE", str: "
 
 
 class Parser(argparse.ArgumentParser):
-    """Reads the arguments of a subcommand. ``--help`` prints the help and exits.
+    """Reads the arguments of a subcommand.
 
     Args:
-        command: The name of the subcommand, such as ``train``.
+        command: The command, such as ``qtab train``.
         description: What it does, for ``--help``.
+        words: The words after the command.
     """
 
-    def __init__(self, command: str, description: str | None) -> None:
-        self._usage = f"qtab {command}"
-        super().__init__(self._usage, None, description, formatter_class=_Help, exit_on_error=False, allow_abbrev=False)
-        self.set_defaults(command=self.prog)
+    def __init__(self, command: str, description: str | None, words: Sequence[str]) -> None:
+        super().__init__(command, command, description, formatter_class=_Help, exit_on_error=False, allow_abbrev=False)
+        self.help_wanted = "-h" in words or "--help" in words
+        self.words = [word for word in words if word not in ("-h", "--help")]
+        self.set_defaults(command=command, words=self.words)
         self._negative_number_matcher = re.compile(r"-(\d|\.\d|inf|nan)")  # argparse's own refuses -1e3 and -inf
         self._missing: dict[str, str] = {}
 
@@ -45,7 +47,7 @@ class Parser(argparse.ArgumentParser):
     ) -> None:
         """Adds an argument without a flag. See :meth:`option`."""
         shown_name = metavar or name.upper()
-        self._usage += f" {shown_name}" if default is REQUIRED else f" [{shown_name}]"
+        self.usage = f"{self.usage} {shown_name}" if default is REQUIRED else f"{self.usage} [{shown_name}]"
         self.add_argument(name, nargs="?", type=read, default=default, metavar=shown_name, help=_help(text, default))
         if default is REQUIRED:
             self._missing[name] = f"{shown_name} must be given: {text[0].lower()}{text[1:].rstrip('.')}"
@@ -85,15 +87,18 @@ class Parser(argparse.ArgumentParser):
         self.switch("quiet", "Print nothing but errors.")
         self.switch("json", "Print one JSON object instead of text; progress is shown on standard error only.")
 
-    def read(self, words: Sequence[str]) -> argparse.Namespace:
-        """Returns the arguments by their names.
+    def read(self) -> argparse.Namespace:
+        """Returns the arguments by their names; or prints the help and exits, if that is asked for.
 
         Raises:
             UsageError: for arguments that cannot be parsed.
         """
-        self.usage = f"{self._usage} [OPTIONS]"
+        if self.help_wanted:
+            self.usage = f"{self.usage} [OPTIONS]"
+            self.print_help()
+            self.exit()
         try:
-            found, rest = self.parse_known_intermixed_args([_with_hyphens(word) for word in words])
+            found, rest = self.parse_known_intermixed_args([_with_hyphens(word) for word in self.words])
         except argparse.ArgumentError as error:
             reason = error.message
             for theirs, ours in _MESSAGES.items():

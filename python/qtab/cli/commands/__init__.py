@@ -1,1 +1,1 @@
-"""The subcommands of ``qtab``, one a file: the arguments in ``parser()``, and what it does in ``run(arguments)``."""
+"""The subcommands of ``qtab``, one a file: ``add_arguments(parser)``, and ``run(options) -> exit code``."""

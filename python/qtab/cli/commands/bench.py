@@ -1,6 +1,7 @@
 """Compare the speed of qtab.train with the article's plain loop, in interleaved rounds of one process."""
 
 import time
+from argparse import Namespace
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -22,19 +23,16 @@ ENV, EPISODES = "MountainCar-v0", 10
 """The environment, and the episodes of the article's loop in a round, to which its schedule is compressed."""
 
 
-def parser() -> Parser:
-    """Returns the parser of ``qtab bench``."""
-    parser = Parser("bench", __doc__)
+def add_arguments(parser: Parser) -> None:
+    """Adds the arguments of the command."""
     parser.output_flags()
     parser.option("seconds", number, "The approximate duration; there are at least three rounds.", 10.0)
     parser.option("rounds", integer, "The number of rounds; by default as many as fit into the duration.")
     parser.option("part", str, "Only training; python benchmarks/compare.py, in the repository, times the other parts.")
-    return parser
 
 
-def run(arguments: list[str]) -> int:
+def run(options: Namespace) -> int:
     """Runs the command and returns its exit code."""
-    options = parser().read(arguments)
     if options.part not in (None, "training"):
         others = "python benchmarks/compare.py, in the repository, times the other parts"
         raise UsageError(f"--part must be training, got {options.part!r:.100}; {others}")

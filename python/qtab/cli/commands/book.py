@@ -14,9 +14,8 @@ from qtab.plots.axes import check_format
 ALL = "all"
 
 
-def parser() -> Parser:
-    """Returns the parser of ``qtab book``."""
-    parser = Parser("book", __doc__)
+def add_arguments(parser: Parser) -> None:
+    """Adds the arguments of the command."""
     name = "figure-10.4, or 10.4 if no example has the same number, or all; without a name, the experiments are listed."
     parser.positional("experiment", name, str, default=None, metavar="NAME")
     parser.option("runs", integer, "The number of runs of each setting; by default that of the full figure.")
@@ -29,12 +28,10 @@ def parser() -> Parser:
     parser.option("out", Path, out, metavar="FOLDER")
     threads = "The number of threads; by default one per core. It does not change the results."
     parser.option("threads", integer, threads)
-    return parser
 
 
-def run(arguments: list[str]) -> int:
+def run(options: Namespace) -> int:
     """Runs the command and returns its exit code."""
-    options = parser().read(arguments)
     if options.experiment is None:
         if any(path is not None for path in (options.plot, options.save, options.out)):
             raise UsageError("NAME must be given with --plot, --save or --out; qtab book lists the names")

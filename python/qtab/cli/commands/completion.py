@@ -1,10 +1,10 @@
 """Print the script with which a shell completes qtab's commands, flags, choices and ids of environments."""
 
+from argparse import Namespace
 from collections.abc import Iterable, Mapping
-from importlib import import_module
 
 from qtab._utils.progress import print_above
-from qtab.cli.command import SUBCOMMANDS
+from qtab.cli.command import SUBCOMMANDS, parser_of
 from qtab.cli.parser import Parser
 from qtab.cli.values import choice
 from qtab.config.choices import CHOICES
@@ -30,16 +30,14 @@ complete -o default -F _qtab qtab
 _PRELUDE = {"bash": "", "zsh": "autoload -U +X compinit && compinit\nautoload -U +X bashcompinit && bashcompinit\n"}
 
 
-def parser() -> Parser:
-    """Returns the parser of ``qtab completion``."""
-    parser = Parser("completion", __doc__)
+def add_arguments(parser: Parser) -> None:
+    """Adds the arguments of the command."""
     parser.positional("shell", "The shell that reads it: bash or zsh.", choice(SHELLS))
-    return parser
 
 
-def run(arguments: list[str]) -> int:
+def run(options: Namespace) -> int:
     """Runs the command and returns its exit code."""
-    print_above(script(parser().read(arguments).shell).rstrip())
+    print_above(script(options.shell).rstrip())
     return 0
 
 
@@ -49,7 +47,7 @@ def script(shell: str) -> str:
     # The cases are the command, the word before and the word to be completed; the first that matches counts.
     values, flags, others = [], [], []
     for command in SUBCOMMANDS:
-        actions = import_module(f"qtab.cli.commands.{command}").parser()._actions
+        actions = parser_of(command)._actions
         flags.append((f"'{command} '*' -'*", [name for action in actions for name in action.option_strings]))
         for action in (action for action in actions if action.dest in words):
             values += [(f"'{command} {name} '*", words[action.dest]) for name in action.option_strings]

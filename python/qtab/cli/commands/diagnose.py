@@ -1,5 +1,6 @@
 """Look for reasons why a saved run did not solve its environment, and for what to change."""
 
+from argparse import Namespace
 from typing import Any
 
 import numpy as np
@@ -15,19 +16,16 @@ from qtab.diagnosis.what_if import WhatIf
 from qtab.results.storage import load
 
 
-def parser() -> Parser:
-    """Returns the parser of ``qtab diagnose``."""
-    parser = Parser("diagnose", __doc__)
+def add_arguments(parser: Parser) -> None:
+    """Adds the arguments of the command."""
     parser.positional("run", "A file written by qtab train --save.")
     parser.output_flags()
     parser.switch("what_if", "Also try the advised changes, one at a time, over many seeds.")
     parser.option("seeds", integer, "The number of seeds for --what-if.", SEEDS)
-    return parser
 
 
-def run(arguments: list[str]) -> int:
+def run(options: Namespace) -> int:
     """Runs the command and returns its exit code."""
-    options = parser().read(arguments)
     with Report(options) as report:
         with usage_errors(("seeds",), "run"):
             if options.what_if:

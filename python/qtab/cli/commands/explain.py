@@ -1,5 +1,7 @@
 """Show steps of an episode of a saved run: why each action was chosen, and each update with its numbers."""
 
+from argparse import Namespace
+
 from qtab.cli.errors import reading, usage_errors
 from qtab.cli.parser import Parser
 from qtab.cli.reporting import Report
@@ -8,20 +10,17 @@ from qtab.explanation.explain import explain
 from qtab.results.storage import load
 
 
-def parser() -> Parser:
-    """Returns the parser of ``qtab explain``."""
-    parser = Parser("explain", __doc__)
+def add_arguments(parser: Parser) -> None:
+    """Adds the arguments of the command."""
     parser.positional("run", "A file written by qtab train --save.")
     parser.output_flags()
     parser.option("episode", integer, "The number of the episode, from 0.", 0)
     parser.option("steps", integer, "How many steps to show.", 5)
     parser.option("start", integer, "The first of these steps, from 0.", 0)
-    return parser
 
 
-def run(arguments: list[str]) -> int:
+def run(options: Namespace) -> int:
     """Runs the command and returns its exit code."""
-    options = parser().read(arguments)
     with Report(options) as report:
         with usage_errors(("episode", "steps", "start"), "run"):
             with reading("RUN", options.run):

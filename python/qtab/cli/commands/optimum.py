@@ -1,5 +1,7 @@
 """Compute the best policy of an environment: exact from its transition table, or the best known."""
 
+from argparse import Namespace
+
 from qtab.cli.errors import usage_errors
 from qtab.cli.parser import Parser, Together
 from qtab.cli.reporting import Report
@@ -14,9 +16,8 @@ FACTS = (
 """What the JSON object holds, beside the stationary policy of a transition table."""
 
 
-def parser() -> Parser:
-    """Returns the parser of ``qtab optimum``."""
-    parser = Parser("optimum", __doc__)
+def add_arguments(parser: Parser) -> None:
+    """Adds the arguments of the command."""
     parser.positional("env", "Gymnasium's id of the environment.", str, default=Config.env)
     parser.output_flags()
     words = "Keyword arguments of the environment's constructor."
@@ -30,12 +31,10 @@ def parser() -> Parser:
         "With a table, finite_horizon (the default), value_iteration or policy_iteration; for classic control, search."
     )
     parser.option("method", str, method)
-    return parser
 
 
-def run(arguments: list[str]) -> int:
+def run(options: Namespace) -> int:
     """Runs the command and returns its exit code."""
-    options = parser().read(arguments)
     with Report(options) as report:
         with usage_errors(("max_episode_steps", "discount", "method", "env_kwargs"), "env"):
             result = optimum(

@@ -2,6 +2,7 @@
 
 import tempfile
 import webbrowser
+from argparse import Namespace
 from pathlib import Path
 
 from qtab._utils.files import replacing
@@ -11,18 +12,15 @@ from qtab.cli.parser import Parser
 FILE = "qtab-playground.html"
 
 
-def parser() -> Parser:
-    """Returns the parser of ``qtab playground``."""
-    parser = Parser("playground", __doc__)
+def add_arguments(parser: Parser) -> None:
+    """Adds the arguments of the command."""
     out = "Where to write the page, one HTML file that needs nothing else; by default into a temporary folder."
     parser.option("out", Path, out, metavar="PATH")
     parser.switch("no_open", "Write the page without opening it.")
-    return parser
 
 
-def run(arguments: list[str]) -> int:
+def run(options: Namespace) -> int:
     """Runs the command and returns its exit code."""
-    options = parser().read(arguments)
     from qtab.playground import page
 
     html = page()

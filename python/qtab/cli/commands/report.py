@@ -1,6 +1,7 @@
 """Write the tables and plots of a sweep into a folder, with one self-contained HTML page."""
 
 import shlex
+from argparse import Namespace
 from pathlib import Path
 
 from qtab.cli.errors import usage_errors
@@ -10,22 +11,19 @@ from qtab.sweeps import load_sweep
 from qtab.sweeps.report import report
 
 
-def parser() -> Parser:
-    """Returns the parser of ``qtab report``."""
-    parser = Parser("report", __doc__)
+def add_arguments(parser: Parser) -> None:
+    """Adds the arguments of the command."""
     parser.positional("store", "The store of a qtab sweep, which may still be running.")
     parser.output_flags()
     parser.option("out", Path, "The folder; by default the name of the store with -report.", metavar="FOLDER")
-    return parser
 
 
-def run(arguments: list[str]) -> int:
+def run(options: Namespace) -> int:
     """Runs the command and returns its exit code."""
-    options = parser().read(arguments)
     with Report(options) as output:
         with usage_errors():
             folder = options.out or options.store.with_name(f"{options.store.stem}-report")
-            command = shlex.join(["qtab", "report", *arguments])
+            command = shlex.join([*options.command.split(), *options.words])
             files = report(load_sweep(options.store), folder, command)
         output.text(f"{len(files)} files in {folder}; open {files[-1]}")
         output.add(folder=folder, files=files)

@@ -1,5 +1,6 @@
 """Continue a saved run exactly where it stopped, or train a finished one for more episodes."""
 
+from argparse import Namespace
 from contextlib import closing
 from pathlib import Path
 
@@ -20,9 +21,8 @@ from qtab.training.resolved_run import ResolvedRun
 FLAGS = ("episodes", "snapshots", "save", "checkpoint", "plot", "env", "optimum")
 
 
-def parser() -> Parser:
-    """Returns the parser of ``qtab resume``."""
-    parser = Parser("resume", __doc__)
+def add_arguments(parser: Parser) -> None:
+    """Adds the arguments of the command."""
     parser.positional("run", "A file written by qtab train --save.")
     parser.output_flags()
     episodes = "The number of episodes of the whole run, those that are finished included; by default that of the run."
@@ -37,12 +37,10 @@ def parser() -> Parser:
     parser.option("env", str, ENV_OF_RUN, metavar="ENV")
     parser.switch("optimum", OPTIMUM)
     parser.set_defaults(watch=None, record=None)  # which qtab train has
-    return parser
 
 
-def run(arguments: list[str]) -> int:
+def run(asked: Namespace) -> int:
     """Runs the command and returns its exit code."""
-    asked = parser().read(arguments)
     with Report(asked) as report:
         with usage_errors(FLAGS, "run"):
             with reading("RUN", asked.run):

@@ -25,9 +25,8 @@ from qtab.sweeps.study import settings_of
 DEFAULT_SEEDS = 100
 
 
-def parser() -> Parser:
-    """Returns the parser of ``qtab sweep``."""
-    parser = Parser("sweep", __doc__)
+def add_arguments(parser: Parser) -> None:
+    """Adds the arguments of the command."""
     study = (
         "A TOML file: env, seeds, [grid] (or [design] with kind, points, seed and space), [config], block, store, "
         "threads and memory_limit."
@@ -49,12 +48,10 @@ def parser() -> Parser:
     parser.option("per", str, per)
     confirm_store = "The SQLite file for the results of --confirm, which can then be interrupted, too."
     parser.option("confirm_store", Path, confirm_store)
-    return parser
 
 
-def run(arguments: list[str]) -> int:
+def run(options: Namespace) -> int:
     """Runs the command and returns its exit code."""
-    options = parser().read(arguments)
     with Report(options) as report:
         report.writes_files = True
         _run(options, report)

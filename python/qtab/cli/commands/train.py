@@ -1,12 +1,13 @@
 """Train a tabular agent. The defaults shown are those of the environment, the preset and the file given."""
 
 from argparse import BooleanOptionalAction, Namespace
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import closing
 from pathlib import Path
 from typing import Any
 
 from qtab._utils.shown import counted
+from qtab.cli.command import parser_of
 from qtab.cli.errors import UsageError, usage_errors
 from qtab.cli.outputs import Outputs
 from qtab.cli.parser import Parser
@@ -27,13 +28,8 @@ OUTPUTS = ("save", "checkpoint", "plot", "watch", "record")
 """The arguments that are not settings and say where a run is written or shown."""
 
 
-def parser(defaults: Mapping[str, Any] = DEFAULTS) -> Parser:
-    """Returns the parser of the command.
-
-    Args:
-        defaults: The defaults of the settings that ``--help`` shows.
-    """
-    parser = Parser("train", __doc__)
+def add_arguments(parser: Parser) -> None:
+    """Adds the arguments of the command."""
     parser.positional("env", f"The environment's id in Gymnasium (default: {Config.env}).", str, default=None)
     parser.output_flags()
     parser.add_argument("--env", dest="env_flag", metavar="ENV", help="The same, as an option.")
@@ -53,14 +49,14 @@ def parser(defaults: Mapping[str, Any] = DEFAULTS) -> Parser:
     snapshots = "Keep this many copies of the tables, evenly spaced over the episodes, in the file of --save."
     parser.option("snapshots", integer, snapshots)
     parser.add_argument("--optimum", action=BooleanOptionalAction, default=False, help=OPTIMUM)
-    add_settings(parser, defaults)
-    return parser
+    add_settings(parser, shown_defaults(parser.words) if parser.help_wanted else DEFAULTS)
 
 
-def run(arguments: list[str]) -> int:
+def run(asked: Namespace) -> int:
     """Trains and reports; returns the exit code."""
-    asked, env, settings = parse_arguments(arguments)
-    flags = _flags(asked)
+    with usage_errors():
+        env, settings = env_and_settings(asked)
+    flags = _flags(asked, settings)
     with Report(asked) as report:
         with usage_errors(flags, "env"):
             resolved = resolve(env, with_initial_q(settings))
@@ -75,32 +71,24 @@ def run(arguments: list[str]) -> int:
     return 0
 
 
-def parse_arguments(arguments: list[str]) -> tuple[Namespace, str, dict[str, Any]]:
-    """Returns the arguments, the environment, and the settings given as flags or in the file.
-
-    ``--help`` prints the help, with the defaults of the environment, the preset and the file given, and exits.
+def shown_defaults(words: Sequence[str]) -> Mapping[str, Any]:
+    """Returns the defaults that ``--help`` shows beside other arguments: of the environment, the preset and the file.
 
     Raises:
-        UsageError: for arguments that cannot be parsed, and a file that cannot be read.
+        UsageError: for settings that do not fit, and a file that cannot be read.
     """
-    words = [word for word in arguments if word not in ("-h", "--help")]
-    help_wanted = len(words) < len(arguments)
     try:
-        asked = parser().read(words)
+        asked = parser_of("train", words).read()
     except UsageError:
-        if not help_wanted:
-            raise
-        asked = parser().read([])
+        asked = parser_of("train").read()
     with usage_errors():
-        env, settings = _env_and_settings(asked)
-    if help_wanted:
-        with usage_errors(_flags(asked)):
-            shown = _effective_defaults(env, settings)
-        parser(shown).read(["--help"])
-    return asked, env, settings
+        env, settings = env_and_settings(asked)
+    with usage_errors(_flags(asked, settings)):
+        return _effective_defaults(env, settings)
 
 
-def _env_and_settings(asked: Namespace) -> tuple[str, dict[str, Any]]:
+def env_and_settings(asked: Namespace) -> tuple[str, dict[str, Any]]:
+    """Returns the environment, and the settings given as flags or in the file."""
     settings = {} if asked.config is None else read_config(asked.config)
     settings |= given_settings(asked)
     if asked.env is not None and asked.env_flag is not None:
@@ -111,9 +99,9 @@ def _env_and_settings(asked: Namespace) -> tuple[str, dict[str, Any]]:
     return asked.env or asked.env_flag or named, settings
 
 
-def _flags(asked: Namespace) -> tuple[str, ...]:
+def _flags(asked: Namespace, settings: Mapping[str, Any]) -> tuple[str, ...]:
     """Returns the arguments that messages spell as flags: all but the settings that only the file gives."""
-    in_file = () if asked.config is None else read_config(asked.config).keys() - given_settings(asked).keys()
+    in_file = settings.keys() - given_settings(asked).keys()
     return (*OUTPUTS, *(name for name in DEFAULTS if name not in in_file and name != "env"))
 
 

@@ -2,6 +2,7 @@
 
 import logging
 import time
+from argparse import Namespace
 from collections.abc import Callable
 
 from qtab._utils.progress import ProgressBar
@@ -18,19 +19,16 @@ SILENT_SECONDS = 2.0
 """After this time without a progress bar, a message reports how long it will take."""
 
 
-def parser() -> Parser:
-    """Returns the parser of ``qtab verify``."""
-    parser = Parser("verify", __doc__)
+def add_arguments(parser: Parser) -> None:
+    """Adds the arguments of the command."""
     parser.positional("run", "A file written by qtab train --save.")
     parser.output_flags()
     parser.option("episodes", integer, "Compare only the first episodes, using the schedules of the full run.")
     parser.option("env", str, ENV_OF_RUN, metavar="ENV")
-    return parser
 
 
-def run(arguments: list[str]) -> int:
+def run(options: Namespace) -> int:
     """Runs the command and returns its exit code."""
-    options = parser().read(arguments)
     with Report(options) as report:
         with usage_errors(("episodes", "env"), "run"):
             with reading("RUN", options.run):

@@ -15,15 +15,8 @@ FLAGS = ("episodes", "seed", "fps", "max_episode_steps")
 """The arguments that messages spell as flags."""
 
 
-def parser() -> Parser:
-    """Returns the parser of ``qtab watch``."""
-    parser = Parser("watch", __doc__)
-    add_arguments(parser)
-    return parser
-
-
 def add_arguments(parser: Parser) -> None:
-    """Adds the arguments that ``qtab record`` has as well."""
+    """Adds the arguments of the command, which ``qtab record`` has as well."""
     parser.positional("run", "A file written by qtab train --save.")
     parser.option("episodes", integer, "The number of episodes.", 1)
     parser.option("seed", integer, "The seed of the environment; by default a random one, which is printed.")
@@ -32,9 +25,8 @@ def add_arguments(parser: Parser) -> None:
     parser.option("max_episode_steps", integer, limit)
 
 
-def run(arguments: list[str]) -> int:
+def run(options: Namespace) -> int:
     """Runs the command and returns its exit code."""
-    options = parser().read(arguments)
     with usage_errors(FLAGS):
         saved = load_run(options)
         problem = display_problem()
