@@ -2,6 +2,7 @@
 
 import re
 import traceback
+from argparse import Namespace
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -43,20 +44,23 @@ def with_origin(error: Exception) -> str:
 
 
 @contextmanager
-def usage_errors(flags: Collection[str] = (), positional: str | None = None) -> Iterator[None]:
+def usage_errors(options: Namespace | None = None) -> Iterator[None]:
     """Turns the errors that bad arguments cause inside the context into a :class:`UsageError`.
 
     Args:
-        flags: The arguments of the API that were given as flags, which messages then spell as flags.
-        positional: The one that is given without a flag, which messages then write as ``--help`` does.
+        options: The arguments of the command. Messages about its ``flags`` spell them as flags, and those about its
+            ``positionals`` as ``--help`` does. None: the message stays as it is.
     """
     try:
         yield
     except USER_ERRORS as error:
         message = one_line(error)
-        if positional is not None and message.startswith(f"{positional} must "):
-            message = positional.upper() + message.removeprefix(positional)
-        raise UsageError(as_flags(message, flags)) from error
+        if options is not None:
+            word = message.partition(" must ")[0]
+            if word in options.positionals:
+                message = word.upper() + message.removeprefix(word)
+            message = as_flags(message, options.flags)
+        raise UsageError(message) from error
 
 
 @contextmanager

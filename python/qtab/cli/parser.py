@@ -35,6 +35,7 @@ class Parser(argparse.ArgumentParser):
         self.words = [word for word in words if word not in ("-h", "--help")]
         self.set_defaults(command=command, words=self.words)
         self._negative_number_matcher = re.compile(r"-(\d|\.\d|inf|nan)")  # argparse's own refuses -1e3 and -inf
+        self._without_flag: list[str] = []
         self._missing: dict[str, str] = {}
 
     def positional(
@@ -48,6 +49,7 @@ class Parser(argparse.ArgumentParser):
         """Adds an argument without a flag. See :meth:`option`."""
         shown_name = metavar or name.upper()
         self.usage = f"{self.usage} {shown_name}" if default is REQUIRED else f"{self.usage} [{shown_name}]"
+        self._without_flag.append(shown_name.lower())
         self.add_argument(name, nargs="?", type=read, default=default, metavar=shown_name, help=_help(text, default))
         if default is REQUIRED:
             self._missing[name] = f"{shown_name} must be given: {text[0].lower()}{text[1:].rstrip('.')}"
@@ -90,6 +92,8 @@ class Parser(argparse.ArgumentParser):
     def read(self) -> argparse.Namespace:
         """Returns the arguments by their names; or prints the help and exits, if that is asked for.
 
+        Beside them are ``command``, ``words``, and the names of the ``flags`` and of the ``positionals``.
+
         Raises:
             UsageError: for arguments that cannot be parsed.
         """
@@ -108,6 +112,7 @@ class Parser(argparse.ArgumentParser):
         if rest or reasons:
             reason = self._unknown(rest) if rest else reasons[0]
             raise UsageError(f"{reason}; see {self.prog} --help")
+        found.flags, found.positionals = self.flags(), self._without_flag
         return found
 
     def _unknown(self, words: Sequence[str]) -> str:

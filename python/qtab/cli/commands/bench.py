@@ -37,7 +37,7 @@ def run(options: Namespace) -> int:
         others = "python benchmarks/compare.py, in the repository, times the other parts"
         raise UsageError(f"--part must be training, got {options.part!r:.100}; {others}")
     with Report(options) as report:
-        with usage_errors(("seconds", "rounds")):
+        with usage_errors(options):
             seconds = checks.real("seconds", options.seconds, 0, 86_400)
             rounds = None if options.rounds is None else checks.integer("rounds", options.rounds, least=1)
         times = measure(BENCHMARKS, seconds, rounds)

@@ -41,7 +41,7 @@ def run(options: Namespace) -> int:
         return _run_all(options)
     if options.out is not None:
         raise UsageError("--out must be left out, except with qtab book all; --plot and --save write single files")
-    with usage_errors(("runs", "seed", "threads", "plot", "save"), "name"):
+    with usage_errors(options):
         experiment = book.find(options.experiment)
         if options.plot is not None:
             check_format("plot", options.plot)
@@ -73,7 +73,7 @@ def _list() -> None:
 def _run_all(options: Namespace) -> int:
     if options.out is None or options.plot is not None or options.save is not None:
         raise UsageError("--out must name a folder for qtab book all, without --plot and --save")
-    with usage_errors(("runs", "seed", "threads"), "name"):
+    with usage_errors(options):
         book.run_all(options.out, options.runs, options.seed, threads=options.threads, on_start=_announce)
     print_above(f"Saved {len(book.EXPERIMENTS)} experiments to {options.out}")
     return 0

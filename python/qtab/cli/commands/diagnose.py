@@ -27,7 +27,7 @@ def add_arguments(parser: Parser) -> None:
 def run(options: Namespace) -> int:
     """Runs the command and returns its exit code."""
     with Report(options) as report:
-        with usage_errors(("seeds",), "run"):
+        with usage_errors(options):
             if options.what_if:
                 checks.integer("seeds", options.seeds, least=2)
             with reading("RUN", options.run):
@@ -38,7 +38,7 @@ def run(options: Namespace) -> int:
         report.add(env=saved.config.env, seed=saved.config.seed, what_if=None)
         report.add(**diagnosis.verdict.numbers(), **{name: getattr(diagnosis, name) for name in facts})
         if options.what_if and any(finding.changes for finding in diagnosis):
-            with usage_errors(("seeds",)):
+            with usage_errors(options):
                 tried = diagnosis.what_if(options.seeds, progress=report.progress)
             report.text(f"\n{tried}")
             report.add(what_if=_facts(tried))

@@ -36,7 +36,7 @@ def add_arguments(parser: Parser) -> None:
 def run(options: Namespace) -> int:
     """Runs the command and returns its exit code."""
     with Report(options) as report:
-        with usage_errors(("max_episode_steps", "discount", "method", "env_kwargs"), "env"):
+        with usage_errors(options):
             result = optimum(
                 options.env,
                 discount=options.discount,

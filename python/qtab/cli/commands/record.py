@@ -18,7 +18,7 @@ def add_arguments(parser: Parser) -> None:
 
 def run(options: Namespace) -> int:
     """Runs the command and returns its exit code."""
-    with usage_errors(watch.FLAGS, "path"):
+    with usage_errors(options):
         saved = watch.load_run(options)
         check_video_path(options.path)
         played = watch.played_by(saved, options, window=False)

@@ -18,8 +18,6 @@ from qtab.training.options import TrainingOptions
 from qtab.training.resolve import resolve
 from qtab.training.resolved_run import ResolvedRun
 
-FLAGS = ("episodes", "snapshots", "save", "checkpoint", "plot", "env", "optimum")
-
 
 def add_arguments(parser: Parser) -> None:
     """Adds the arguments of the command."""
@@ -42,7 +40,7 @@ def add_arguments(parser: Parser) -> None:
 def run(asked: Namespace) -> int:
     """Runs the command and returns its exit code."""
     with Report(asked) as report:
-        with usage_errors(FLAGS, "run"):
+        with usage_errors(asked):
             with reading("RUN", asked.run):
                 earlier = load(asked.run)
             check_agrees(earlier, asked.env, {})
@@ -54,7 +52,7 @@ def run(asked: Namespace) -> int:
             else:
                 resolved = resolve_again("run", earlier, asked.episodes, None)
         with closing(resolved):
-            with usage_errors(FLAGS):
+            with usage_errors(asked):
                 if finished:
                     asked.checkpoint = None
                 elif asked.save is None:

@@ -24,9 +24,6 @@ from qtab.results.snapshots import snapshot_episodes
 from qtab.training.resolve import resolve, time_limit_notice
 from qtab.training.resolved_run import ResolvedRun
 
-OUTPUTS = ("save", "checkpoint", "plot", "watch", "record")
-"""The arguments that are not settings and say where a run is written or shown."""
-
 
 def add_arguments(parser: Parser) -> None:
     """Adds the arguments of the command."""
@@ -56,12 +53,12 @@ def run(asked: Namespace) -> int:
     """Trains and reports; returns the exit code."""
     with usage_errors():
         env, settings = env_and_settings(asked)
-    flags = _flags(asked, settings)
+    asked.flags = _flags(asked, settings)
     with Report(asked) as report:
-        with usage_errors(flags, "env"):
+        with usage_errors(asked):
             resolved = resolve(env, with_initial_q(settings))
         with closing(resolved):
-            with usage_errors(flags, "env"):
+            with usage_errors(asked):
                 outputs = Outputs(resolved.config, asked, report)
                 snapshots = snapshot_episodes(asked.snapshots, resolved.config.episodes)
                 best = optimum_of(resolved, asked.optimum, report.progress)
@@ -83,7 +80,8 @@ def shown_defaults(words: Sequence[str]) -> Mapping[str, Any]:
         asked = parser_of("train").read()
     with usage_errors():
         env, settings = env_and_settings(asked)
-    with usage_errors(_flags(asked, settings)):
+    asked.flags = _flags(asked, settings)
+    with usage_errors(asked):
         return _effective_defaults(env, settings)
 
 
@@ -102,7 +100,7 @@ def env_and_settings(asked: Namespace) -> tuple[str, dict[str, Any]]:
 def _flags(asked: Namespace, settings: Mapping[str, Any]) -> tuple[str, ...]:
     """Returns the arguments that messages spell as flags: all but the settings that only the file gives."""
     in_file = settings.keys() - given_settings(asked).keys()
-    return (*OUTPUTS, *(name for name in DEFAULTS if name not in in_file and name != "env"))
+    return tuple(name for name in asked.flags if name not in in_file and name != "env")
 
 
 def _effective_defaults(env: str, settings: Mapping[str, Any]) -> dict[str, Any]:

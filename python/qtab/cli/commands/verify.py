@@ -30,7 +30,7 @@ def add_arguments(parser: Parser) -> None:
 def run(options: Namespace) -> int:
     """Runs the command and returns its exit code."""
     with Report(options) as report:
-        with usage_errors(("episodes", "env"), "run"):
+        with usage_errors(options):
             with reading("RUN", options.run):
                 saved = load(options.run)
             if options.env is not None:

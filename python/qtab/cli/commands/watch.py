@@ -11,9 +11,6 @@ from qtab.rendering.window import display_problem
 from qtab.results.run import Run
 from qtab.results.storage import load
 
-FLAGS = ("episodes", "seed", "fps", "max_episode_steps")
-"""The arguments that messages spell as flags."""
-
 
 def add_arguments(parser: Parser) -> None:
     """Adds the arguments of the command, which ``qtab record`` has as well."""
@@ -27,7 +24,7 @@ def add_arguments(parser: Parser) -> None:
 
 def run(options: Namespace) -> int:
     """Runs the command and returns its exit code."""
-    with usage_errors(FLAGS):
+    with usage_errors(options):
         saved = load_run(options)
         problem = display_problem()
         if problem is not None:
