@@ -203,8 +203,8 @@ def test_the_extension_tells_its_build_profile():
     assert _core.BUILD_PROFILE in ("debug", "release")
 
 
-GIVEN = {"qtab", "IPython", "envpool"}
-"""The package itself; what is only used where it runs already; what only a benchmark uses, if it is there."""
+GIVEN = {"qtab", "IPython"}
+"""The package itself; what is only used where it runs already."""
 DISTRIBUTIONS = {"PIL": "pillow", "pygame": "pygame-ce"}
 
 
