@@ -15,7 +15,7 @@ def resumes(run: qtab.Run, episodes: int) -> bool:
     try:
         return qtab.resume(run, episodes).completed
     except ValueError as error:
-        if not str(error).startswith("the checkpoint does not fit the run: it "):
+        if not str(error).startswith("run must have an undamaged state from this version of qtab: the checkpoint "):
             raise
         return False
 

@@ -30,7 +30,14 @@ def restore(trainer: _core.Trainer, resolved: ResolvedRun, earlier: Run) -> None
         raise ValueError("run must be resumed with env=, an environment stepped in Python as the run was trained on")
     tables = [table.ravel() for table in earlier.tables]
     episodes = earlier.episode_returns, earlier.episode_lengths, earlier.terminated
-    if trainer.restore(state.checkpoint, tables, episodes):
+    try:
+        is_lost = trainer.restore(state.checkpoint, tables, episodes)
+    except ValueError as error:
+        raise ValueError(
+            f"run must have an undamaged state from this version of qtab: {error}; "
+            "qtab.train(..., initial_q=run.q_table) continues to learn from its table"
+        ) from None
+    if is_lost:
         _LOGGER.warning(
             "the run was stopped within episode %s (counted from 0), which cannot be continued: another one begins, "
             "and from there on the results differ from those of an uninterrupted run",
