@@ -76,6 +76,13 @@ def test_without_a_file_to_write_a_closed_pipe_ends_the_command(
     assert with_closed_pipe(monkeypatch, tmp_path, 1, "train", *LAKE) == 1
 
 
+@pytest.mark.parametrize("command", ["train", "verify"])
+def test_help_that_is_not_read_ends_with_an_error(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: str
+) -> None:
+    assert with_closed_pipe(monkeypatch, tmp_path, 0, command, "--help") == 1
+
+
 def test_a_closed_pipe_does_not_end_a_sweep(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     study = 'env = "FrozenLake-v1"\nseeds = 2\n[grid]\nlearning_rate = [0.1, 0.5]\n[config]\nepisodes = 20\n'
     (tmp_path / "s.toml").write_text(study)

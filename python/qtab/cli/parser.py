@@ -3,9 +3,9 @@
 import argparse
 import re
 import textwrap
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 from qtab._utils.shown import shown
 from qtab.cli import values
@@ -14,7 +14,9 @@ from qtab.config.unknown import meant
 
 REQUIRED = object()
 """The default of an argument that must be given."""
-ENV_OF_RUN = "The environment's id, for one that a package registers (package:Name-v0): a file imports nothing."
+ENV_OF_RUN = (
+    "The environment's id with its package, package:Name-v0, where one registers it: loading a run imports none."
+)
 """The help of ``--env`` beside the file of a run."""
 _MESSAGES = {"expected one argument": "needs a value", "ignored explicit argument": "takes no value, got"}
 _METAVARS = {values.integer: "INT", values.number: "FLOAT", Path: "FILE", str: "STR"}
@@ -34,9 +36,9 @@ class Parser(argparse.ArgumentParser):
         self.help_wanted = "-h" in words or "--help" in words
         self.words = [word for word in words if word not in ("-h", "--help")]
         self.set_defaults(command=command, words=self.words)
-        self._negative_number_matcher = re.compile(r"-(\d|\.\d|inf|nan)")  # argparse's own refuses -1e3 and -inf
-        self._without_flag: list[str] = []
-        self._missing: dict[str, str] = {}
+        # argparse's own refuses -1e3 and -inf
+        self._negative_number_matcher = re.compile(r"-(\d|\.\d|inf|nan)", re.IGNORECASE)
+        self._without_flag: list[tuple[argparse.Action, Callable[[str], Any]]] = []
 
     def positional(
         self,
@@ -47,12 +49,12 @@ class Parser(argparse.ArgumentParser):
         metavar: str | None = None,
     ) -> None:
         """Adds an argument without a flag. See :meth:`option`."""
-        shown_name = metavar or name.upper()
-        self.usage = f"{self.usage} {shown_name}" if default is REQUIRED else f"{self.usage} [{shown_name}]"
-        self._without_flag.append(shown_name.lower())
-        self.add_argument(name, nargs="?", type=read, default=default, metavar=shown_name, help=_help(text, default))
-        if default is REQUIRED:
-            self._missing[name] = f"{shown_name} must be given: {text[0].lower()}{text[1:].rstrip('.')}"
+        metavar = metavar or name.upper()
+        self.usage = f"{self.usage} {metavar}" if default is REQUIRED else f"{self.usage} [{metavar}]"
+        # It takes no words from argparse, which would read all arguments where the first of them stands.
+        taken = argparse.SUPPRESS
+        action = self.add_argument(name, nargs=taken, default=default, metavar=metavar, help=_help(text, default))
+        self._without_flag.append((action, read))
 
     def option(
         self,
@@ -99,34 +101,64 @@ class Parser(argparse.ArgumentParser):
         """
         if self.help_wanted:
             self.usage = f"{self.usage} [OPTIONS]"
-            self.print_help()
+            print(self.format_help(), end="", flush=True)  # noqa: T201 - print_help() hides that nothing was written
             self.exit()
+        end = self.words.index("--") if "--" in self.words else len(self.words)
         try:
-            found, rest = self.parse_known_intermixed_args([_with_hyphens(word) for word in self.words])
+            found, rest = self.parse_known_args(list(self._spelled(self.words[:end])))
+            self._read_without_flag(found, rest, self.words[end + 1 :])
         except argparse.ArgumentError as error:
             reason = error.message
             for theirs, ours in _MESSAGES.items():
                 reason = reason.replace(theirs, ours)
-            raise UsageError(f"{error.argument_name} {reason}; see {self.prog} --help") from None
-        reasons = [reason for name, reason in self._missing.items() if getattr(found, name) is REQUIRED]
-        if rest or reasons:
-            reason = self._unknown(rest) if rest else reasons[0]
-            raise UsageError(f"{reason}; see {self.prog} --help")
-        found.flags, found.positionals = self.flags(), self._without_flag
+            self._refuse(f"{error.argument_name} {reason}")
+        found.flags, found.positionals = self.flags(), self._names_without_flag()
         return found
 
-    def _unknown(self, words: Sequence[str]) -> str:
-        """Returns the message for words that are no arguments, about the first flag among them, or the first word."""
-        word = next((word for word in words if word.startswith("-")), None)
-        if word is None:
-            return f"unexpected argument {shown(words[0])}"
+    def _spelled(self, words: Sequence[str]) -> Iterator[str]:
+        """Yields the words as argparse takes them: flags with hyphens, and ``--scale=1 2`` as ``--scale 1 2``."""
+        several = {text for action in self._actions if isinstance(action, Together) for text in action.option_strings}
+        for word in words:
+            name, equals, value = word.partition("=")
+            if not word.startswith("--"):
+                yield word
+            elif equals and (spelled := name.replace("_", "-")) in several and not self._is_flag(value):
+                yield from (spelled, value)
+            else:
+                yield f"{name.replace('_', '-')}{equals}{value}"
+
+    def _read_without_flag(self, found: argparse.Namespace, rest: Sequence[str], last: Sequence[str]) -> None:
+        """Reads the arguments without a flag from the words that argparse left, and from those after ``--``."""
+        unknown = next(filter(self._is_flag, rest), None)
+        if unknown is not None:
+            self._refuse(self._unknown(unknown))
+        given = [*rest, *last]
+        if len(given) > len(self._without_flag):
+            self._refuse(f"unexpected argument {shown(given[len(self._without_flag)])}")
+        for (action, read), word in zip(self._without_flag, given, strict=False):
+            _store(found, action, read, word)
+        for action, _ in self._without_flag[len(given) :]:
+            if action.default is REQUIRED:
+                text = str(action.help).replace("%%", "%").rstrip(".")
+                self._refuse(f"{action.metavar} must be given: {text[0].lower()}{text[1:]}")
+
+    def _is_flag(self, word: str) -> bool:
+        return len(word) > 1 and word[0] == "-" and not self._negative_number_matcher.match(word)
+
+    def _unknown(self, word: str) -> str:
+        """Returns the message for a flag that does not exist."""
         word = word.partition("=")[0]
         name = word.lstrip("-").replace("-", "_")
-        flags = self.flags()
-        if name not in flags and any(name == action.dest for action in self._actions):
+        if name in self._names_without_flag():
             return f"unknown option {shown(word)[1:-1]} ({name} is given without a flag)"
-        found = meant(name, flags)
+        found = meant(name, self.flags())
         return f"unknown option {shown(word)[1:-1]}" + (f" (did you mean {flag(found)}?)" if found else "")
+
+    def _refuse(self, reason: str) -> NoReturn:
+        raise UsageError(f"{reason}; see {self.prog} --help") from None
+
+    def _names_without_flag(self) -> list[str]:
+        return [str(action.metavar).lower() for action, _ in self._without_flag]
 
     def flags(self) -> Collection[str]:
         """Returns the names of the options in Python."""
@@ -144,10 +176,7 @@ class Together(argparse.Action):
 
     def __call__(self, _parser: Any, namespace: argparse.Namespace, words: Any, _flag: str | None = None) -> None:
         """Stores the value."""
-        try:
-            setattr(namespace, self.dest, self._read(words))
-        except argparse.ArgumentTypeError as error:
-            raise argparse.ArgumentError(self, str(error)) from None
+        _store(namespace, self, self._read, words)
 
 
 class _Help(argparse.HelpFormatter):
@@ -162,7 +191,9 @@ def _help(text: str, default: Any = None) -> str:
     return text.replace("%", "%%")
 
 
-def _with_hyphens(word: str) -> str:
-    """Returns a flag with hyphens instead of underscores."""
-    name, equals, value = word.partition("=")
-    return f"{name.replace('_', '-')}{equals}{value}" if word.startswith("--") else word
+def _store(namespace: argparse.Namespace, action: argparse.Action, read: Callable[[Any], Any], words: Any) -> None:
+    """Stores the value of an argument, as argparse does for its own."""
+    try:
+        setattr(namespace, action.dest, read(words))
+    except argparse.ArgumentTypeError as error:
+        raise argparse.ArgumentError(action, str(error)) from None
