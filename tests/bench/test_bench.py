@@ -152,6 +152,9 @@ def test_a_part_can_be_timed_separately(small_rounds: None, capsys: pytest.Captu
     with pytest.raises(SystemExit):
         compare.main(["whole"])
     assert "PART must be one of training, environments, " in capsys.readouterr().err
+    with pytest.raises(SystemExit):
+        compare.main(["stepping", "--rounds", "0"])
+    assert "--rounds must be at least 1, got 0" in capsys.readouterr().err
 
 
 def test_it_warns_of_a_debug_build_and_of_missing_numba(

@@ -67,7 +67,7 @@ def test_a_design_can_be_swept(tmp_path, capsys):
         ("seeds = 3", "either a [grid] or a [design]"),
         ("nonsense = 3", "unknown key 'nonsense'; use env, seeds"),
         ("seed = 3", "unknown key 'seed' (did you mean 'seeds'?)"),
-        ("[grid", "study must be a TOML file"),
+        ("[grid", "STUDY must be a TOML file"),
         ("[grid]\nepsilon = [0.3]", "env is missing"),
         (f"{ENV}[grid]\nepsilon = 0.3", "grid['epsilon'] must be a list of values"),
         (f"{ENV}[grid]\nepsilom = [0.3]", "unknown setting 'epsilom' (did you mean 'epsilon'?)"),
@@ -92,8 +92,8 @@ def test_a_design_can_be_swept(tmp_path, capsys):
         (f"{ENV}seeds = 1000000000000\n{GRID}", "the results of 1,000,000,000,000 runs need"),
         (f"{ENV}seeds = 'x'\n{GRID}", "seeds must be an integer or a sequence of integers, got 'x'"),
         (f"{ENV}block = 0\n{GRID}", "block must be an integer of at least 1, got 0"),
-        ("x = " + "[" * 5000, "study must be a TOML file"),
-        ("\0", "study must be a TOML file"),
+        ("x = " + "[" * 5000, "STUDY must be a TOML file"),
+        ("\0", "STUDY must be a TOML file"),
     ],
 )
 def test_a_bad_study_is_refused_in_one_line(tmp_path, capsys, text, message):
@@ -171,7 +171,7 @@ def test_a_report_counts_failed_runs():
 def test_a_study_that_cannot_be_read_is_an_error_without_a_number(tmp_path, capsys, name):
     assert main(["sweep", str(tmp_path / name)]) == 2
     said = capsys.readouterr().err
-    assert "study must be a file that can be read, got" in said
+    assert "STUDY must be a file that can be read, got" in said
     assert "Errno" not in said
 
 

@@ -26,7 +26,7 @@ SUBCOMMANDS = {
     "report": "turn the store of a sweep into tables, plots and one HTML page",
     "book": "run an experiment of Sutton & Barto's book: its settings, a table, a figure",
     "playground": "open a page that trains agents in the browser",
-    "bench": "compare the speed of this package with Gymnasium and the article's loop",
+    "bench": "compare the speed of training with the article's plain loop",
     "completion": "print the script with which bash or zsh completes commands, flags and choices",
 }
 """The subcommands with their help. Each is a module of ``commands``."""

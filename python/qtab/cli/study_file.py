@@ -40,7 +40,7 @@ def read_study(path: Path) -> StudyFile:
         UsageError: if the file cannot be read.
         ValueError: if it is not TOML, or does not describe a sweep; the message names the file and the key.
     """
-    content = read_toml("study", path)
+    content = read_toml("STUDY", path)
     try:
         return _study(content)
     except (ValueError, TypeError) as error:

@@ -28,7 +28,7 @@ def add_arguments(parser: Parser) -> None:
     parser.output_flags()
     parser.option("seconds", number, "The approximate duration; there are at least three rounds.", 10.0)
     parser.option("rounds", integer, "The number of rounds; by default as many as fit into the duration.")
-    parser.option("part", str, "Only training; python benchmarks/compare.py, in the repository, times the other parts.")
+    parser.option("part", str, "Must be training: python benchmarks/compare.py, in the repository, times other parts.")
 
 
 def run(options: Namespace) -> int:

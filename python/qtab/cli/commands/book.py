@@ -22,9 +22,7 @@ def add_arguments(parser: Parser) -> None:
     parser.option("seed", integer, "The seed of the first run; the other runs have the seeds after it.", 0)
     parser.option("plot", Path, "Draw the figure to this file; its suffix determines the format.")
     parser.option("save", Path, "Write all points to this CSV file.")
-    out = (
-        "With all: the folder for the table, the points and the picture of each experiment; what is there is left out."
-    )
+    out = "With all: the folder for each experiment's table, points and picture; those already there are skipped."
     parser.option("out", Path, out, metavar="FOLDER")
     threads = "The number of threads; by default one per core. It does not change the results."
     parser.option("threads", integer, threads)

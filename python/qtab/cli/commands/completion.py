@@ -32,7 +32,7 @@ _PRELUDE = {"bash": "", "zsh": "autoload -U +X compinit && compinit\nautoload -U
 
 def add_arguments(parser: Parser) -> None:
     """Adds the arguments of the command."""
-    parser.positional("shell", "The shell that reads it: bash or zsh.", choice(SHELLS))
+    parser.positional("shell", "bash or zsh.", choice(SHELLS))
 
 
 def run(options: Namespace) -> int:

@@ -5,8 +5,9 @@ import webbrowser
 from argparse import Namespace
 from pathlib import Path
 
-from qtab._utils.files import replacing
+from qtab._utils.files import check_writable, replacing
 from qtab._utils.progress import print_above
+from qtab.cli.errors import usage_errors
 from qtab.cli.parser import Parser
 
 FILE = "qtab-playground.html"
@@ -23,6 +24,9 @@ def run(options: Namespace) -> int:
     """Runs the command and returns its exit code."""
     from qtab.playground import page
 
+    if options.out is not None:
+        with usage_errors(options):
+            check_writable("out", options.out)
     html = page()
     path = options.out or Path(tempfile.mkdtemp(prefix="qtab-")) / FILE
     with replacing(path) as temporary:

@@ -21,10 +21,11 @@ def add_arguments(parser: Parser) -> None:
 def run(options: Namespace) -> int:
     """Runs the command and returns its exit code."""
     with Report(options) as output:
-        with usage_errors():
+        with usage_errors(options):
+            sweep = load_sweep(options.store)
             folder = options.out or options.store.with_name(f"{options.store.stem}-report")
             command = shlex.join([*options.command.split(), *options.words])
-            files = report(load_sweep(options.store), folder, command)
+            files = report(sweep, folder, command)
         output.text(f"{len(files)} files in {folder}; open {files[-1]}")
         output.add(folder=folder, files=files)
     return 0

@@ -30,7 +30,7 @@ def add_arguments(parser: Parser) -> None:
     every = "Save the run so far, to the same file as the result, each time this many more episodes are finished."
     parser.option("checkpoint", integer, every, metavar="EPISODES")
     parser.option("plot", Path, "Draw the learning curve of the whole run to this file. Its ending gives the format.")
-    snapshots = "Keep so many copies of the tables, evenly spaced over the whole run, besides those of RUN."
+    snapshots = "Keep this many copies of the tables, evenly spaced over the whole run, besides those of RUN."
     parser.option("snapshots", integer, snapshots)
     parser.option("env", str, ENV_OF_RUN, metavar="ENV")
     parser.switch("optimum", OPTIMUM)

@@ -29,7 +29,7 @@ def add_arguments(parser: Parser) -> None:
     """Adds the arguments of the command."""
     parser.positional("env", f"The environment's id in Gymnasium (default: {Config.env}).", str, default=None)
     parser.output_flags()
-    parser.add_argument("--env", dest="env_flag", metavar="ENV", help="The same, as an option.")
+    parser.add_argument("--env", dest="env_flag", metavar="ENV", help="The environment's id, given as an option.")
     parser.option("config", Path, "A TOML file of settings. Flags override it.")
     parser.option("plot", Path, "Draw the learning curve to this file. Its ending gives the format.")
     save = (
