@@ -26,5 +26,5 @@ def test_pyright_reports_exactly_the_wrong_calls() -> None:
 def test_mypy_reads_the_calls_with_everything_else() -> None:
     settings = (ROOT / "pyproject.toml").read_text(encoding="utf-8").partition("[tool.mypy]\n")[2].partition("\n[[")[0]
     assert "strict = true" in settings
-    assert 'files = ["python/qtab", "tests"]' in settings
+    assert 'files = ["python/qtab", "benchmarks", "tests"]' in settings
     assert "\n    .venv/$bin/mypy\n" in (ROOT / ".ci/run").read_text(encoding="utf-8")
