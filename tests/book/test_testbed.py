@@ -62,7 +62,7 @@ def test_the_exemplary_problem_is_the_one_of_its_seed() -> None:
 
 def test_figures_of_several_panels_need_axes_of_their_own() -> None:
     result = qtab.book.run("figure-2.2", runs=2)
-    with pytest.raises(ValueError, match=r"^ax must be None for figure-2\.2, which creates 2 axes"):
+    with pytest.raises(ValueError, match=r"^ax must be None for figure-2\.2, which creates its own axes"):
         result.plot(result.plot())
 
 

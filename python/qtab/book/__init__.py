@@ -7,14 +7,15 @@
     result.plot()
     qtab.book.run_all("figures")
 
-Each experiment is a module in the folder of its chapter in :mod:`qtab.book.figures`. It states the settings, and what
-the book leaves open.
+Each experiment is in a module of its chapter in :mod:`qtab.book.figures`, with its settings, and what the book leaves
+open.
 """
 
 from qtab.book.collection import run_all
 from qtab.book.experiment import Experiment
+from qtab.book.line import Line
 from qtab.book.registry import CHAPTERS, EXPERIMENTS, Chapter, find, run
-from qtab.book.result import Line, Result
+from qtab.book.result import Result
 from qtab.book.setting import Setting
 from qtab.book.training_experiment import TrainingExperiment
 from qtab.envs.grid_worlds import dyna_maze, grid_world, windy_grid_world

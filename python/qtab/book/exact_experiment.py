@@ -5,12 +5,10 @@ from abc import abstractmethod
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field
 
-import numpy as np
-from numpy.typing import ArrayLike
-
 from qtab._utils.progress import check_progress
 from qtab.book.experiment import Experiment
-from qtab.book.result import Draw, Line, Result
+from qtab.book.line import Line
+from qtab.book.result import Draw, Result
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -60,10 +58,3 @@ class ExactExperiment(ComputedExperiment):
     def conditions(self, counts: Collection[int], runs: int, seed: int) -> str:  # noqa: ARG002
         """Returns how a result was made, in words."""
         return "computed, without random numbers"
-
-
-def exact_line(name: str, x: ArrayLike, values: ArrayLike) -> Line:
-    """Returns a line without standard errors."""
-    points, numbers = np.asarray(x, np.float64), np.asarray(values, np.float64)
-    none = np.zeros(len(points), np.int64)
-    return Line(name, points, numbers, np.full(len(points), np.nan), 1, none, none)

@@ -1,30 +1,26 @@
 """An experiment that estimates the values of a policy and makes a line of the figure from each setting."""
 
-import dataclasses
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 import gymnasium as gym
 import numpy as np
 
 from qtab._utils.memory import memory_limit
 from qtab._utils.progress import ProgressBar
-from qtab.book.drawing import draw_lines, title_figure
+from qtab.book.drawing import draw_lines
 from qtab.book.experiment import Experiment
-from qtab.book.result import Draw, Line, Result
+from qtab.book.line import Line, joined, line_from_samples
+from qtab.book.result import Draw, Result
 from qtab.book.runner import FloatArray
 from qtab.planning.policies import GivenPolicy
 from qtab.planning.policy_values import PolicyValues
-from qtab.plots.axes import shown_figure
 from qtab.prediction.estimates import ValueEstimates
 from qtab.prediction.runs import recorded_episodes, run_prediction
 from qtab.prediction.settings import PredictionSettings
 from qtab.prediction.task import resolve_prediction
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 
 @dataclass(frozen=True)
@@ -104,12 +100,12 @@ class PredictionExperiment(Experiment):
                     done += len(seeds)
                     bar.move_to(done)
                 samples = np.concatenate(measured)
-                for number, row in enumerate(samples if setting.each_run else ()):
-                    name = f"{setting.line} {number + 1}"
-                    parts[name] = [dataclasses.replace(_line(setting, row[None], diverged), name=name)]
-                if not setting.each_run:
-                    parts.setdefault(setting.line, []).append(_line(setting, samples, diverged))
-        lines = tuple(map(_joined, parts.values()))
+                named = {setting.line: samples}
+                if setting.each_run:
+                    named = {f"{setting.line} {number}": row[np.newaxis] for number, row in enumerate(samples, 1)}
+                for name, rows in named.items():
+                    parts.setdefault(name, []).append(_line(setting, name, rows, diverged))
+        lines = tuple(map(joined, parts.values()))
         return Result(self, lines, runs, seed, time.perf_counter() - started, self.draw)
 
 
@@ -132,67 +128,7 @@ def _estimate(
     return estimates, len(failed)
 
 
-def _line(setting: PredictionSetting, samples: FloatArray, diverged: int) -> Line:
+def _line(setting: PredictionSetting, name: str, samples: FloatArray, diverged: int) -> Line:
     """Returns the line through the points of one setting; ``samples`` is (runs, points)."""
-    runs, points = samples.shape
-    with np.errstate(invalid="ignore", over="ignore"):  # runs that diverged have infinite errors
-        error = samples.std(axis=0, ddof=1) / np.sqrt(runs) if runs > 1 else np.full(points, np.nan)
-    return Line(
-        name=setting.line,
-        x=np.array(setting.x, np.float64),
-        mean=samples.mean(axis=0),
-        error=error,
-        runs=runs,
-        truncated=np.zeros(points, np.int64),
-        diverged=np.full(points, diverged),
-        method=setting.method,
-        dashed=setting.dashed,
-        broad=setting.broad,
-        named=not setting.each_run,
-    )
-
-
-def _joined(parts: list[Line]) -> Line:
-    """Returns the points of several settings as one line."""
-    names = ("x", "mean", "error", "truncated", "diverged")
-    columns: dict[str, Any] = {name: np.concatenate([getattr(part, name) for part in parts]) for name in names}
-    return dataclasses.replace(parts[0], **columns)
-
-
-def draw_in_range(result: Result, ax: "Axes | None") -> "Axes":
-    """Draws the lines without bands around points far above the figure, where runs diverge; returns the axes."""
-    top = 1.1 * (result.experiment.y_range or (0.0, np.inf))[1]
-    lines = [dataclasses.replace(one, error=np.where(one.mean < top, one.error, np.nan)) for one in result.lines]
-    lines = [dataclasses.replace(one, mean=np.where(one.mean < 1e3, one.mean, np.nan)) for one in lines]
-    return draw_lines(dataclasses.replace(result, lines=tuple(lines)), ax)
-
-
-@dataclass(frozen=True)
-class Panel:
-    """One of several axes side by side."""
-
-    title: str
-    lines: Callable[[str], bool]
-    """Whether the line of a name belongs to it."""
-    layout: Mapping[str, Any]
-    """The fields of :class:`Description` that differ from those of the experiment."""
-
-
-def draw_panels(panels: Sequence[Panel]) -> Draw:
-    """Returns a function that draws each panel in axes of its own in a new figure, and returns the last axes."""
-
-    def draw(result: Result, ax: "Axes | None") -> "Axes":
-        if ax is not None:
-            raise ValueError(f"ax must be None for {result.experiment.name}, which creates {len(panels)} axes")
-        figure = shown_figure(6.5 * len(panels), 4.8)
-        for index, panel in enumerate(panels):
-            part = figure.add_subplot(1, len(panels), index + 1)
-            lines = tuple(line for line in result.lines if panel.lines(line.name))
-            experiment = dataclasses.replace(result.experiment, **panel.layout)
-            ax = draw_in_range(dataclasses.replace(result, experiment=experiment, lines=lines), part)
-            ax.set_title(panel.title, loc="left")
-        title_figure(figure, result.experiment.heading)
-        assert ax is not None  # noqa: S101 - there are panels
-        return ax
-
-    return draw
+    style: dict[str, Any] = {"method": setting.method, "dashed": setting.dashed, "broad": setting.broad}
+    return line_from_samples(name, setting.x, samples, 0, diverged, **style, named=not setting.each_run)

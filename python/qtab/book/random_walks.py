@@ -5,7 +5,7 @@ from functools import cache
 import gymnasium as gym
 import numpy as np
 
-from qtab.book.prediction_experiment import Measure, PredictionSetting, PredictionTask
+from qtab.book.prediction_experiment import Measure, PredictionTask
 from qtab.book.runner import FloatArray
 from qtab.planning.policy_values import PolicyValues, policy_values
 from qtab.prediction.estimates import ValueEstimates
@@ -14,8 +14,6 @@ EPISODES = 10
 """The episodes over which the figures of chapters 7, 9 and 12 average errors."""
 ALPHAS = (0.0, 0.01, 0.02, 0.04, 0.06, 0.08, *(round(0.1 + 0.05 * step, 2) for step in range(19)))
 """The learning rates of those figures, from 0 to 1."""
-TRACE_DECAYS = (0.0, 0.4, 0.8, 0.9, 0.95, 0.975, 0.99, 1.0)
-"""λ in the figures of chapter 12."""
 TOP = 0.55
 """The highest error that those figures show."""
 
@@ -69,18 +67,3 @@ def values_at(point: int) -> Measure:
 def exact_values(estimates: ValueEstimates, true_values: PolicyValues) -> FloatArray:
     """Returns (runs, states): the exact values in every run."""
     return np.broadcast_to(true_values.values, (len(estimates.seeds), *true_values.values.shape))
-
-
-def by_trace_decay_and_rate(method: str) -> tuple[PredictionSetting, ...]:
-    """Returns the settings of a figure of chapter 12: each λ with each α on the walk of 19 states."""
-    return tuple(
-        PredictionSetting(
-            f"λ = {trace_decay:g}",
-            nineteen_states,
-            {"method": method, "trace_decay": trace_decay, "learning_rate": alpha, "episodes": EPISODES},
-            mean_rms_error,
-            (alpha,),
-        )
-        for trace_decay in TRACE_DECAYS
-        for alpha in ALPHAS
-    )

@@ -3,7 +3,7 @@
 import csv
 import math
 import textwrap
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -15,6 +15,7 @@ from qtab._utils import html, svg
 from qtab._utils.files import replacing
 from qtab._utils.frames import data_frame
 from qtab.book.description import Description
+from qtab.book.line import Line, joined
 from qtab.book.runner import FloatArray
 
 if TYPE_CHECKING:
@@ -26,41 +27,6 @@ CSV_COLUMNS = ("line", "x", "mean", "standard_error", "runs", "capped_episodes",
 
 Draw: TypeAlias = Callable[["Result", "Axes | None"], "Axes"]
 """Draws a result on axes, or on a new figure, and returns the axes."""
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Line:
-    """A line of a figure; all arrays are (points,)."""
-
-    name: str
-    x: FloatArray
-    mean: FloatArray
-    """The mean over the runs."""
-    error: FloatArray
-    """The standard error of the mean; NaN with a single run."""
-    runs: int
-    truncated: "NDArray[np.int64]"
-    """The number of episodes behind the point that the time limit ended."""
-    diverged: "NDArray[np.int64]"
-    """The number of runs of the setting that diverged."""
-    drawn: bool = True
-    """Whether the figure shows the line."""
-    method: str = ""
-    """The method that decides the color of the line; empty means the name of the line."""
-    dashed: bool = False
-    """Whether the line is dashed."""
-    broad: bool = False
-    """Whether the line is a broad one behind the others, which coincide with it in many points."""
-    named: bool = True
-    """Whether the figure names the line. Runs that differ by their seeds alone have no names there."""
-
-    def __repr__(self) -> str:
-        """One line of text: the points are not shown."""
-        count = len(self.x)
-        points = f"{count:,} point{'' if count == 1 else 's'}"
-        if count:
-            points += f" from {self.x[0]:g} to {self.x[-1]:g}"
-        return f"<Line {self.name!r}: {points}, {self.runs:,} runs>"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -107,15 +73,15 @@ class Result:
         Raises:
             ModuleNotFoundError: without pandas; the message names the ``pip install``.
         """
-        counts = [len(line.x) for line in self.lines]
+        counts, points = [len(line.x) for line in self.lines], joined(self.lines)
         columns: dict[str, NDArray[Any]] = {
             "line": np.repeat(np.array([line.name for line in self.lines], dtype=object), counts),
-            "x": _joined(line.x for line in self.lines),
-            "mean": _joined(line.mean for line in self.lines),
-            "standard_error": _joined(line.error for line in self.lines),
+            "x": points.x,
+            "mean": points.mean,
+            "standard_error": points.error,
             "runs": np.repeat(np.array([line.runs for line in self.lines], dtype=np.int64), counts),
-            "capped_episodes": _joined(line.truncated for line in self.lines),
-            "diverged_runs": _joined(line.diverged for line in self.lines),
+            "capped_episodes": points.truncated,
+            "diverged_runs": points.diverged,
         }
         return data_frame(columns)
 
@@ -147,10 +113,6 @@ class Result:
             ModuleNotFoundError: without matplotlib; the message names the ``pip install``.
         """
         return self.draw(self, ax)
-
-
-def _joined(parts: Iterable[NDArray[Any]]) -> NDArray[Any]:
-    return np.concatenate(list(parts))
 
 
 def _head(result: Result) -> Iterator[str]:

@@ -12,11 +12,9 @@ from qtab import _core
 from qtab._utils.progress import ProgressBar
 from qtab.book.drawing import Panel, draw_lines, draw_panels, label_tops
 from qtab.book.experiment import Experiment
-from qtab.book.measures import returns
-from qtab.book.result import Line, Result
+from qtab.book.line import Line, line_from_samples
+from qtab.book.result import Result
 from qtab.book.runner import FloatArray
-from qtab.book.setting import Setting
-from qtab.book.training_experiment import line_of
 from qtab.training.train_many import resolve_template
 
 if TYPE_CHECKING:
@@ -115,10 +113,10 @@ class TestbedExperiment(Experiment):
     def _line(self, name: str, samples: Sequence[FloatArray]) -> Line:
         """The line of a measure of the settings of that name, each a curve or a point."""
         settings = [one for one in self.settings if name.removeprefix(one.line) in ("", *self._suffixes)]
-        points = tuple(one.x for one in settings if one.x is not None)
+        points = [one.x for one in settings if one.x is not None] or np.arange(1, self.steps + 1)
         first = settings[0]
-        setting = Setting(name, ENV, {}, returns, points or None, method=first.method or first.line)
-        return line_of(dataclasses.replace(setting, dashed=first.dashed), np.concatenate(samples, axis=1), 0, 0)
+        style: dict[str, Any] = {"method": first.method or first.line, "dashed": first.dashed}
+        return line_from_samples(name, points, np.concatenate(samples, axis=1), **style)
 
     @property
     def _suffixes(self) -> Sequence[str]:
@@ -148,8 +146,8 @@ def draw(result: Result, ax: "Axes | None") -> "Axes":
             if line.name.endswith(suffix)
         )
         y_range = (0.0, 100.0) if measure == "optimal" else experiment.y_range
-        panels.append(Panel(LABELS[measure], lines, y_range))
-    return draw_panels(result, ax, panels)
+        panels.append(Panel("", lines, {"y_label": LABELS[measure], "y_range": y_range}))
+    return draw_panels(result, ax, panels, shared_x=True)
 
 
 def _power_of_two(number: float) -> str:

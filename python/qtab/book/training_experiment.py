@@ -1,6 +1,5 @@
 """An experiment that trains its settings and makes a line of the figure from each."""
 
-import dataclasses
 import time
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
@@ -13,7 +12,8 @@ from qtab._utils.progress import ProgressBar
 from qtab.book import runner
 from qtab.book.drawing import draw_lines
 from qtab.book.experiment import Experiment
-from qtab.book.result import Line, Result
+from qtab.book.line import Line, joined, line_from_samples
+from qtab.book.result import Result
 from qtab.book.runner import EpisodeLog, FloatArray
 from qtab.book.setting import Setting
 
@@ -61,7 +61,7 @@ class TrainingExperiment(Experiment):
                     done += len(seeds)
                     bar.move_to(done)
                 parts.setdefault(setting.line, []).append(samples.line())
-        lines = tuple(map(_joined, parts.values()))
+        lines = tuple(map(joined, parts.values()))
         return Result(self, lines, runs, seed, time.perf_counter() - started, draw_lines)
 
     def config(self, setting: Setting) -> dict[str, Any]:
@@ -90,33 +90,7 @@ class _Samples:
 
 
 def line_of(setting: Setting, samples: FloatArray, truncated: "NDArray[np.int64] | int", diverged: int) -> Line:
-    """Returns the line through the points of one setting.
-
-    Args:
-        setting: The setting.
-        samples: (runs, points): the measurements.
-        truncated: The number of truncated episodes, for all points or (points,) for each.
-        diverged: The number of runs that diverged.
-    """
-    runs, points = samples.shape
-    error = samples.std(axis=0, ddof=1) / np.sqrt(runs) if runs > 1 else np.full(points, np.nan)
-    x = np.arange(1.0, points + 1) if setting.x is None else np.array(setting.x, np.float64)
-    return Line(
-        name=setting.line,
-        x=x,
-        mean=samples.mean(axis=0),
-        error=error,
-        runs=runs,
-        truncated=np.broadcast_to(truncated, points),
-        diverged=np.broadcast_to(diverged, points),
-        drawn=setting.drawn,
-        method=setting.method,
-        dashed=setting.dashed,
-    )
-
-
-def _joined(parts: list[Line]) -> Line:
-    """Returns the points of several settings as one line."""
-    names = ("x", "mean", "error", "truncated", "diverged")
-    columns: dict[str, Any] = {name: np.concatenate([getattr(part, name) for part in parts]) for name in names}
-    return dataclasses.replace(parts[0], **columns)
+    """Returns the line through the points of one setting; see :func:`qtab.book.line.line_from_samples`."""
+    x = np.arange(1.0, samples.shape[1] + 1) if setting.x is None else setting.x
+    style = {"drawn": setting.drawn, "method": setting.method, "dashed": setting.dashed}
+    return line_from_samples(setting.line, x, samples, truncated, diverged, **style)

@@ -11,26 +11,21 @@ import numpy as np
 from gymnasium.envs.registration import EnvSpec
 from numpy.typing import NDArray
 
-from qtab import _core
 from qtab._utils import checks
 from qtab._utils.progress import ProgressBar, check_progress
 from qtab._utils.shown import shown
 from qtab.config.origin import trained_on
 from qtab.config.unknown import suggesting
-from qtab.discretizers import Identity
-from qtab.discretizers.actions import choose_actions
 from qtab.envs.goals import UNLIMITED_MAX_EPISODE_STEPS, reward_threshold
-from qtab.envs.matching import time_limit, unknown_wrapper
-from qtab.envs.native import table_env
+from qtab.envs.matching import time_limit
 from qtab.envs.origin.describe import describe
 from qtab.envs.origin.description import EnvironmentDescription
-from qtab.envs.registry import make_env, spec_of, versioned
 from qtab.envs.stored import spec_of_run
 from qtab.planning.classic_control import GridSolver, search_grid
 from qtab.planning.grid_environments import GridEnvironment, grid_environment
 from qtab.planning.optimum import Optimum, Solver
 from qtab.planning.search import Search
-from qtab.planning.table import has_transition_table
+from qtab.planning.table import check_wrappers, has_transition_table, opened_env, table_of
 from qtab.planning.tabular import METHODS, TabularSolver, solve_table
 from qtab.results.run import Run
 from qtab.results.runs import Runs
@@ -85,23 +80,10 @@ def optimum(
         return _optimum_for_run(env, discount, max_episode_steps, method, env_kwargs, progress)
     if max_episode_steps is not None:
         max_episode_steps = checks.count("max_episode_steps", max_episode_steps, least=1)
-    if isinstance(env, gym.Env):
-        if env_kwargs is not None:
-            raise ValueError(f"env_kwargs must be None if env is an environment object, got {shown(env_kwargs)}")
-        name = env.spec.id if env.spec is not None else type(env.unwrapped).__name__
-        return _optimum_for_env(name, env, max_episode_steps, discount, method, progress)
-    if not isinstance(env, str | EnvSpec):
-        raise TypeError(f"env must be an environment id, an EnvSpec, an environment or a run, got {shown(env)}")
-    if env_kwargs is not None and not isinstance(env_kwargs, Mapping):
-        raise TypeError(f"env_kwargs must map names to values, got {shown(env_kwargs)}")
-    name = env.id if isinstance(env, EnvSpec) else versioned(env)
-    spec = env if isinstance(env, EnvSpec) else spec_of(name)
-    made = make_env(spec, env_kwargs or {})
-    try:
-        description = describe(made, is_new=True)
-        return _optimum_for_env(name, made, max_episode_steps, discount, method, progress, description)
-    finally:
-        made.close()
+    known = "an environment id, an EnvSpec, an environment or a run"
+    with opened_env(env, env_kwargs, known) as (name, opened):
+        description = None if opened is env else describe(opened, is_new=True)
+        return _optimum_for_env(name, opened, max_episode_steps, discount, method, progress, description)
 
 
 def _optimum_for_run(
@@ -139,9 +121,7 @@ def _optimum_for_env(
 ) -> Optimum:
     started = time.perf_counter()
     unwrapped: Any = env.unwrapped
-    wrapper = unknown_wrapper(env)
-    if wrapper is not None:
-        raise ValueError(f"env must have no wrapper that may change observations or rewards, got {wrapper}")
+    check_wrappers(env)
     discount = 1.0 if discount is None else checks.real("discount", discount, 0.0, 1.0)
     on_grid = grid_environment(unwrapped)
     if on_grid is None and not has_transition_table(unwrapped):
@@ -191,12 +171,9 @@ class _Best:
 
 
 def _solve_table(env: Any, method: str, discount: float, max_episode_steps: int) -> _Best:
-    actions = choose_actions(env.action_space, None)
-    cells = Identity.of_space(env.observation_space, len(actions))
-    planner = _core.MdpSolver(table_env(env))
-    solution = solve_table(planner, method, discount, max_episode_steps)
-    if len(solution.values) < cells.n_rows or solution.q_values.shape[1] != len(actions):
-        raise ValueError(f"P must have {cells.n_rows} states of {len(actions)} actions, as the spaces of env have")
+    table = table_of(env)
+    cells, actions = table.cells, table.actions
+    solution = solve_table(table.solver, method, discount, max_episode_steps)
     # The first states of the solution are those that observations show. Where an observation hides part of the state,
     # the hidden variants follow.
     observed = slice(cells.n_rows)
@@ -205,7 +182,7 @@ def _solve_table(env: Any, method: str, discount: float, max_episode_steps: int)
         q_values=solution.q_values[observed].reshape(*cells.shape, len(actions)),
         policy=solution.policy[observed].reshape(cells.shape) + actions.first,
         expected_return=solution.expected_return,
-        solver=TabularSolver(planner, cells, actions, solution, max_episode_steps),
+        solver=TabularSolver(table.solver, cells, actions, solution, max_episode_steps),
     )
 
 

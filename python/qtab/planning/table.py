@@ -1,7 +1,7 @@
 """The transition table of an environment, as planning takes it."""
 
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from typing import Any
 
@@ -36,6 +36,36 @@ class Table:
 
 
 @contextmanager
+def opened_env(
+    env: Any, env_kwargs: Mapping[str, Any] | None, known: str = "an environment id, an EnvSpec or an environment"
+) -> Iterator[tuple[str, gym.Env]]:
+    """Gives the name of an environment and the environment. One that is made here is closed afterwards.
+
+    Args:
+        env: An id, a spec or an environment.
+        env_kwargs: Keyword arguments of the environment's constructor, with an id or a spec.
+        known: What ``env`` can be, for messages.
+
+    Raises:
+        gymnasium.error.Error: from Gymnasium, for an unknown id.
+        TypeError: for an argument of the wrong type.
+        ValueError: for keyword arguments beside an environment.
+    """
+    if isinstance(env, gym.Env):
+        if env_kwargs is not None:
+            raise ValueError(f"env_kwargs must be None if env is an environment object, got {shown(env_kwargs)}")
+        yield _name(env), env
+        return
+    if not isinstance(env, str | EnvSpec):
+        raise TypeError(f"env must be {known}, got {shown(env)}")
+    if env_kwargs is not None and not isinstance(env_kwargs, Mapping):
+        raise TypeError(f"env_kwargs must map names to values, got {shown(env_kwargs)}")
+    name = versioned(env) if isinstance(env, str) else env.id
+    with closing(make_env(spec_of(name) if isinstance(env, str) else env, env_kwargs or {})) as made:
+        yield name, made
+
+
+@contextmanager
 def opened_table(env: str | EnvSpec | gym.Env, env_kwargs: Mapping[str, Any] | None) -> Iterator[Table]:
     """Gives the table of an environment. One that is made here, from an id or a spec, is closed afterwards.
 
@@ -45,20 +75,8 @@ def opened_table(env: str | EnvSpec | gym.Env, env_kwargs: Mapping[str, Any] | N
         ValueError: for an environment without a table, with a wrapper that may change numbers, or with a table of other
             states or actions than its spaces.
     """
-    if isinstance(env, gym.Env):
-        if env_kwargs is not None:
-            raise ValueError(f"env_kwargs must be None if env is an environment object, got {shown(env_kwargs)}")
-        yield _table(env)
-        return
-    if not isinstance(env, str | EnvSpec):
-        raise TypeError(f"env must be an environment id, an EnvSpec or an environment, got {shown(env)}")
-    if env_kwargs is not None and not isinstance(env_kwargs, Mapping):
-        raise TypeError(f"env_kwargs must map names to values, got {shown(env_kwargs)}")
-    made = make_env(env if isinstance(env, EnvSpec) else spec_of(versioned(env)), env_kwargs or {})
-    try:
-        yield _table(made)
-    finally:
-        made.close()
+    with opened_env(env, env_kwargs) as (_, opened):
+        yield table_of(opened)
 
 
 def has_transition_table(env: Any) -> bool:
@@ -66,11 +84,21 @@ def has_transition_table(env: Any) -> bool:
     return isinstance(env, BlackjackEnv) or (hasattr(env, "P") and hasattr(env, "initial_state_distrib"))
 
 
-def _table(env: gym.Env) -> Table:
-    name = env.spec.id if env.spec is not None else type(env.unwrapped).__name__
+def check_wrappers(env: gym.Env) -> None:
+    """Checks that what is computed for the unwrapped environment holds for the environment.
+
+    Raises:
+        ValueError: if it has a wrapper that may change numbers.
+    """
     wrapper = unknown_wrapper(env)
     if wrapper is not None:
         raise ValueError(f"env must have no wrapper that may change observations or rewards, got {wrapper}")
+
+
+def table_of(env: gym.Env) -> Table:
+    """Returns the table of an environment; see :func:`opened_table`."""
+    name = _name(env)
+    check_wrappers(env)
     if not has_transition_table(env.unwrapped):
         raise ValueError(
             f"env must have a transition table P and an initial_state_distrib, or be Blackjack: the values of {name} "
@@ -83,3 +111,7 @@ def _table(env: gym.Env) -> Table:
     if len(solver.rows) < cells.n_rows or solver.n_actions != len(actions):
         raise ValueError(f"P must have {cells.n_rows} states of {len(actions)} actions, as the spaces of env have")
     return Table(name, env, cells, actions, native, solver)
+
+
+def _name(env: gym.Env) -> str:
+    return env.spec.id if env.spec is not None else type(env.unwrapped).__name__

@@ -57,10 +57,11 @@ def policy(
     axes = axes_for([raster for _, raster in panels], ax)
     for (subject, raster), panel, named in zip(panels, axes, names, strict=True):
         greedy, handles = subject.greedy_actions(raster.rows), list[Any]()
+        shade_unknown(panel, raster, greedy)
         if raster.is_map and any(name in DIRECTIONS for name in named):
-            _draw_map(panel, raster, greedy, named)
+            draw_moves(panel, raster, greedy[..., np.newaxis] == np.arange(len(named)), named)
         else:
-            handles = _draw_colors(panel, raster, greedy, named)
+            handles = draw_regions(panel, raster, greedy, named)
         note = "; ".join(filter(None, [raster.note, _initials(named) if raster.is_map else ""]))
         finish_panel(panel, raster, subject.name if title is None else title, note)
         if handles:
@@ -84,21 +85,30 @@ def checked_names(subject: Subject, given: Sequence[str] | None) -> tuple[str, .
     return tuple(given)
 
 
-def _draw_map(ax: "Axes", raster: Raster, greedy: NDArray[np.int64], names: Sequence[str]) -> None:
-    """Draws an arrow in each cell, or the letters of an action that is no move."""
+def draw_moves(ax: "Axes", raster: Raster, taken: NDArray[np.bool_], names: Sequence[str]) -> None:
+    """Draws an arrow for each action that is taken in a cell, or the letters of an action that is no move.
+
+    Args:
+        ax: The axes.
+        raster: A map.
+        taken: (ny, nx, actions): which actions are taken. The arrows of several start in the middle of the cell.
+        names: (actions,): their names.
+    """
     xs, ys = np.meshgrid(*raster.centers)
     color, letter_color = ("#9ecbff", "#ffb26b") if is_dark(ax) else ("#1f5fa8", "#b3480f")
-    cells = max(greedy.shape)
-    shade_unknown(ax, raster, greedy)
+    cells = max(xs.shape)
+    several = taken.sum(axis=-1) > 1
+    starts, ends = np.where(several, 0.0, -0.32), np.where(several, 0.42, 0.32)
     for action, name in enumerate(names):
-        chosen = greedy == action
+        chosen = taken[..., action]
         if name in DIRECTIONS:
             right, down = DIRECTIONS[name]
+            start, end = starts[chosen], ends[chosen]
             ax.quiver(
-                xs[chosen] - 0.32 * right,
-                ys[chosen] - 0.32 * down,
-                np.full(chosen.sum(), 0.64 * right),
-                np.full(chosen.sum(), 0.64 * down),
+                xs[chosen] + start * right,
+                ys[chosen] + start * down,
+                (end - start) * right,
+                (end - start) * down,
                 angles="xy",
                 scale_units="xy",
                 scale=1,
@@ -142,14 +152,13 @@ def action_colors(count: int, ordered: bool) -> list[Any]:
     )
 
 
-def _draw_colors(ax: "Axes", raster: Raster, greedy: NDArray[np.int64], names: Sequence[str]) -> list[Any]:
-    """Draws the actions in colors; returns what a legend explains, nothing where the picture itself does."""
+def draw_regions(ax: "Axes", raster: Raster, greedy: NDArray[np.int64], names: Sequence[str]) -> list[Any]:
+    """Draws (ny, nx) actions in colors; returns what a legend explains, nothing where the picture itself does."""
     from matplotlib.colors import BoundaryNorm, ListedColormap
     from matplotlib.patches import Patch
 
     ordered = any(character.isdigit() for character in names[-1]) or "no push" in names
     colors = action_colors(len(names), ordered and not names[0].startswith("action"))
-    shade_unknown(ax, raster, greedy)
     norm = BoundaryNorm(np.arange(len(names) + 1) - 0.5, len(names))
     draw_cells(ax, raster, np.where(greedy < 0, np.nan, greedy), ListedColormap(colors), norm)
     if raster.parts:

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from itertools import cycle
 from typing import TYPE_CHECKING, Any
 
-from qtab.book.result import Line
+from qtab.book.line import Line
 from qtab.plots.colors import COLORS, algorithm_color, readable, sequential
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from qtab.book.result import Line
+from qtab.book.line import Line
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -7,33 +7,34 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab.book.drawing.titles import title_figure
+from qtab.book.drawing.figures import figure_of_several
+from qtab.book.result import Result
 from qtab.book.runner import FloatArray
-from qtab.plots.axes import shown_figure
-from qtab.plots.colors import COLORS, readable, text_color
+from qtab.plots.arrangements.grid_map import grid_map
+from qtab.plots.heat_maps import draw_heat_map
+from qtab.plots.panels import finish_panel
+from qtab.plots.policy import draw_moves
+from qtab.plots.values import common_norm
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-ARROWS = ((0, -1), (1, 0), (0, 1), (-1, 0))
-"""The directions of the actions up, right, down and left, in columns and rows."""
+ACTIONS = ("up", "right", "down", "left")
 CELL = 0.55
 """The width of a cell in inches."""
-_LENGTH = 0.32
 
 
 @dataclass(frozen=True, eq=False)
 class CellMap:
-    """A grid to draw."""
+    """A picture of a grid: values as numbers, or else arrows for the actions of a policy."""
 
     title: str
+    layout: Sequence[str]
+    """The map of the grid; see :mod:`qtab.plots.arrangements.grid_map`."""
     values: FloatArray | None = None
     """(rows, columns): the numbers."""
     best: NDArray[np.bool_] | None = None
     """(rows, columns, 4): which actions the policy takes."""
-    digits: int = 1
-    terminal: Sequence[tuple[int, int]] = ()
-    """Cells that are shaded."""
 
 
 def greedy_actions(q_values: FloatArray, tolerance: float = 1e-9) -> NDArray[np.bool_]:
@@ -42,40 +43,31 @@ def greedy_actions(q_values: FloatArray, tolerance: float = 1e-9) -> NDArray[np.
     return best
 
 
-def draw_grids(title: str, grids: Sequence[CellMap], columns: int) -> "Axes":
-    """Draws grids beside and below each other in a new figure; returns the last axes."""
-    shape = next(np.shape(part)[:2] for one in grids for part in (one.values, one.best) if part is not None)
-    rows = -(-len(grids) // columns)
-    figure = shown_figure(columns * (shape[1] * CELL + 0.5), rows * (shape[0] * CELL + 0.4) + 0.5)
-    title_figure(figure, title)
+def draw_grids(result: Result, ax: "Axes | None", grids: Sequence[CellMap], columns: int) -> "Axes":
+    """Draws grids beside and below each other in a new figure; returns the last axes.
+
+    Raises:
+        ModuleNotFoundError: without matplotlib; the message names the ``pip install``.
+        ValueError: if ``ax`` is not None.
+    """
+    rows, height, width = -(-len(grids) // columns), len(grids[0].layout), len(grids[0].layout[0])
+    figure = figure_of_several(result, ax, columns * (width * CELL + 0.5), rows * (height * CELL + 0.4) + 0.5)
     axes: Any = figure.subplots(rows, columns, squeeze=False)
-    for ax in axes.flat[len(grids) :]:
-        ax.remove()
-    for ax, grid in zip(axes.flat, grids, strict=False):
-        _draw(ax, grid, shape)
+    for part in axes.flat[len(grids) :]:
+        part.remove()
+    for part, grid in zip(axes.flat, grids, strict=False):
+        raster = grid_map(grid.layout)
+        if grid.values is not None:
+            values = np.where(raster.rows[..., 0] >= 0, grid.values, np.nan)
+            draw_heat_map(part, raster, values, common_norm([values]), grid.title, _text)
+        if grid.best is not None:
+            draw_moves(part, raster, grid.best & (raster.rows >= 0), ACTIONS)
+            finish_panel(part, raster, grid.title)
+        part.set(xlabel="", ylabel="", xticks=[], yticks=[])
     last: Axes = axes.flat[len(grids) - 1]
     return last
 
 
-def _draw(ax: Any, grid: CellMap, shape: tuple[int, ...]) -> None:
-    rows, columns = shape
-    ax.set(xlim=(-0.5, columns - 0.5), ylim=(rows - 0.5, -0.5), aspect="equal", xticks=[], yticks=[])
-    ax.set_title(grid.title, fontsize="small")
-    for edge in range(1, max(rows, columns)):
-        ax.axhline(edge - 0.5, color=text_color(), linewidth=0.6)
-        ax.axvline(edge - 0.5, color=text_color(), linewidth=0.6)
-    for row, column in grid.terminal:
-        ax.fill([column - 0.5, column + 0.5, column + 0.5, column - 0.5], [row - 0.5] * 2 + [row + 0.5] * 2, "0.75")
-    hue = readable(COLORS[0], ax)
-    for row, column in np.ndindex(rows, columns):
-        if (row, column) in grid.terminal and grid.values is None:
-            continue
-        if grid.values is not None:
-            number = f"{grid.values[row, column]:.{grid.digits}f}"
-            number = number.removeprefix("-") if float(number) == 0 else number
-            ax.text(column, row, number, ha="center", va="center", fontsize="small")
-        if grid.best is not None:
-            for action in np.flatnonzero(grid.best[row, column]):
-                x, y = ARROWS[action]
-                end = column + _LENGTH * x, row + _LENGTH * y
-                ax.annotate("", end, (column, row), arrowprops={"arrowstyle": "->", "color": hue, "shrinkA": 0})
+def _text(value: float) -> str:
+    text = f"{value:.1f}"
+    return text.removeprefix("-") if float(text) == 0 else text

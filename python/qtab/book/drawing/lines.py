@@ -1,5 +1,6 @@
 """Lines of the book's figures."""
 
+import dataclasses
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -63,3 +64,11 @@ def draw_lines(result: Result, ax: "Axes | None") -> "Axes":
     if legend is not None and label_ends(ax, drawn, colors):
         legend.remove()
     return ax
+
+
+def draw_in_range(result: Result, ax: "Axes | None") -> "Axes":
+    """Draws the lines without bands around points far above the figure, where runs diverge; returns the axes."""
+    top = 1.1 * (result.experiment.y_range or (0.0, np.inf))[1]
+    lines = [dataclasses.replace(one, error=np.where(one.mean < top, one.error, np.nan)) for one in result.lines]
+    lines = [dataclasses.replace(one, mean=np.where(one.mean < 1e3, one.mean, np.nan)) for one in lines]
+    return draw_lines(dataclasses.replace(result, lines=tuple(lines)), ax)

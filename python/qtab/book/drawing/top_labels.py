@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from qtab.book.drawing.colors import line_colors
-from qtab.book.result import Line
+from qtab.book.line import Line
 from qtab.book.runner import FloatArray
 
 if TYPE_CHECKING:

@@ -2,6 +2,8 @@
 
 from collections.abc import Mapping
 
+import numpy as np
+
 from qtab.plots.arrangements import blackjack as blackjack_module
 from qtab.plots.arrangements.blackjack import blackjack
 from qtab.plots.arrangements.grid_map import Layout, checked_layout, grid_map, known_layout
@@ -40,12 +42,13 @@ def arrange(
     is_blackjack = kind == "blackjack" and shape == blackjack_module.SHAPE
     if at is not None and (numbered or is_blackjack):
         raise ValueError(f"at must be None for {subject.env}, whose picture shows every state, got {at!r}")
+    if layout is None and kind == "map" and numbered:
+        known = known_layout(subject)
+        layout = known if sum(map(len, known)) == shape[0] else None
     if layout is not None:
-        return grid_map(subject, checked_layout(layout, shape[0]))
+        return grid_map(checked_layout(layout, shape[0]), int(np.ravel(subject.discretizer.low)[0]))
     if is_blackjack:
         return blackjack()
     if kind == "taxi" and shape == (TAXI_STATES,):
         return taxi()
-    if kind == "map" and numbered and sum(map(len, known_layout(subject))) == shape[0]:
-        return grid_map(subject, checked_layout(known_layout(subject), shape[0]))
     return plane(subject, at, sampled)

@@ -67,14 +67,14 @@ def known_layout(subject: Subject) -> tuple[str, ...]:
         )
 
 
-def grid_map(subject: Subject, layout: tuple[str, ...]) -> Raster:
-    """Returns the raster of a map: a cell for each state."""
+def grid_map(layout: Sequence[str], first: int = 0) -> Raster:
+    """Returns the raster of a map: a cell for each state, which are numbered from ``first`` row by row."""
     height, width = len(layout), len(layout[0])
     letters = np.array([list(row) for row in layout])
     rows = np.where(np.isin(letters, list(NO_STATE)), -1, np.arange(height * width).reshape(height, width))
 
     def locate(observed: NDArray[Any]) -> NDArray[np.float64]:
-        states = np.asarray(observed).ravel() - int(np.ravel(subject.discretizer.low)[0])
+        states = np.asarray(observed).ravel() - first
         return np.stack([states % width, states // width], axis=-1) + 0.5
 
     def decorate(ax: "Axes", ink: str) -> None:

@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, Any
 import gymnasium as gym
 import numpy as np
 
-from qtab.book.exact_experiment import ComputedExperiment, exact_line
-from qtab.book.result import Line, Result
+from qtab.book.exact_experiment import ComputedExperiment
+from qtab.book.line import Line, exact_line
+from qtab.book.result import Result
 from qtab.book.testbed import ENV
 from qtab.plots.axes import axes_or_new
 from qtab.plots.colors import COLORS, readable

@@ -3,10 +3,11 @@
 from typing import TYPE_CHECKING
 
 from qtab.book.drawing import CellMap, draw_grids
-from qtab.book.exact_experiment import ExactExperiment, exact_line
-from qtab.book.figures.chapter_03.grid import DISCOUNT, as_grid, grid_text
-from qtab.book.result import Line, Result
-from qtab.envs.small_grid_worlds import grid_world_5x5
+from qtab.book.exact_experiment import ExactExperiment
+from qtab.book.figures.grid import as_grid, grid_text
+from qtab.book.line import Line, exact_line
+from qtab.book.result import Result
+from qtab.envs.small_grid_worlds import GRID_WORLD_5X5, grid_world_5x5
 from qtab.planning.policy_values import policy_values
 
 if TYPE_CHECKING:
@@ -14,14 +15,12 @@ if TYPE_CHECKING:
 
 
 def _compute() -> list[Line]:
-    values = policy_values(grid_world_5x5(), "random", DISCOUNT).values
+    values = policy_values(grid_world_5x5(), "random", 0.9).values
     return [exact_line("random policy", range(len(values)), values)]
 
 
 def _draw(result: Result, ax: "Axes | None") -> "Axes":
-    if ax is not None:
-        raise ValueError("ax must be None for example-3.5, which creates its own axes")
-    return draw_grids(result.experiment.heading, [CellMap("", as_grid(result.lines[0]))], 1)
+    return draw_grids(result, ax, [CellMap("", GRID_WORLD_5X5, as_grid(result.lines[0]))], 1)
 
 
 EXPERIMENT = ExactExperiment(

@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from qtab.book.drawing import title_figure
-from qtab.book.exact_experiment import ExactExperiment, exact_line
-from qtab.book.result import Line, Result
-from qtab.book.runner import FloatArray
+from qtab.book.drawing import figure_of_several
+from qtab.book.exact_experiment import ExactExperiment
+from qtab.book.figures.grid import as_grid
+from qtab.book.line import Line, exact_line
+from qtab.book.result import Result
 from qtab.envs.jacks_car_rental import MAX_MOVED, cars_moved, jacks_car_rental
 from qtab.planning.sweeps import policy_iteration
-from qtab.plots.axes import shown_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -32,11 +32,6 @@ def _compute() -> list[Line]:
     moved = [[cars_moved(*divmod(cell, CARS + 1), int(step.policy[cell]), CARS) for cell in cells] for step in steps]
     lines = [exact_line(name, cells, one) for name, one in zip(POLICIES, moved, strict=True)]
     return [*lines, exact_line(VALUES, cells, steps[-1].values)]
-
-
-def as_grid(line: Line) -> FloatArray:
-    """Returns (cars at the first location, cars at the second)."""
-    return line.mean.reshape(CARS + 1, CARS + 1)
 
 
 def _text(lines: Sequence[Line]) -> str:
@@ -59,11 +54,8 @@ def _text(lines: Sequence[Line]) -> str:
 
 
 def _draw(result: Result, ax: "Axes | None") -> "Axes":
-    if ax is not None:
-        raise ValueError("ax must be None for figure-4.2, which creates its own axes")
     *policies, values = result.lines
-    figure = shown_figure(10, 6.5)
-    title_figure(figure, result.experiment.heading)
+    figure = figure_of_several(result, ax, 10, 6.5)
     image: Any = None
     panels = []
     for index, line in enumerate(policies):

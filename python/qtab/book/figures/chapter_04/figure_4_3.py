@@ -5,14 +5,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from qtab.book.drawing import BROAD, line_colors
-from qtab.book.exact_experiment import ExactExperiment, exact_line
-from qtab.book.result import Line, Result
+from qtab.book.drawing import BROAD, figure_of_several, line_colors
+from qtab.book.exact_experiment import ExactExperiment
+from qtab.book.line import Line, exact_line
+from qtab.book.result import Result
 from qtab.book.runner import FloatArray
 from qtab.envs.gamblers_problem import gamblers_problem
 from qtab.planning.solve import optimum
 from qtab.planning.sweeps import value_iteration
-from qtab.plots.axes import shown_figure
 from qtab.plots.labels import finish
 
 if TYPE_CHECKING:
@@ -42,16 +42,14 @@ def smallest_best_stakes(q_values: FloatArray, tolerance: float = 1e-9) -> Float
 
 
 def _draw(result: Result, ax: "Axes | None") -> "Axes":
-    if ax is not None:
-        raise ValueError("ax must be None for figure-4.3, which creates two axes")
     *values, policy = result.lines
-    figure = shown_figure(8, 7.5)
+    figure = figure_of_several(result, ax, 8, 7.5)
     upper, lower = figure.subplots(2, sharex=True)
     for line, hue in zip(values, line_colors(values, upper), strict=True):
         # The final values lie behind the others as a broad band: sweep 32 has almost reached them.
         style = BROAD if line.name == FINAL else {"linewidth": 1.4}
         upper.plot(line.x, line.mean, color=hue, label=line.name, **style)
-    finish(upper, "", "value: the probability of winning", result.experiment.heading)
+    finish(upper, "", "value: the probability of winning")
     lower.bar(policy.x, policy.mean, width=1.0, color=line_colors([policy], lower)[0])
     finish(lower, "capital", POLICY)
     last: Axes = lower

@@ -3,17 +3,21 @@
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from qtab._utils.checks import required
 from qtab._utils.progress import ProgressBar
-from qtab.book.drawing.blackjack import DEALER, USABLE, draw_blackjack
+from qtab.book.drawing.blackjack import USABLE, draw_blackjack
 from qtab.book.experiment import Experiment
-from qtab.book.result import Line, Result
+from qtab.book.line import line_from_samples
+from qtab.book.result import Result
 from qtab.book.runner import FloatArray
 from qtab.training.train_many import train_many
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 STICK = 0
 SUMS = range(11, 22)
@@ -46,6 +50,14 @@ def lowest_stick(values: FloatArray) -> FloatArray:
     return lowest
 
 
+def draw_optimum(result: Result, ax: "Axes | None") -> "Axes":
+    """Draws the greedy policy and the values in a new figure, and returns the axes of the values."""
+    tables = {name: table[:, 12 - SUMS.start :] for name, table in result.surfaces.items()}
+    values = {name: table.max(axis=0) for name, table in tables.items()}
+    policy = {name: table.argmax(axis=0) for name, table in tables.items()}
+    return draw_blackjack(result, ax, {"values": values}, {"policy": policy})
+
+
 @dataclass(frozen=True, kw_only=True, repr=False)
 class ExploringStarts(Experiment):
     """Runs of Monte Carlo ES on blackjack."""
@@ -69,16 +81,11 @@ class ExploringStarts(Experiment):
                 tables += [values_of(table) for table in required("tables", trained.tables)]
                 bar.move_to(len(tables))
         thresholds = np.stack([lowest_stick(values) for values in tables])
-        error = thresholds.std(axis=0, ddof=1) / np.sqrt(runs) if runs > 1 else np.full(thresholds.shape[1:], np.nan)
-        none = np.zeros(len(DEALER), np.int64)
-        cards = np.arange(1.0, len(DEALER) + 1)
-        lines = tuple(
-            Line(name, cards, thresholds[:, ace].mean(axis=0), error[ace], runs, none, none)
-            for ace, name in ((1, USABLE[0]), (0, USABLE[1]))
-        )
-        mean = np.mean(tables, axis=0)
-        surfaces = {name: mean[:, ace] for ace, name in ((1, USABLE[0]), (0, USABLE[1]))}
-        return Result(self, lines, runs, seed, time.perf_counter() - started, draw_blackjack, surfaces)
+        mean, aces = np.mean(tables, axis=0), dict(zip(USABLE, (1, 0), strict=True))
+        cards = np.arange(1, thresholds.shape[-1] + 1)
+        lines = tuple(line_from_samples(name, cards, thresholds[:, ace]) for name, ace in aces.items())
+        surfaces = {name: mean[:, ace] for name, ace in aces.items()}
+        return Result(self, lines, runs, seed, time.perf_counter() - started, draw_optimum, surfaces)
 
 
 EXPERIMENT = ExploringStarts(

@@ -1,13 +1,31 @@
 """Example 6.2: TD(0) and constant-α Monte Carlo on the random walk of five states."""
 
-from qtab.book.prediction_experiment import Panel, PredictionExperiment, PredictionSetting, draw_panels
+from typing import TYPE_CHECKING
+
+from qtab.book.drawing import Panel, draw_panels
+from qtab.book.prediction_experiment import PredictionExperiment, PredictionSetting
 from qtab.book.random_walks import exact_values, five_states, rms_errors, values_at
+from qtab.book.result import Result
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 _EPISODES = 100
 _STATES = tuple(float(state) for state in range(1, 6))
 _SHOWN = (0, 1, 10, 100)
 _START = {"initial_value": 0.5, "episodes": _EPISODES}
 _RATES = {"TD": ("td", (0.05, 0.1, 0.15)), "MC": ("monte_carlo", (0.01, 0.02, 0.03, 0.04))}
+
+
+def _draw(result: Result, ax: "Axes | None") -> "Axes":
+    values = {"x_label": "state", "y_label": "value", "x_ticks": _STATES, "x_tick_labels": tuple("ABCDE")}
+    errors = {"x_label": "episode", "y_label": "RMS error", "y_range": (0, 0.26)}
+    panels = (
+        Panel("values of TD(0) with α = 0.1", [line for line in result.lines if "α" not in line.name], values),
+        Panel("RMS error, averaged over the states", [line for line in result.lines if "α" in line.name], errors),
+    )
+    return draw_panels(result, ax, panels, shared_x=False)
+
 
 EXPERIMENT = PredictionExperiment(
     name="example-6.2",
@@ -55,18 +73,5 @@ EXPERIMENT = PredictionExperiment(
     x_label="state, or episode",
     y_label="value, or RMS error",
     table_x=(1, 2, 3, 4, 5, 10, 25, 50, 75, 100),
-    draw=draw_panels(
-        (
-            Panel(
-                "values of TD(0) with α = 0.1",
-                lambda line: "α" not in line,
-                {"x_label": "state", "y_label": "value", "x_ticks": _STATES, "x_tick_labels": tuple("ABCDE")},
-            ),
-            Panel(
-                "RMS error, averaged over the states",
-                lambda line: "α" in line,
-                {"x_label": "episode", "y_label": "RMS error", "y_range": (0, 0.26)},
-            ),
-        )
-    ),
+    draw=_draw,
 )

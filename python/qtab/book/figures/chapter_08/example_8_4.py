@@ -14,7 +14,8 @@ from qtab import _core
 from qtab._utils.progress import ProgressBar
 from qtab.book.drawing import draw_lines
 from qtab.book.experiment import Experiment
-from qtab.book.result import Line, Result
+from qtab.book.line import Line, line_from_samples
+from qtab.book.result import Result
 from qtab.book.runner import FloatArray
 from qtab.envs.dyna_maze import MOST_DOUBLINGS, DynaMazeEnv
 from qtab.training.resolve import resolve
@@ -131,13 +132,10 @@ class UpdatesToOptimum(Experiment):
                 missed[name, maze.states] += not is_optimal
                 bar.move_to(index + 1)
         sizes = np.array([maze.states for maze in mazes], np.float64)
-        none = np.zeros(len(mazes), np.int64)
         lines = []
         for name, algorithm in METHODS.items():
-            samples = np.array([counts[name, maze.states] for maze in mazes], np.float64)
-            error = samples.std(axis=1, ddof=1) / np.sqrt(runs) if runs > 1 else np.full(len(mazes), np.nan)
-            method = algorithm if name == "Dyna-Q" else ""
-            lines.append(Line(name, sizes, samples.mean(axis=1), error, runs, none, none, method=method))
+            samples = np.array([counts[name, maze.states] for maze in mazes], np.float64).T
+            lines.append(line_from_samples(name, sizes, samples, method=algorithm if name == "Dyna-Q" else ""))
         result = Result(self, tuple(lines), runs, seed, time.perf_counter() - started, draw_lines)
         return dataclasses.replace(result, table=_table(lines, missed))
 

@@ -3,8 +3,8 @@
 import numpy as np
 
 from qtab.book.drawing import draw_lines
-from qtab.book.exact_experiment import ExactExperiment, exact_line
-from qtab.book.result import Line
+from qtab.book.exact_experiment import ExactExperiment
+from qtab.book.line import Line, exact_line
 
 BRANCHING = (2, 10, 100, 1_000, 10_000)
 EXPECTED = "expected updates"

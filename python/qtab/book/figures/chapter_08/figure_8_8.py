@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from qtab._utils.progress import ProgressBar
-from qtab.book.drawing import line_colors, title_figure
+from qtab.book.drawing import figure_of_several, line_colors
 from qtab.book.experiment import Experiment
-from qtab.book.result import Line, Result
+from qtab.book.line import Line, line_from_samples
+from qtab.book.result import Result
 from qtab.book.runner import FloatArray
 from qtab.envs.random_mdp import random_mdp
 from qtab.planning.expected_updates import ExpectedUpdates
-from qtab.plots.axes import shown_figure
 from qtab.plots.labels import finish
 
 if TYPE_CHECKING:
@@ -89,11 +89,7 @@ class UpdateDistributions(Experiment):
         return [round(part * size.updates) for part in self.parts]
 
     def _line(self, size: Tasks, distribution: str, samples: FloatArray) -> Line:
-        runs, points = samples.shape
-        error = samples.std(axis=0, ddof=1) / np.sqrt(runs) if runs > 1 else np.full(points, np.nan)
-        none = np.zeros(points, np.int64)
-        x = np.array(self._times(size), np.float64)
-        return Line(size.line_name(distribution), x, samples.mean(axis=0), error, runs, none, none, method=distribution)
+        return line_from_samples(size.line_name(distribution), self._times(size), samples, method=distribution)
 
 
 def _in_threads(threads: int, measure: Callable[[int], T], seeds: range) -> Iterator[T]:
@@ -112,11 +108,9 @@ def draw_two_sizes(result: Result, ax: "Axes | None") -> "Axes":
     Raises:
         ValueError: if ``ax`` is not None.
     """
-    if ax is not None:
-        raise ValueError("ax must be None for figure-8.8, which creates two axes")
     experiment: Any = result.experiment
     sizes = list(dict.fromkeys(one.states for one in experiment.tasks))
-    figure = shown_figure(8, 4.5 * len(sizes))
+    figure = figure_of_several(result, ax, 8, 4.5 * len(sizes))
     panels: Any = figure.subplots(len(sizes), squeeze=False)[:, 0]
     lines = dict(zip(experiment.line_names, result.lines, strict=True))
     for panel, states in zip(panels, sizes, strict=True):
@@ -130,7 +124,6 @@ def draw_two_sizes(result: Result, ax: "Axes | None") -> "Axes":
         panel.xaxis.set_major_formatter("{x:,.0f}")
         finish(panel, experiment.x_label, experiment.y_label)
         panel.set_title(f"{states:,} states", loc="left", fontsize="medium")
-    title_figure(figure, experiment.heading)
     last: Axes = panels[-1]
     return last
 

@@ -1,12 +1,32 @@
 """Figure 9.2: bootstrapping with state aggregation: the values that TD reaches, and n-step TD by n and α."""
 
-from qtab.book.prediction_experiment import Panel, PredictionExperiment, PredictionSetting, draw_panels
+from typing import TYPE_CHECKING
+
+from qtab.book.drawing import Panel, draw_panels
+from qtab.book.prediction_experiment import PredictionExperiment, PredictionSetting
 from qtab.book.random_walks import ALPHAS, EPISODES, TOP, exact_values, mean_rms_error, thousand_states, values_at
+from qtab.book.result import Result
 from qtab.prediction.features import state_aggregation
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 _STATES = tuple(float(state) for state in range(1, 1001))
 _LONG = 100_000
 _N_STEPS = tuple(2**power for power in range(10))
+
+
+def _draw(result: Result, ax: "Axes | None") -> "Axes":
+    values = {"x_label": "state", "y_label": "value", "y_range": (-1, 1)}
+    errors = {"x_label": "α", "y_label": "RMS error", "y_range": (0.25, TOP)}
+    panels = (
+        Panel("values of semi-gradient TD(0)", [line for line in result.lines if "values" in line.name], values),
+        Panel(
+            "n-step TD over the first 10 episodes", [line for line in result.lines if "values" not in line.name], errors
+        ),
+    )
+    return draw_panels(result, ax, panels, shared_x=False)
+
 
 EXPERIMENT = PredictionExperiment(
     name="figure-9.2",
@@ -60,18 +80,5 @@ EXPERIMENT = PredictionExperiment(
     x_label="state, or α",
     y_label="value, or RMS error",
     table_x=(0.1, 0.2, 0.4, 0.6, 0.8, 1.0, 50.0, 250.0, 450.0, 550.0, 750.0, 950.0),
-    draw=draw_panels(
-        (
-            Panel(
-                "values of semi-gradient TD(0)",
-                lambda line: "values" in line,
-                {"x_label": "state", "y_label": "value", "y_range": (-1, 1)},
-            ),
-            Panel(
-                "n-step TD over the first 10 episodes",
-                lambda line: "values" not in line,
-                {"x_label": "α", "y_label": "RMS error", "y_range": (0.25, TOP)},
-            ),
-        )
-    ),
+    draw=_draw,
 )

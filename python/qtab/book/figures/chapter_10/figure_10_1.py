@@ -2,15 +2,16 @@
 
 import time
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from qtab._utils.progress import ProgressBar
-from qtab.book.drawing import draw_surfaces
+from qtab.book.drawing import figure_of_several
+from qtab.book.line import Line
 from qtab.book.measures import mean_length
 from qtab.book.mountain_car import ENV, TILE_CODING, UNSPECIFIED
-from qtab.book.result import Line, Result
+from qtab.book.result import Result
 from qtab.book.runner import FloatArray
 from qtab.book.setting import Setting
 from qtab.book.training_experiment import TrainingExperiment, line_of
@@ -42,14 +43,24 @@ def cost_to_go(run: Run) -> FloatArray:
 
 
 def draw_cost_to_go(result: Result, ax: "Axes | None") -> "Axes":
-    """Draws the five surfaces side by side in a new figure.
+    """Draws each surface, (positions, velocities), in 3D axes of its own in a new figure; returns the last axes.
 
     Raises:
+        ModuleNotFoundError: without matplotlib; the message names the ``pip install``.
         ValueError: if ``ax`` is not None.
     """
-    if ax is not None:
-        raise ValueError("ax must be None for figure-10.1, which creates five axes")
-    return draw_surfaces(result.experiment.heading, _POSITIONS, _VELOCITIES, result.surfaces)
+    figure = figure_of_several(result, ax, 9, 5.5)
+    x, y = np.meshgrid(_POSITIONS, _VELOCITIES, indexing="ij")
+    panel: Any = None
+    for index, (name, surface) in enumerate(result.surfaces.items()):
+        panel = figure.add_subplot(2, 3, index + 1, projection="3d")
+        panel.plot_surface(x, y, surface, cmap="viridis", linewidth=0, rcount=GRID_POINTS, ccount=GRID_POINTS)
+        panel.set_title(f"{name}: up to {surface.max():.0f}", fontsize="medium")
+        panel.set(xlabel="position", ylabel="velocity", xticks=(-1.2, -0.5, 0.5), yticks=(-0.07, 0, 0.07))
+        panel.tick_params(labelsize="x-small")
+        panel.set_box_aspect(None, zoom=0.8)
+    last: Axes = panel
+    return last
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)

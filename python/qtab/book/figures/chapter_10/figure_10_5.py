@@ -9,10 +9,10 @@ import numpy as np
 
 from qtab import _core
 from qtab._utils.progress import ProgressBar
-from qtab.book.drawing import line_colors, title_figure
+from qtab.book.drawing import figure_of_several, line_colors
 from qtab.book.experiment import Experiment
-from qtab.book.result import Line, Result
-from qtab.plots.axes import shown_figure
+from qtab.book.line import line_from_samples
+from qtab.book.result import Result
 from qtab.training.resolve import resolve
 
 if TYPE_CHECKING:
@@ -43,12 +43,9 @@ def draw_queue(result: Result, ax: "Axes | None") -> "Axes":
         ModuleNotFoundError: without matplotlib; the message names the ``pip install``.
         ValueError: if ``ax`` is not None.
     """
-    if ax is not None:
-        raise ValueError(f"ax must be None for {result.experiment.name}, which creates two axes")
     from matplotlib.colors import ListedColormap
 
-    figure = shown_figure(7, 7)
-    title_figure(figure, result.experiment.heading)
+    figure = figure_of_several(result, ax, 7, 7)
     upper, lower = figure.subplots(2, 1, height_ratios=(1, 2), sharex=True)
     # Without a free server there is nothing to choose: every customer is rejected.
     policy = result.surfaces["policy"].T[:, 1:]
@@ -104,13 +101,10 @@ class AccessControl(Experiment):
                 bar.move_to(number + 1)
         values = np.stack(tables).max(axis=-1)
         samples = [*np.moveaxis(values, -1, 0), np.array(averages)[:, None]]
-        lines = []
-        for name, sample in zip(self.line_names, samples, strict=True):
-            points = sample.shape[1]
-            error = sample.std(axis=0, ddof=1) / np.sqrt(runs) if runs > 1 else np.full(points, np.nan)
-            none = np.zeros(points, np.int64)
-            x = np.arange(float(points))
-            lines.append(Line(name, x, sample.mean(axis=0), error, runs, none, none, drawn=name != AVERAGE))
+        lines = [
+            line_from_samples(name, np.arange(sample.shape[1]), sample, drawn=name != AVERAGE)
+            for name, sample in zip(self.line_names, samples, strict=True)
+        ]
         surfaces = {"policy": np.mean(tables, axis=0).argmax(axis=-1).astype(np.float64)}
         return Result(self, tuple(lines), runs, seed, time.perf_counter() - started, draw_queue, surfaces)
 

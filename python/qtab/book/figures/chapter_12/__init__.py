@@ -3,12 +3,12 @@
 from collections.abc import Sequence
 
 from qtab.book.experiment import Experiment
-from qtab.book.figures.chapter_12 import figure_12_3, figure_12_6, figure_12_8, figure_12_10, figure_12_11
+from qtab.book.figures.chapter_12 import figure_12_10, figure_12_11, random_walk
 
 EXPERIMENTS: Sequence[Experiment] = (
-    figure_12_3.EXPERIMENT,
-    figure_12_6.EXPERIMENT,
-    figure_12_8.EXPERIMENT,
+    random_walk.FIGURE_12_3,
+    random_walk.FIGURE_12_6,
+    random_walk.FIGURE_12_8,
     figure_12_10.EXPERIMENT,
     figure_12_11.EXPERIMENT,
 )

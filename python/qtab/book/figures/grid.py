@@ -1,17 +1,15 @@
-"""The grid world of Examples 3.5 and 3.8 in tables and pictures."""
+"""The numbers of square grids in tables."""
 
+import math
 from collections.abc import Sequence
 
-from qtab.book.result import Line
+from qtab.book.line import Line
 from qtab.book.runner import FloatArray
-
-DISCOUNT = 0.9
-SIZE = 5
 
 
 def as_grid(line: Line) -> FloatArray:
-    """Returns (rows, columns): the numbers of a line with a point for each cell."""
-    return line.mean.reshape(SIZE, SIZE)
+    """Returns (rows, columns): the numbers of a line that has a point for each cell of a square."""
+    return line.mean.reshape(math.isqrt(len(line.mean)), -1)
 
 
 def grid_text(lines: Sequence[Line]) -> str:

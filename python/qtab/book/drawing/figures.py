@@ -1,0 +1,52 @@
+"""Figures of several axes with one title, and figures in files."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from qtab.book.result import Result
+from qtab.plots.axes import not_shown, save_figure, shown_figure
+from qtab.plots.labels import fitted
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+LEFT = 0.02
+"""Where the title begins, as a part of the width."""
+DOTS_PER_INCH = 100
+
+
+def figure_of_several(result: Result, ax: "Axes | None", width: float, height: float) -> "Figure":
+    """Returns a new figure for a result that has several axes, with the title on the left, in bold.
+
+    Args:
+        result: What will be drawn.
+        ax: The axes that were asked for.
+        width: In inches.
+        height: In inches.
+
+    Raises:
+        ModuleNotFoundError: without matplotlib; the message names the ``pip install``.
+        ValueError: if ``ax`` is not None.
+    """
+    if ax is not None:
+        raise ValueError(f"ax must be None for {result.experiment.name}, which creates its own axes")
+    figure = shown_figure(width, height)
+    from matplotlib.font_manager import FontProperties
+
+    size = FontProperties(size="large").get_size_in_points()
+    title = fitted(result.experiment.heading, (1 - 2 * LEFT) * width * 72, size, "bold")
+    figure.suptitle(title, x=LEFT, ha="left", fontweight="bold", fontsize=size)
+    return figure
+
+
+def save_plot(result: Result, path: Path) -> None:
+    """Draws a result to a file, completely or not at all; the suffix of the path determines the format.
+
+    Raises:
+        ModuleNotFoundError: without matplotlib; the message names the ``pip install``.
+        OSError: if the file cannot be written.
+    """
+    with not_shown():
+        figure: Any = result.plot().figure
+    save_figure(figure, path, DOTS_PER_INCH)
