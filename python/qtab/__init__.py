@@ -47,7 +47,7 @@ _MODULES = {
     "evaluate": "qtab.training.evaluate",
     "explain": "qtab.explanation.explain",
     "load": "qtab.results.storage",
-    "load_runs": "qtab.results.runs_storage",
+    "load_runs": "qtab.results.storage",
     "load_sweep": "qtab.sweeps.load",
     "optimum": "qtab.planning.solve",
     "planning": "qtab.planning",
@@ -102,9 +102,9 @@ if TYPE_CHECKING:
     from qtab.results.recording import Recording as Recording
     from qtab.results.run import Run as Run
     from qtab.results.runs import Runs as Runs
-    from qtab.results.runs_storage import load_runs as load_runs
     from qtab.results.snapshots import Snapshots as Snapshots
     from qtab.results.storage import load as load
+    from qtab.results.storage import load_runs as load_runs
     from qtab.sweeps import designs as designs
     from qtab.sweeps.confirm import Confirmation as Confirmation
     from qtab.sweeps.connection import StoreError as StoreError

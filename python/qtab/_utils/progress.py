@@ -6,8 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from qtab._utils.extras import missing
-from qtab._utils.notebook import in_notebook
-from qtab._utils.notebook_bar import notebook_bar
+from qtab._utils.notebook import in_notebook, notebook_bar
 
 SECONDS_BETWEEN_UPDATES = 0.1
 """The approximate time between two updates of the bar."""

@@ -15,9 +15,9 @@ from qtab.envs.goals import BEST_KNOWN_MOUNTAIN_CAR, is_usual_mountain_car
 from qtab.planning.optimum import Optimum
 from qtab.planning.quick import quick_optimum
 from qtab.results.initial_tables import are_finite, initial_tables
+from qtab.results.rates import repeatable
 from qtab.results.run import Run
 from qtab.results.runs import Runs
-from qtab.training.extensions import repeatable
 from qtab.training.run_env import can_be_made
 from qtab.training.train import train
 from qtab.training.train_many import seed_sequence, train_many

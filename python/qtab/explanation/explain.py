@@ -22,9 +22,9 @@ from qtab.reference import LEARNERS
 from qtab.reference.observer import observed_by
 from qtab.reference.schedules import LearningRate
 from qtab.results.axes import description_of
+from qtab.results.rates import ONLY_FIRST, repeatable
 from qtab.results.run import Run
 from qtab.results.time_steps import rows_of
-from qtab.training.extensions import ONLY_FIRST, repeatable
 from qtab.training.given_env import check_same
 from qtab.training.run_env import make_run_env
 

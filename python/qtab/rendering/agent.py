@@ -13,9 +13,9 @@ from qtab.config import Config
 from qtab.envs.registry import spec_of
 from qtab.planning.optimum import Optimum
 from qtab.rendering.replay import check_render_mode, make_render_env, render_env
+from qtab.results.action_values import greedy_table
 from qtab.results.run import Run
 from qtab.results.time_steps import rows_of
-from qtab.training.assigned_rows import greedy_table
 from qtab.training.given_env import check_env, check_spaces
 
 

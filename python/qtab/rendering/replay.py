@@ -10,8 +10,8 @@ from gymnasium.envs.registration import EnvSpec
 
 from qtab._utils.progress import ProgressBar
 from qtab.config import Config
-from qtab.envs.continue_after import continue_after
 from qtab.results.run import Recording, Run
+from qtab.training.restore import continue_after
 from qtab.training.run_env import make_run_env
 
 

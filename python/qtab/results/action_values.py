@@ -31,6 +31,11 @@ def read_by_policy(config: Config, tables: NDArray[np.float64]) -> NDArray[np.fl
     return tables[:1] if config.algorithm in WITH_STATE_VALUES else tables
 
 
+def greedy_table(run: "Run") -> NDArray[np.float64]:
+    """Returns (1, rows, actions): the table that the greedy policy reads; of two their sum."""
+    return summed(read_by_policy(run.config, run.tables))[np.newaxis]
+
+
 def state_values(run: "Run", observation: Any, steps: Any = 0) -> NDArray[np.float64]:
     """Returns the () or (n,) values of observations under the policy that was learned.
 

@@ -1,10 +1,37 @@
 """The rates of each episode of a run, even if it was resumed with more episodes while a rate fell."""
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab.config.schedules import Schedule
+from qtab.config import Config
+from qtab.config.schedules import Constant, Linear, Schedule
 from qtab.results.run import Run
+
+ONLY_FIRST = "only those can be repeated, because its falling rates were then spread over more episodes"
+"""Why the later episodes of a run that was extended cannot be repeated, for messages."""
+
+
+def rates(schedule: Schedule, total: int) -> NDArray[np.float64]:
+    """Returns (total,): the value of a schedule in each episode of a run, with the bits that the learners use."""
+    values = np.full(total, schedule.value)
+    if isinstance(schedule, Constant):
+        return values
+    falling = values[schedule.warm_up :]
+    # As the learners do: an amount is subtracted, or a factor applied, after one episode after the other.
+    if isinstance(schedule, Linear):
+        falling[1:] = (schedule.value - schedule.minimum) / (total - schedule.warm_up)
+        np.subtract.accumulate(falling, out=falling)
+    else:
+        falling[1:] = schedule.decay
+        np.multiply.accumulate(falling, out=falling)
+        np.maximum(falling, schedule.minimum, out=falling)
+    at_least = falling <= schedule.minimum
+    if at_least.any():
+        first = int(np.argmax(at_least))
+        falling[first:] = falling[first]
+    return values
 
 
 def rates_of(run: Run, schedule: Schedule, episodes: NDArray[np.int64]) -> NDArray[np.float64]:
@@ -12,9 +39,44 @@ def rates_of(run: Run, schedule: Schedule, episodes: NDArray[np.int64]) -> NDArr
 
     Each extension spreads a linear fall over the new number of episodes, from the first episode on.
     """
-    totals = np.full(len(episodes), run.config.episodes)
-    extensions = () if run.state is None else run.state.extensions
-    for finished, total in reversed(extensions):
-        totals[episodes < finished] = total
-    pairs = zip(episodes.tolist(), totals.tolist(), strict=True)
-    return np.array([schedule.after(episode, total) for episode, total in pairs])
+    found: NDArray[np.float64] = rates(schedule, run.config.episodes)[episodes]
+    for finished, total in reversed(() if run.state is None else run.state.extensions):
+        early = episodes < finished
+        found[early] = rates(schedule, total)[episodes[early]]
+    return found
+
+
+def falling_rates(config: Config) -> list[str]:
+    """Returns the rates that fall linearly, so that each episode's depends on the number of all episodes."""
+    falling = []
+    for rate in ("epsilon", "learning_rate"):
+        value, least = getattr(config, rate), getattr(config, f"min_{rate}")
+        if getattr(config, f"{rate}_schedule") == "linear" and value != least:
+            falling.append(rate)
+    return falling
+
+
+def extensions(run: Run, config: Config) -> tuple[tuple[int, int], ...]:
+    """Returns the extensions of a run after it is resumed.
+
+    Args:
+        run: The earlier part.
+        config: The config of the whole run.
+    """
+    earlier = () if run.state is None else run.state.extensions
+    finished, episodes = len(run.episode_returns), run.config.episodes
+    if finished == 0 or episodes == config.episodes or not falling_rates(config):
+        return earlier  # every episode has had the rates of the new number of episodes
+    return (*earlier, (finished, episodes))
+
+
+def repeatable(run: Run) -> tuple[Run, int]:
+    """Returns a run with the config that its first episodes were trained with, and how many they are.
+
+    Training this config again repeats these episodes. They are all of them, unless the run was extended while a rate
+    fell: an episode's rate depends on the number of episodes that the run had at the time.
+    """
+    if run.state is None or not run.state.extensions:
+        return run, len(run.episode_returns)
+    finished, episodes = run.state.extensions[0]
+    return replace(run, config=run.config.replace(episodes=episodes)), finished

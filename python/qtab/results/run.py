@@ -25,7 +25,7 @@ from qtab.results.page import WithPage
 from qtab.results.recording import Recording as Recording
 from qtab.results.run_state import RunState
 from qtab.results.snapshots import Snapshots
-from qtab.results.summary import FINAL_EPISODES, default_block
+from qtab.results.summary import FINAL_EPISODES, block_means, default_block
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -230,8 +230,7 @@ class Run(WithPage):
                 not a boolean.
             ValueError: if it has another shape than the space, or lies outside the space.
         """
-        if not isinstance(deterministic, bool | np.bool_):
-            raise TypeError(f"deterministic must be True or False, got {deterministic!r}")
+        deterministic = checks.boolean("deterministic", deterministic)
         steps = time_steps.steps_taken(self.discretizer, state, episode_start)
         values = action_values.to_choose_from(self, observation, action_masks, steps)
         if deterministic:
@@ -256,8 +255,7 @@ class Run(WithPage):
             ValueError: if it is less than one.
         """
         block = checks.integer("block", block, least=1)
-        whole = len(self.episode_returns) // block * block
-        means: NDArray[np.float64] = self.episode_returns[:whole].reshape(-1, block).mean(axis=1)
+        means: NDArray[np.float64] = block_means(self.episode_returns[np.newaxis], block)[0]
         return means
 
     def to_pandas(self) -> "pd.DataFrame":

@@ -19,8 +19,9 @@ from qtab.config.origin import trained_on
 from qtab.discretizers import Discretizer
 from qtab.discretizers.actions import Actions
 from qtab.envs.origin.description import EnvironmentDescription
+from qtab.results import run_file, saving
+from qtab.results.consistency import check_consistent_runs
 from qtab.results.run import Run
-from qtab.results.saving import save_runs
 from qtab.results.summary import FINAL_EPISODES, block_means, default_block, summarize
 
 if TYPE_CHECKING:
@@ -208,7 +209,14 @@ class Runs:
             TypeError: if the environment's keyword arguments hold what JSON cannot.
             ValueError: if they hold a number that JSON cannot, or the runs are not what training returns.
         """
-        save_runs(self, checks.file_path("path", path))
+        path = checks.file_path("path", path)
+        try:
+            check_consistent_runs(self)
+        except ValueError as error:
+            raise ValueError(f"these runs cannot be saved: {error}") from None
+        arrays = {name: getattr(self, name) for name in (*run_file.ARRAYS, "action_masks")}
+        arrays = {name: array for name, array in arrays.items() if array is not None}
+        saving.write(path, run_file.RUNS, self, {"seeds": self.seeds, "rows": self.discretizer.n_rows}, arrays)
 
     def to_pandas(self) -> "pd.DataFrame":
         """Returns the columns of :meth:`summaries` as a data frame with one row per run.

@@ -12,7 +12,6 @@ from qtab.config.config import replace_checked
 from qtab.config.discretizer import stored_function
 from qtab.config.stored import stored_settings
 from qtab.results import run_file
-from qtab.results.consistency import check_consistent_runs
 from qtab.results.stored_actions import describe_parts
 
 if TYPE_CHECKING:
@@ -66,14 +65,3 @@ def write(
     if replace_checked(result.config, env_kwargs=json.loads(text)["config"]["env_kwargs"]) != result.config:
         raise TypeError(f"env_kwargs must hold what JSON can, got {kwargs!r}: keys must be texts")
     run_file.write(path, text, stored)
-
-
-def save_runs(runs: "Runs", path: Path) -> None:
-    """Writes many runs; see :meth:`qtab.Runs.save`."""
-    try:
-        check_consistent_runs(runs)
-    except ValueError as error:
-        raise ValueError(f"these runs cannot be saved: {error}") from None
-    names = (*run_file.ARRAYS, "action_masks")
-    arrays = {name: getattr(runs, name) for name in names if getattr(runs, name) is not None}
-    write(path, run_file.RUNS, runs, {"seeds": runs.seeds, "rows": runs.discretizer.n_rows}, arrays)

@@ -1,4 +1,4 @@
-"""``qtab.load``: a saved run, whose file is checked before use."""
+"""``qtab.load`` and ``qtab.load_runs``: saved runs, whose files are checked before use."""
 
 import logging
 import os
@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar
+from typing import Any, BinaryIO, TypeVar
 
 from qtab import discretizers
 from qtab._utils import checks
@@ -18,21 +18,20 @@ from qtab.config.discretizer import MissingFunction
 from qtab.config.options import defaults
 from qtab.config.origin import Origin, copied, trained_on
 from qtab.config.stored import corrected_settings, implied_settings
+from qtab.discretizers.base import MAX_TABLE_SIZE
 from qtab.envs.origin.description import from_json
 from qtab.envs.origin.values import with_types
 from qtab.envs.stored import stored_id
 from qtab.results import run_file
-from qtab.results.consistency import check_consistent
-from qtab.results.optional_arrays import restore_optional
+from qtab.results.consistency import check_consistent, check_consistent_runs
+from qtab.results.optional_arrays import checked_masks, restore_optional
 from qtab.results.run import Run
 from qtab.results.run_state import RunState
+from qtab.results.runs import Runs
 from qtab.results.stored_actions import restore_actions
 
-if TYPE_CHECKING:
-    from qtab.results.runs import Runs
-
 _LOGGER = logging.getLogger("qtab")
-Result = TypeVar("Result", Run, "Runs")
+Result = TypeVar("Result", Run, Runs)
 _MAX_REASON = 400
 """The characters of the reason in an error: it may show values from the file."""
 
@@ -66,16 +65,57 @@ def load(
         ValueError: if it is not a run file, is damaged, or comes from another version of the format; the
             message says why.
     """
+    return _load(path, "run file", run_file.RUN, _run, discretizer, action_mask)
+
+
+def load_runs(
+    path: "str | os.PathLike[str]",
+    *,
+    discretizer: Callable[[Any], Any] | None = None,
+    action_mask: Callable[[Any], Any] | None = None,
+) -> Runs:
+    """Reads runs that :meth:`qtab.Runs.save` wrote, after checking that not a byte of them was changed.
+
+    As for :func:`qtab.load`, no module is imported because a file names it.
+
+    Args:
+        path: The file.
+        discretizer: As for :func:`qtab.load`.
+        action_mask: As for :func:`qtab.load`.
+
+    Raises:
+        OSError: if the file is missing or cannot be read.
+        TypeError: if ``path`` is not a path, or ``discretizer`` is given and is not a function, or the runs had none.
+        ValueError: if it is not a file of runs, is damaged, or comes from another version of the format; the message
+            says why.
+    """
+    return _load(path, "file of runs", run_file.RUNS, _runs, discretizer, action_mask)
+
+
+def _load(
+    path: Any,
+    name: str,
+    kind: str,
+    restore: Callable[[run_file.Content, Any], Result],
+    discretizer: Any,
+    action_mask: Any,
+) -> Result:
     path = checks.file_path("path", path)
-    with opened(path, "run file") as file:
-        run = _run(run_file.read(file), discretizer)
-    check_function(discretizer, run.config)
-    if run.unchecked:
+    with _opened(path, name) as file:
+        content = run_file.read(file, kind)
+        result = restore(content, discretizer)
+    _check_function(discretizer, result.config)
+    if not content.has_digest:
         _LOGGER.warning(
             "%r has no digest, as files of earlier versions: that it is undamaged is not checked", str(path)
         )
-    log_unknown_origin(path, run.config)
-    return run if action_mask is None else with_action_mask(run, action_mask)
+    if trained_on(result.config) is None:
+        _LOGGER.warning(
+            "%r stores only the id and the arguments of its environment, like all files of earlier versions: wrappers, "
+            "changed attributes and bounds of spaces are not compared",
+            str(path),
+        )
+    return result if action_mask is None else with_action_mask(result, action_mask)
 
 
 def with_action_mask(run: Result, action_mask: Callable[[Any], Any]) -> Result:
@@ -93,7 +133,7 @@ def with_action_mask(run: Result, action_mask: Callable[[Any], Any]) -> Result:
 
 
 @contextmanager
-def opened(path: Path, kind: str) -> Iterator[BinaryIO]:
+def _opened(path: Path, kind: str) -> Iterator[BinaryIO]:
     """Opens a file; what cannot be read from it is a ValueError that names the file and the kind of it.
 
     A FIFO, which would be waited for until something is written to it, is refused.
@@ -113,7 +153,7 @@ def opened(path: Path, kind: str) -> Iterator[BinaryIO]:
             raise ValueError(f"{str(path)!r} is not a {kind} that this version of qtab can read: {reason}") from None
 
 
-def check_function(function: Any, config: Config) -> None:
+def _check_function(function: Any, config: Config) -> None:
     """Checks that a function is given only for what was trained with one.
 
     Raises:
@@ -127,7 +167,7 @@ def check_function(function: Any, config: Config) -> None:
 def _run(content: run_file.Content, function: Callable[[Any], Any] | None) -> Run:
     header, stored = content.header, content.arrays
     arrays: dict[str, Any] = {name: run_file.array(stored, name) for name in run_file.ARRAYS}
-    shared = shared_fields(content, function)
+    shared = _shared_fields(content, function)
     config = shared["config"]
     discretizer = discretizers.restore(config, stored, arrays["tables"].shape[1])
     arrays |= restore_optional(stored, arrays["tables"], discretizer.shape, len(arrays["episode_returns"]))
@@ -142,7 +182,38 @@ def _run(content: run_file.Content, function: Callable[[Any], Any] | None) -> Ru
     return run
 
 
-def shared_fields(content: run_file.Content, function: Callable[[Any], Any] | None) -> dict[str, Any]:
+def _runs(content: run_file.Content, function: Callable[[Any], Any] | None) -> Runs:
+    if not content.has_digest:
+        raise ValueError("its digest is missing")
+    header, stored = content.header, content.arrays
+    arrays: dict[str, Any] = {
+        name: run_file.array(stored, name, more_axes=1)
+        for name in run_file.ARRAYS
+        if name != "tables" or "tables" in stored
+    }
+    shared = _shared_fields(content, function)
+    seeds = header["seeds"]
+    if not isinstance(seeds, list):
+        raise ValueError(f"its seeds must be a list, got {seeds!r}")
+    rows = _integer(header, "rows")
+    if not rows < MAX_TABLE_SIZE:  # a file without tables may be much smaller than what its rows would need
+        raise ValueError(f"its number of rows must be less than 2**32, got {rows}")
+    discretizer = discretizers.restore(shared["config"], stored, rows)
+    if "action_masks" in stored:
+        arrays["action_masks"] = checked_masks(
+            stored["action_masks"], (len(seeds), *discretizer.shape, len(shared["actions"]))
+        )
+    runs = Runs(
+        seeds=tuple(seeds),
+        discretizer=discretizer,
+        **shared,
+        **{"tables": None, **arrays},
+    )
+    check_consistent_runs(runs)
+    return runs
+
+
+def _shared_fields(content: run_file.Content, function: Callable[[Any], Any] | None) -> dict[str, Any]:
     """Returns the fields that the files of one run and of many runs have in common.
 
     Args:
@@ -163,8 +234,8 @@ def shared_fields(content: run_file.Content, function: Callable[[Any], Any] | No
     return {
         "config": _config(header, stored, function),
         "actions": restore_actions(
-            integer(header, "actions"),
-            integer(header, "first_action"),
+            _integer(header, "actions"),
+            _integer(header, "first_action"),
             stored.get("actions"),
             header.get("action_parts"),
         ),
@@ -208,17 +279,7 @@ def _origin(header: Mapping[str, Any]) -> Origin | None:
     return Origin(None if environment is None else from_json(environment), frozenset(derived))
 
 
-def log_unknown_origin(path: Path, config: Config) -> None:
-    """Logs that a file stores only the id and the arguments of its environment."""
-    if trained_on(config) is None:
-        _LOGGER.warning(
-            "%r stores only the id and the arguments of its environment, like all files of earlier versions: wrappers, "
-            "changed attributes and bounds of spaces are not compared",
-            str(path),
-        )
-
-
-def integer(header: Mapping[str, Any], name: str) -> int:
+def _integer(header: Mapping[str, Any], name: str) -> int:
     """Returns an integer in a header.
 
     Raises:

@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from qtab import _core
 from qtab._utils.fields import with_fields
 from qtab.config import Config
+from qtab.config.schedules import ByVisits, Constant, epsilon, learning_rate
+from qtab.results.rates import rates
 from qtab.results.summary import FINAL_EPISODES
-from qtab.training.rates import Rates
 
 if TYPE_CHECKING:
     from qtab.results.run import Run
@@ -73,12 +74,13 @@ class Progress:
     @cached_property
     def epsilon(self) -> float | None:
         """The exploration rate of the last finished episode; None with softmax exploration."""
-        return self._required.reader.rates.epsilon(max(self.episode, 0))
+        rates = self._required.reader.epsilons
+        return None if rates is None else float(rates[max(self.episode, 0)])
 
     @cached_property
     def learning_rate(self) -> float:
         """The learning rate of the last finished episode; with schedule ``"visits"`` that of a first visit."""
-        return self._required.reader.rates.learning_rate(max(self.episode, 0))
+        return float(self._required.reader.learning_rates[max(self.episode, 0)])
 
     @cached_property
     def tables(self) -> NDArray[np.float64]:
@@ -157,7 +159,6 @@ class EpisodeReader:
     ) -> None:
         self._trainer, self._resolved = trainer, resolved
         self.config, self.discretizer, self.make_run = resolved.config, resolved.discretizer, make_run
-        self.rates = Rates(resolved.config)
         self._began = began
         self._episodes = self._steps = 0
         self._returns, self._lengths = np.empty(0, np.float64), np.empty(0, np.int64)
@@ -185,6 +186,19 @@ class EpisodeReader:
         self._source = ProgressSource(self, self._steps, time.perf_counter() - self._began)
         columns = _read_only(self._returns, self._episodes), _read_only(self._lengths, self._episodes)
         return Progress(self._episodes, total, *columns, self._source)
+
+    @cached_property
+    def epsilons(self) -> "NDArray[np.float64] | None":
+        """(total,): the exploration rate of each episode; None unless it is epsilon-greedy."""
+        if self.config.exploration != "epsilon_greedy":
+            return None
+        return rates(epsilon(self.config), self.config.episodes)
+
+    @cached_property
+    def learning_rates(self) -> NDArray[np.float64]:
+        """(total,): the learning rate of each episode; with schedule ``"visits"`` that of a first visit."""
+        rate = learning_rate(self.config)
+        return rates(Constant(rate.value) if isinstance(rate, ByVisits) else rate, self.config.episodes)
 
     def move_on(self) -> None:
         """Called before the trainer advances: the last Progress can no longer read its tables."""

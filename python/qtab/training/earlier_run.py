@@ -20,13 +20,13 @@ from qtab.config.discretizer import MissingFunction
 from qtab.config.layers import over
 from qtab.config.options import is_set
 from qtab.config.origin import copied, trained_on
+from qtab.discretizers import Sparse
 from qtab.envs.origin.differences import differences
 from qtab.envs.registry import versioned
+from qtab.results.rates import extensions, falling_rates
 from qtab.results.run import Run
 from qtab.results.snapshots import resumed_snapshot_episodes, snapshot_episodes
 from qtab.results.storage import load, with_action_mask
-from qtab.training.assigned_rows import continued
-from qtab.training.extensions import extensions, falling_rates
 from qtab.training.options import TrainingOptions
 from qtab.training.resolve import resolve
 from qtab.training.resolved_run import ResolvedRun
@@ -89,7 +89,9 @@ def resolve_again(name: str, run: Run, episodes: Any, env: gym.Env | None) -> Re
     origin = config.origin or resolved.config.origin
     same = replace_checked(resolved.config, env_kwargs=config.env_kwargs)
     resolved = replace(resolved, config=copied(same, origin))
-    return replace(continued(resolved, run), extensions=extensions(run, config))
+    if isinstance(run.discretizer, Sparse):  # rows are assigned where the earlier part stopped
+        resolved = replace(resolved, discretizer=run.discretizer.as_learned())
+    return replace(resolved, extensions=extensions(run, config))
 
 
 def has_finished(run: Run, episodes: Any, options: TrainingOptions) -> bool:

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import gymnasium as gym
@@ -17,6 +17,7 @@ from qtab._utils.frames import episode_frame
 from qtab._utils.progress import check_progress
 from qtab._utils.shown import shown
 from qtab.config import Config
+from qtab.config.config import replace_checked
 from qtab.config.layers import over
 from qtab.config.unknown import suggesting
 from qtab.discretizers import Sparse
@@ -24,8 +25,8 @@ from qtab.envs.goals import threshold_of
 from qtab.envs.matching import time_limit
 from qtab.envs.registry import make_env, spec_of
 from qtab.envs.stored import spec_of_run
+from qtab.results.action_values import greedy_table
 from qtab.results.run import Run
-from qtab.training.assigned_rows import greedy_table, with_assigned_rows
 from qtab.training.given_env import check_env, check_spaces
 from qtab.training.options import TrainingOptions
 from qtab.training.resolve import log_python_stepping, resolve
@@ -196,8 +197,10 @@ def evaluate(
             "backend": "auto" if env is not None or env_kwargs is not None or is_derived else config.backend,
         },
     )
-    playing = resolve_run(config, settings) if env is None else resolve(env, settings)
-    resolved = with_assigned_rows(playing, run)
+    resolved = resolve_run(config, settings) if env is None else resolve(env, settings)
+    if isinstance(run.discretizer, Sparse):
+        played_on = replace_checked(resolved.config, initial_q=greedy_table(run))
+        resolved = replace(resolved, discretizer=run.discretizer.as_played(), config=played_on)
     if env is not None:
         log_python_stepping(resolved)
     try:

@@ -8,7 +8,6 @@ import numpy as np
 
 from qtab import _core
 from qtab._utils.checks import required
-from qtab.envs.continue_after import continue_after
 from qtab.results.run import Run
 from qtab.results.run_state import RunState, generator_state
 from qtab.training.resolved_run import PythonEnvironment, ResolvedRun
@@ -43,6 +42,13 @@ def restore(trainer: _core.Trainer, resolved: ResolvedRun, earlier: Run) -> None
             "and from there on the results differ from those of an uninterrupted run",
             f"{len(earlier.episode_returns):,}",
         )
+
+
+def continue_after(env: gym.Env, steps: int) -> None:
+    """Tells an environment that changes with time how many steps were taken, by its method ``resume_after``."""
+    resume_after = getattr(env.unwrapped, "resume_after", None)
+    if callable(resume_after):
+        resume_after(steps)
 
 
 def _restore_generator(env: gym.Env, seed: int, state: RunState) -> None:

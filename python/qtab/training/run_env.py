@@ -1,4 +1,4 @@
-"""The environment of a run, made again as it was in training."""
+"""The environment of a run, made again as it was in training, and training in it from the config of the run."""
 
 from collections.abc import Callable, Mapping
 from contextlib import closing
@@ -10,6 +10,8 @@ import gymnasium as gym
 
 from qtab._utils import checks
 from qtab.config import Config
+from qtab.config.config import replace_checked
+from qtab.config.layers import Base, collect, over
 from qtab.config.options import is_set
 from qtab.config.origin import copied, trained_on
 from qtab.envs.origin.again import cannot_be_made, make_again, needs_object
@@ -146,7 +148,45 @@ def _check_plain(config: Config, description: EnvironmentDescription) -> None:
         raise cannot_be_made(description, f"other env_kwargs are given, and {'; '.join(changed)}")
 
 
-def with_origin_of(resolved: ResolvedRun, config: Config, names: Mapping[str, Any]) -> ResolvedRun:
+def collect_for(
+    env: Any, function: Callable[..., Any], config: Base | None, settings: Mapping[str, Any]
+) -> tuple[Any, Base]:
+    """Calls :func:`qtab.config.layers.collect`, but keeps derived settings if an object is the config's environment."""
+    given, base = collect(function, env, config, settings)
+    if isinstance(env, gym.Env) and isinstance(config, Config):
+        description = trained_on(config)
+        if description is not None and not differences(description, describe(env)):
+            return env, replace_checked(config, env_kwargs={})
+    return given, base
+
+
+def resolve_over(
+    env: Any, base: Base, settings: Mapping[str, Any], attempt: Attempt
+) -> tuple[ResolvedRun, Any, dict[str, Any]]:
+    """Resolves the settings of a call over the config that it starts from.
+
+    Args:
+        env: The environment of the call.
+        base: The config or the settings that it starts from.
+        settings: The settings given.
+        attempt: Resolves settings in an environment.
+
+    Returns:
+        The resolved run, its environment as ``attempt`` took it, and the settings for that.
+
+    Raises:
+        ValueError: if the environment of the config cannot be made as it was, or a setting does not fit.
+    """
+    asked = over(base, settings)
+    if not isinstance(base, Config):
+        return attempt(env, asked), env, asked
+    if env != base.env:
+        return _with_origin_of(attempt(env, asked), base, settings), env, asked
+    resolved, made, asked = as_in_training(base, asked, attempt)
+    return _with_origin_of(resolved, base, settings), made, asked
+
+
+def _with_origin_of(resolved: ResolvedRun, config: Config, names: Mapping[str, Any]) -> ResolvedRun:
     """Returns a resolved run that knows which of the settings it takes from a config had been derived there.
 
     Args:

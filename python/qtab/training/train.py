@@ -35,11 +35,10 @@ from qtab.training.earlier_run import (
     with_function,
 )
 from qtab.training.options import CALLBACK_EVERY, TrainingOptions
-from qtab.training.over_config import collect_for, resolve_over
 from qtab.training.resolve import log_default_limit, log_python_stepping
 from qtab.training.resolved_run import ResolvedRun, masks_of
 from qtab.training.restore import restore, state_of
-from qtab.training.run_env import resolve_made
+from qtab.training.run_env import collect_for, resolve_made, resolve_over
 from qtab.training.run_memory import check_run, tables_shape
 
 

@@ -20,8 +20,8 @@ from qtab._utils.versions import versions
 from qtab.config import Config
 from qtab.config.unknown import suggesting
 from qtab.reference import LEARNERS
+from qtab.results.rates import ONLY_FIRST, repeatable
 from qtab.results.run import Run
-from qtab.training.extensions import ONLY_FIRST, repeatable
 from qtab.training.given_env import check_env, check_same
 from qtab.training.repetition import repeats_itself, wrapper_with_statistics
 from qtab.training.resolve import resolve
