@@ -8,7 +8,7 @@ from importlib.metadata import distributions
 import gymnasium
 import qtab
 
-extras = {"matplotlib", "tqdm", "moviepy", "pygame"} & {found.metadata["Name"] for found in distributions()}
+extras = {"matplotlib", "tqdm", "pygame"} & {found.metadata["Name"] for found in distributions()}
 assert not extras, f"the wheel installed {extras}"
 
 if sysconfig.get_config_var("Py_GIL_DISABLED"):

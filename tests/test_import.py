@@ -18,7 +18,7 @@ def in_a_process(code):
 
 
 MODULES = ["book", "callbacks", "designs", "planning", "playground", "plots", "prediction", "sb3", "stats"]
-HEAVY = "matplotlib", "tqdm", "moviepy", "pygame", "PIL", "tomllib", "numba", "IPython", "tensorboardX"
+HEAVY = "matplotlib", "tqdm", "pygame", "PIL", "tomllib", "numba", "IPython", "tensorboardX"
 
 
 def test_importing_loads_no_plotting_video_or_command_line_library():
@@ -41,7 +41,7 @@ import sys
 from qtab.cli import main
 main(["train", "--episodes", "3", "--quiet"])
 parts = "diagnosis", "explanation", "planning", "plots", "prediction", "reference", "sweeps"
-others = "typeguard", "unittest.mock", "importlib.metadata", "matplotlib", "moviepy", "pygame"
+others = "typeguard", "unittest.mock", "importlib.metadata", "matplotlib", "pygame"
 print([name for name in (*(f"qtab.{part}" for part in parts), *others) if name in sys.modules])
 """
     assert in_a_process(code).strip() == "[]"

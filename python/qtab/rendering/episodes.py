@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import gymnasium as gym
 import numpy as np
@@ -63,9 +62,3 @@ def play_episodes(
         if not goes_on:
             break
     return Episodes(np.array(returns, np.float64), np.array(lengths, np.int64), np.array(ends, np.bool_))
-
-
-def frames_per_second(env: gym.Env, given: float | None) -> float:
-    """Returns the given speed, or that of the environment."""
-    rate: Any = env.unwrapped.metadata.get("render_fps") if given is None else given
-    return float(rate or 30)

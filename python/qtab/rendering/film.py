@@ -11,8 +11,8 @@ import gymnasium as gym
 
 from qtab._utils.progress import ProgressBar
 from qtab.rendering.agent import Agent, environment_of
-from qtab.rendering.episodes import Episodes, frames_per_second, play_episodes
-from qtab.rendering.frames import Frames
+from qtab.rendering.episodes import Episodes, play_episodes
+from qtab.rendering.frames import Frames, frames_per_second
 from qtab.rendering.window import is_headless
 
 

@@ -42,7 +42,7 @@ def check_video_path(path: Any) -> Path:
         suggestion = did_you_mean(target.suffix.lower(), FORMATS) if target.suffix else ""
         raise ValueError(f"path must end in one of {', '.join(FORMATS)}, got {str(path)!r}{suggestion}")
     if target.suffix.lower() == ".mp4":
-        _ffmpeg()
+        ffmpeg()
     elif target.suffix.lower() == ".gif":
         _pillow()
     check_writable("path", target)
@@ -77,9 +77,7 @@ def write_mp4(frames: Frames, path: Path) -> None:
     padding = ((0, height % 2), (0, width % 2), (0, 0))  # the format needs even sizes
     size = width + width % 2, height + height % 2
     options: dict[str, Any] = {"quality": QUALITY, "macro_block_size": 2, "ffmpeg_log_level": "error"}
-    writer = _ffmpeg().write_frames(
-        str(path), size, fps=frames.fps, output_params=["-movflags", "faststart"], **options
-    )
+    writer = ffmpeg().write_frames(str(path), size, fps=frames.fps, output_params=["-movflags", "faststart"], **options)
     try:
         writer.send(None)
         for picture in frames:
@@ -93,7 +91,7 @@ def write_mp4(frames: Frames, path: Path) -> None:
 def mp4_uri(frames: Frames) -> str | None:
     """Returns a data URI of the video as MP4; None where no ffmpeg is installed."""
     try:
-        _ffmpeg()
+        ffmpeg()
     except ModuleNotFoundError:
         return None
     with tempfile.TemporaryDirectory() as folder:
@@ -155,7 +153,12 @@ def _packed(pictures: NDArray[np.uint8]) -> NDArray[np.uint32]:
     return packed
 
 
-def _ffmpeg() -> Any:
+def ffmpeg() -> Any:
+    """Returns the library that writes MP4.
+
+    Raises:
+        ModuleNotFoundError: without it, or without an ffmpeg for it; the message names the ``pip install``.
+    """
     try:
         import imageio_ffmpeg  # type: ignore[import-untyped]
     except ModuleNotFoundError as error:

@@ -4,6 +4,7 @@ import zlib
 from collections.abc import Iterator
 from typing import Any
 
+import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
@@ -56,3 +57,9 @@ class Frames:
             compressed = self._compressed[-1]  # an agent that does not move takes no memory
         self._compressed.append(compressed)
         self.labels.append(label)
+
+
+def frames_per_second(env: gym.Env, given: float | None) -> float:
+    """Returns the given speed, or that of the environment."""
+    rate: Any = env.unwrapped.metadata.get("render_fps") if given is None else given
+    return float(rate or 30)

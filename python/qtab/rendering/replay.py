@@ -1,6 +1,6 @@
 """Replay of recorded episodes in Gymnasium's environment, from the same initial states and with the same actions."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping
 from contextlib import closing
 from typing import Any
 
@@ -13,29 +13,6 @@ from qtab.config import Config
 from qtab.results.run import Recording, Run
 from qtab.training.restore import continue_after
 from qtab.training.run_env import make_run_env
-
-
-def generator_states(config: Config, recorded: Sequence[Any]) -> list[dict[str, Any]]:
-    """Returns the state of the environment's bit generator before each recorded episode.
-
-    Args:
-        config: The resolved config of the run.
-        recorded: For each episode the number of 64-bit words drawn since seeding and the buffered uint32 (None if there
-            is none); or the state itself; or any other value, for an episode that starts right after seeding.
-    """
-    return [_generator_state(config.seed, start) for start in recorded]
-
-
-def _generator_state(seed: int | None, start: Any) -> dict[str, Any]:
-    if isinstance(start, dict):
-        return start
-    generator = np.random.PCG64(seed)
-    if isinstance(start, tuple):
-        words_drawn, buffered_uint32 = start
-        generator.advance(words_drawn)
-        state: dict[str, Any] = dict(generator.state)
-        return {**state, "has_uint32": int(buffered_uint32 is not None), "uinteger": buffered_uint32 or 0}
-    return dict(generator.state)
 
 
 def make_render_env(
@@ -87,8 +64,8 @@ def check_render_mode(name: str, env: gym.Env, render_mode: str) -> None:
         raise ValueError(f"{name} cannot be rendered as {render_mode!r}; its render modes are: {known}")
 
 
-def replay_episode(env: gym.Env, recording: Recording) -> float:
-    """Replays a recorded episode in ``env`` and returns its return.
+def replay_episode(env: gym.Env, recording: Recording, see: Callable[[], object] = lambda: None) -> float:
+    """Replays a recorded episode in ``env`` and returns its return. It calls ``see`` after the reset and each step.
 
     The episode is the same if the environment draws random numbers from its ``np_random`` only, as all environments of
     Gymnasium do.
@@ -97,16 +74,23 @@ def replay_episode(env: gym.Env, recording: Recording) -> float:
     bit_generator.state = dict(recording.start)  # type: ignore[assignment]
     env.unwrapped.np_random = np.random.Generator(bit_generator)
     env.reset()
+    see()
     episode_return = 0.0
     for action in recording.actions:
         _, reward, terminated, truncated, _ = env.step(action)
         episode_return += float(reward)
+        see()
         if terminated or truncated:
             break
     return episode_return
 
 
-def replay_all(env: gym.Env, run: Run, progress: bool | None = None) -> int:
+def replay_all(
+    env: gym.Env,
+    run: Run,
+    progress: bool | None = None,
+    replay: Callable[[gym.Env, Recording], float] = replay_episode,
+) -> int:
     """Replays all recorded episodes of a run in ``env``, and returns the number with another return than in training.
 
     The environment is seeded first, as for the run. One with a method ``resume_after`` is told before each episode how
@@ -120,6 +104,6 @@ def replay_all(env: gym.Env, run: Run, progress: bool | None = None) -> int:
     with ProgressBar(len(run.recordings), "episode", progress, "replay") as bar:
         for index, recording in enumerate(run.recordings):
             continue_after(env, int(run.episode_lengths[: recording.episode].sum()))
-            different += replay_episode(env, recording) != run.episode_returns[recording.episode]
+            different += replay(env, recording) != run.episode_returns[recording.episode]
             bar.move_to(index + 1)
     return different

@@ -1,17 +1,18 @@
-"""Videos of recorded episodes, written by Gymnasium's RecordVideo."""
+"""Videos of recorded episodes."""
 
 import os
 import re
-import warnings
 from pathlib import Path
-from typing import Any
 
-from qtab._utils.extras import missing
-from qtab._utils.files import check_writable
+import gymnasium as gym
+
+from qtab._utils.files import check_writable, replacing
 from qtab.config import Config
-from qtab.rendering.replay import make_render_env, replay_all
+from qtab.rendering.formats import ffmpeg, write_mp4
+from qtab.rendering.frames import Frames, frames_per_second
+from qtab.rendering.replay import make_render_env, replay_all, replay_episode
 from qtab.rendering.window import is_headless
-from qtab.results.run import Run
+from qtab.results.run import Recording, Run
 
 
 class VideoRecorder:
@@ -22,43 +23,40 @@ class VideoRecorder:
         folder: Where the videos are written; created if it does not exist.
 
     Raises:
-        ModuleNotFoundError: without moviepy; the message names the ``pip install``.
+        ModuleNotFoundError: without imageio-ffmpeg; the message names the ``pip install``.
         OSError: if the folder cannot be written to.
         ValueError: if the environment cannot be rendered as images.
         gymnasium.error.Error: from Gymnasium, if rendering fails.
     """
 
     def __init__(self, config: Config, folder: Path) -> None:
-        try:
-            import moviepy  # noqa: F401
-        except ModuleNotFoundError as error:
-            raise missing(error, "video") from None
-        from gymnasium.wrappers import RecordVideo
-
+        ffmpeg()
         if is_headless():
             os.environ["SDL_VIDEODRIVER"] = "dummy"  # keeps SDL from searching for a display and printing errors
-        env = make_render_env(config, "rgb_array")
+        self._folder, self._name = folder, re.split("[/:]", config.env)[-1]
+        self._env = make_render_env(config, "rgb_array")
         try:
-            env.reset()
-            env.render()
+            self._env.reset()
+            self._env.render()
             _create_folder(folder)
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore")  # RecordVideo warns if the folder exists
-                self._env: Any = RecordVideo(
-                    env, str(folder), episode_trigger=lambda _: True, name_prefix=re.split("[/:]", config.env)[-1]
-                )
         except BaseException:
-            env.close()
+            self.close()
             raise
 
     def record(self, run: Run) -> int:
         """Writes a video of each recorded episode, and returns the number with another return than in training."""
-        if run.recordings:
-            self._env.episode_id = run.recordings[0].episode
-        return replay_all(self._env, run)
+        return replay_all(self._env, run, replay=self._film)
+
+    def _film(self, env: gym.Env, recording: Recording) -> float:
+        number = recording.episode + 1
+        frames = Frames(frames_per_second(env, None))
+        returned = replay_episode(env, recording, lambda: frames.append(env.render(), f"episode {number}"))
+        with replacing(self._folder / f"{self._name}-episode-{number}.mp4") as temporary:
+            write_mp4(frames, temporary)
+        return returned
 
     def close(self) -> None:
-        """Finishes the last video and closes the environment."""
+        """Closes the environment."""
         self._env.close()
 
 

@@ -19,8 +19,8 @@ from qtab.config import Config
 from qtab.config.layers import over
 from qtab.config.settings import Settings
 from qtab.config.signature import with_settings
-from qtab.rendering.replay import generator_states
-from qtab.results.run import Recording, Run
+from qtab.results.recording import Recording, generator_states
+from qtab.results.run import Run
 from qtab.results.snapshots import SnapshotCollector
 from qtab.training.callback_list import Callbacks
 from qtab.training.callbacks import EpisodeReader
