@@ -15,6 +15,29 @@ from support.repository import PACKAGE, ROOT, tracked_files
 MAX_TOP_LEVEL_MODULES = 8
 MAX_LINES = 300
 
+ORDER = (
+    {"_utils"},
+    {"_algorithm_spec", "_discretizer_spec", "_spec", "config", "discretizers", "envs"},
+    {"reference"},
+    {"results"},
+    {"training"},
+    {"planning"},
+    {"stats"},
+    {"plots", "sweeps"},
+    {"diagnosis"},
+    {"explanation"},
+    {"rendering"},
+    {"callbacks"},
+    {"prediction"},
+    {"sb3"},
+    {"book"},
+    {"playground"},
+    {"bench"},
+    {"cli"},
+    {"", "__main__"},
+)
+"""The packages: each knows those before it. Those on one line still know each other."""
+
 Graph = dict[str, set[str]]
 
 
@@ -95,6 +118,36 @@ def test_modules_do_not_import_each_other_in_a_circle(with_functions: bool) -> N
     graph = import_graph(with_functions)
     assert len(graph) > 50, "the package was not found"
     assert cycle(graph) == []
+
+
+def named_modules(path: Path, known: dict[str, Path]) -> Iterator[str]:
+    """The modules of the package that a file names: in imports, those for type checkers included, and as texts."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        names = imported_names(node) if isinstance(node, ast.Import | ast.ImportFrom) else []
+        if isinstance(node, ast.Constant) and isinstance(node.value, str):
+            names = [node.value]
+        for name in names:
+            found = name if name in known else name.rpartition(".")[0]
+            if found in known and found != "qtab":  # `from qtab import _core`, the extension; or a text "qtab"
+                yield found
+
+
+def package_of(module: str) -> str:
+    """The package of a module below ``qtab``; an empty text for ``qtab`` itself."""
+    return module.split(".")[1] if "." in module else ""
+
+
+def test_packages_know_only_those_below_them() -> None:
+    known = modules()
+    place = {package: index for index, group in enumerate(ORDER) for package in group}
+    assert place.keys() == {package_of(name) for name in known}
+    upwards = [
+        f"{name} names {other}"
+        for name, path in known.items()
+        for other in named_modules(path, known)
+        if place[package_of(other)] > place[package_of(name)]
+    ]
+    assert upwards == []
 
 
 def test_a_circle_of_imports_would_be_found() -> None:

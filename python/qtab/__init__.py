@@ -12,6 +12,7 @@ import importlib as _importlib
 from typing import TYPE_CHECKING
 
 from qtab.envs import register as _register
+from qtab.results import page as _page
 
 _MODULES = {
     "Animation": "qtab.rendering.animate",
@@ -146,3 +147,4 @@ def __dir__() -> list[str]:
 
 
 _register()
+_page.WRITER = "qtab.rendering.run_page"

@@ -11,7 +11,7 @@ import importlib as _importlib
 from typing import TYPE_CHECKING
 
 _MODULES = {
-    "BaseCallback": "qtab.callbacks.base",
+    "BaseCallback": "qtab.training.base_callback",
     "CSVLogger": "qtab.callbacks.csv_logger",
     "Checkpoint": "qtab.callbacks.checkpoint",
     "EvaluateEvery": "qtab.callbacks.evaluate_every",
@@ -23,7 +23,6 @@ _MODULES = {
 
 if TYPE_CHECKING:
     # The table again, in the only form that editors and type checkers read. A test compares the two.
-    from qtab.callbacks.base import BaseCallback as BaseCallback
     from qtab.callbacks.checkpoint import Checkpoint as Checkpoint
     from qtab.callbacks.csv_logger import CSVLogger as CSVLogger
     from qtab.callbacks.evaluate_every import EvaluateEvery as EvaluateEvery
@@ -31,6 +30,7 @@ if TYPE_CHECKING:
     from qtab.callbacks.live_plot import LivePlot as LivePlot
     from qtab.callbacks.stop_at_return import StopAtReturn as StopAtReturn
     from qtab.callbacks.tensorboard_logger import TensorBoardLogger as TensorBoardLogger
+    from qtab.training.base_callback import BaseCallback as BaseCallback
 else:
     # Hidden from type checkers, which accept any name from a module that has a __getattr__.
     __all__ = list(_MODULES)

@@ -11,9 +11,9 @@ import gymnasium as gym
 
 from qtab._utils import checks
 from qtab._utils.files import check_writable
-from qtab.callbacks.base import BaseCallback
 from qtab.config import Config
 from qtab.config.config import replace_checked
+from qtab.training.base_callback import BaseCallback
 from qtab.training.callbacks import Progress
 
 if TYPE_CHECKING:

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils import checks
-from qtab.callbacks.base import BaseCallback
 from qtab.config import Config
+from qtab.training.base_callback import BaseCallback
 from qtab.training.callbacks import Progress
 from qtab.training.evaluate import Evaluation, evaluate
 from qtab.training.run_env import make_run_env

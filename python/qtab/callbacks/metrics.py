@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils.suggestions import did_you_mean
-from qtab.callbacks.base import BaseCallback
 from qtab.callbacks.evaluate_every import EvaluateEvery
 from qtab.config import Config
+from qtab.training.base_callback import BaseCallback
 from qtab.training.callbacks import Progress
 
 if TYPE_CHECKING:

@@ -3,8 +3,8 @@
 import gymnasium as gym
 
 from qtab._utils import checks
-from qtab.callbacks.base import BaseCallback
 from qtab.config import Config
+from qtab.training.base_callback import BaseCallback
 from qtab.training.callbacks import Progress
 
 

@@ -14,7 +14,7 @@ from qtab._utils.shown import shown
 from qtab.config.config import replace_checked
 from qtab.envs.registry import ENTRIES, gymnasium_id
 from qtab.envs.stored import spec_of_run
-from qtab.reference.prediction import estimate
+from qtab.prediction.reference import estimate
 
 if TYPE_CHECKING:
     from qtab.prediction.estimates import ValueEstimates

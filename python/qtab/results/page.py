@@ -2,15 +2,17 @@
 
 import importlib
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     import gymnasium as gym
     from gymnasium.envs.registration import EnvSpec
 
-    from qtab.planning.optimum import Optimum
-    from qtab.plots.arrangements.grid_map import Layout
+    from qtab.results.known_optimum import KnownOptimum
+
+WRITER = ""
+"""The module that writes the page. ``qtab`` sets it: pictures need :class:`qtab.Run`, so they lie above this."""
 
 
 class WithPage:
@@ -20,9 +22,9 @@ class WithPage:
         self,
         path: "str | os.PathLike[str]",
         *,
-        optimum: "Optimum | float | None" = None,
+        optimum: "KnownOptimum | float | None" = None,
         at: Mapping[str, float] | None = None,
-        layout: "Layout | None" = None,
+        layout: Sequence[str] | tuple[int, int] | None = None,
         env: "str | EnvSpec | gym.Env | None" = None,
         progress: bool | None = None,
     ) -> None:
@@ -49,6 +51,5 @@ class WithPage:
             TypeError: for an argument of the wrong type.
             ValueError: for one that does not fit the environment.
         """
-        # By name, because the pictures need this class.
-        write_page: Any = importlib.import_module("qtab.rendering.run_page").write_page
+        write_page: Any = importlib.import_module(WRITER).write_page
         write_page(self, path, optimum=optimum, at=at, layout=layout, env=env, progress=progress)

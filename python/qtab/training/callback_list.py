@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from contextlib import ExitStack
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from qtab.callbacks.base import BaseCallback
+from qtab.training.base_callback import BaseCallback
 from qtab.training.callbacks import Callback, Progress
 from qtab.training.resolved_run import PythonEnvironment, ResolvedRun
 

@@ -13,8 +13,8 @@ from qtab import _core
 from qtab._spec import Results
 from qtab._utils import checks
 from qtab._utils.progress import ProgressBar
-from qtab.callbacks.base import BaseCallback
 from qtab.results.runs import Runs
+from qtab.training.base_callback import BaseCallback
 from qtab.training.callback_list import as_tuple
 from qtab.training.resolved_run import ResolvedRun
 

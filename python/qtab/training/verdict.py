@@ -2,7 +2,7 @@
 
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -16,13 +16,11 @@ from qtab.envs.goals import (
     why_no_threshold,
 )
 from qtab.results.initial_tables import are_finite
+from qtab.results.known_optimum import KnownOptimum
 from qtab.results.run import Run
 from qtab.results.summary import SOLVED_EPISODES
 from qtab.training.evaluate import evaluate
 from qtab.training.run_env import can_be_made
-
-if TYPE_CHECKING:
-    from qtab.planning.optimum import Optimum
 
 EVALUATION_EPISODES = 100
 """Episodes of the greedy policy, where its return is not computed exactly."""
@@ -95,7 +93,7 @@ class Verdict:
         return f"{text}, {self.goal}" if str(self.goal) else text
 
 
-def judge(run: Run, optimum: "Optimum | None") -> Verdict:
+def judge(run: Run, optimum: KnownOptimum | None) -> Verdict:
     """Decides whether a run solved its environment.
 
     Args:
@@ -118,7 +116,7 @@ def judge(run: Run, optimum: "Optimum | None") -> Verdict:
     return Verdict(any(reached) if reached else None, goal, len(last), final, greedy, exact, why)
 
 
-def _greedy_return(run: Run, optimum: "Optimum | None") -> tuple[float | None, bool]:
+def _greedy_return(run: Run, optimum: KnownOptimum | None) -> tuple[float | None, bool]:
     """Returns the return of a run's greedy policy, and whether it is exact; None where Rust cannot play it.
 
     With preferences the trained policy is their softmax. The exact return of the greedy policy would not decide for it,
@@ -132,7 +130,7 @@ def _greedy_return(run: Run, optimum: "Optimum | None") -> tuple[float | None, b
     return evaluate(run, EVALUATION_EPISODES, seed=0, progress=False).mean_return, False
 
 
-def _goal(config: Config, optimum: "Optimum | None") -> Goal:
+def _goal(config: Config, optimum: KnownOptimum | None) -> Goal:
     goal = Goal(threshold_of(config), registered=registered_threshold(config.env))
     if optimum is None:
         return (

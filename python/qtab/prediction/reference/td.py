@@ -1,6 +1,6 @@
 """TD(0) in plain NumPy (Sutton & Barto, 2nd ed., equation 6.2)."""
 
-from qtab.reference.prediction.common import Prediction
+from qtab.prediction.reference.common import Prediction
 
 
 def td(prediction: Prediction) -> None:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from qtab.config import Config
 from qtab.config.config import replace_checked
 from qtab.prediction.observation_policies import TablePolicy
-from qtab.reference.prediction.policies import policy_of, probability
+from qtab.prediction.reference.policies import policy_of, probability
 from qtab.reference.schedules import LearningRate
 from qtab.reference.task import Rows, Task
 

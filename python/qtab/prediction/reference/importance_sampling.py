@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from qtab.reference.prediction.common import Prediction
-from qtab.reference.prediction.monte_carlo import returns_of
+from qtab.prediction.reference.common import Prediction
+from qtab.prediction.reference.monte_carlo import returns_of
 
 
 def importance_sampling(prediction: Prediction) -> None:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from qtab._utils.checks import required
-from qtab.reference.prediction.common import Prediction
+from qtab.prediction.reference.common import Prediction
 
 
 def true_online_td_lambda(prediction: Prediction) -> None:

@@ -1,6 +1,6 @@
 """Monte Carlo prediction in plain NumPy (Sutton & Barto, 2nd ed., equation 6.1 and the box in section 5.1)."""
 
-from qtab.reference.prediction.common import Prediction, Visit
+from qtab.prediction.reference.common import Prediction, Visit
 
 
 def monte_carlo(prediction: Prediction) -> None:

@@ -8,15 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab.config import Config
-from qtab.reference.prediction.batch_td import batch_td
-from qtab.reference.prediction.common import Prediction
-from qtab.reference.prediction.importance_sampling import importance_sampling
-from qtab.reference.prediction.monte_carlo import monte_carlo
-from qtab.reference.prediction.n_step_td import n_step_td
-from qtab.reference.prediction.offline_lambda_return import offline_lambda_return
-from qtab.reference.prediction.td import td
-from qtab.reference.prediction.td_lambda import td_lambda
-from qtab.reference.prediction.true_online_td_lambda import true_online_td_lambda
+from qtab.prediction.reference.batch_td import batch_td
+from qtab.prediction.reference.common import Prediction
+from qtab.prediction.reference.importance_sampling import importance_sampling
+from qtab.prediction.reference.monte_carlo import monte_carlo
+from qtab.prediction.reference.n_step_td import n_step_td
+from qtab.prediction.reference.offline_lambda_return import offline_lambda_return
+from qtab.prediction.reference.td import td
+from qtab.prediction.reference.td_lambda import td_lambda
+from qtab.prediction.reference.true_online_td_lambda import true_online_td_lambda
 
 if TYPE_CHECKING:
     from qtab.prediction.estimates import ValueEstimates

@@ -1,7 +1,7 @@
 """The off-line λ-return algorithm in plain NumPy (Sutton & Barto, 2nd ed., equations 12.2 to 12.4)."""
 
 from qtab._utils.checks import required
-from qtab.reference.prediction.common import Prediction
+from qtab.prediction.reference.common import Prediction
 
 
 def offline_lambda_return(prediction: Prediction) -> None:

@@ -1,7 +1,7 @@
 """n-step TD prediction in plain NumPy (Sutton & Barto, 2nd ed., the box in section 7.1)."""
 
 from qtab._utils.checks import required
-from qtab.reference.prediction.common import Prediction, Visit
+from qtab.prediction.reference.common import Prediction, Visit
 
 
 def n_step_td(prediction: Prediction) -> None:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from qtab.reference.prediction.common import Prediction
+from qtab.prediction.reference.common import Prediction
 
 SETTLED = 1e-12
 """Values have settled when no error is larger than this fraction of the largest sum of its terms' magnitudes so far."""
