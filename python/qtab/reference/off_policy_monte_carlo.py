@@ -32,12 +32,10 @@ def off_policy_monte_carlo(env: gym.Env, config: Config, stop_after: int | None 
             G = task.discount * G + reward
             task.observer.returned(t, G)
             C[row, action] += W
-            # α W / C, and no less than its minimum; α is 1 in the book.
+            # Q(S, A) <- Q(S, A) + α W / C [G - Q(S, A)], where α is 1 in the book; the step has a minimum.
             step_size = max(config.learning_rate * W / float(C[row, action]), least)
             task.observer.target(t, (reward,), following)
-            task.observer.before_update(Q, [row], action, G)
-            Q[row, action] += step_size * (G - Q[row, action])
-            task.observer.after_update(Q, [step_size])
+            task.move(Q, [row], action, G, [step_size])
             if action != int(np.argmax(task.values(Q, [row]))):
                 break
             W /= probability

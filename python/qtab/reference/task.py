@@ -190,13 +190,18 @@ class Task:
     def update(self, Q: Table, state: Rows, action: int, target: float, rate: LearningRate | None = None) -> None:
         """Q(S, A) <- Q(S, A) + α [target - Q(S, A)]; the active rows of S share the change."""
         rate = rate or self.learning_rate
-        self.observer.before_update(Q, state, action, target)
-        error = target - value(Q, state, action)
         step_sizes = []
         for row in state:
             rate.visit([row], action)
             step_sizes.append(rate.step(row, action))
-            Q[row, action] += step_sizes[-1] * error
+        self.move(Q, state, action, target, step_sizes)
+
+    def move(self, Q: Table, state: Rows, action: int, target: float, step_sizes: list[float]) -> None:
+        """Q(S, A) <- Q(S, A) + α [target - Q(S, A)], with the step size of each active row of S."""
+        self.observer.before_update(Q, state, action, target)
+        error = target - value(Q, state, action)
+        for row, step_size in zip(state, step_sizes, strict=True):
+            Q[row, action] += step_size * error
         self.observer.after_update(Q, step_sizes)
 
     def end(self, Q: Table, state: Rows, action: int, reward: float, rate: LearningRate | None = None) -> None:
