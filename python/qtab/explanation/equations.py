@@ -146,3 +146,11 @@ def true_online_equation(
         f"{name} <- {number(before)} + {traced} · [{number(target)} - {old}]"
         f" - {own} · [{number(before)} - {old}] = {number(after)}",
     )
+
+
+def total(weights: tuple[float, ...]) -> float:
+    """Returns a value: the sum of its weights, from left to right."""
+    value, *others = weights
+    for weight in others:
+        value += weight
+    return value

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from qtab.config import Config
-from qtab.explanation.equations import number, power, term
+from qtab.explanation.equations import gain, number, power, term, total
 
 Rows = tuple[tuple[float, ...], ...]
 
@@ -79,49 +79,39 @@ class PolicyUpdate:
         return f"π(a | S): {before} -> {after}"
 
 
-def equations_of(
-    config: Config,
-    parts: tuple[float | None, float | None, float, float, float],
-    step: int,
-    size: float,
-    factor: float,
-    preference: tuple[float, float],
-) -> list[tuple[str, str]]:
-    """Returns the equations of an update and their numbers.
-
-    Args:
-        config: The config of the run.
-        parts: The reward, the bootstrap, the target, the reference, and the target minus the reference.
-        step: The number of the step.
-        size: α: by how much the preference of A changes for an error and a direction of 1.
-        factor: The direction: the gradient for the preference of A, or the mean of its traces.
-        preference: The preference of A before and after the update.
-    """
-    algorithm = config.algorithm
-    reward, following, target, reference, error = parts
-    symbols = ERROR[algorithm]
-    if reward is None or algorithm == "gradient_bandit":
-        shown = number(target)
+def equations_of(config: Config, update: PolicyUpdate) -> list[tuple[str, str]]:
+    """Returns the equations of an update and their numbers, of which the update holds none yet."""
+    algorithm, action = config.algorithm, update.action
+    if update.traces:
+        # A preference changes once, however often its row is active.
+        size = update.step_size * len(update.rows)
+        factor = sum(row[action] for row in update.traces) / len(update.traces)
     else:
-        shown = number(reward)
-        if following is None:
+        size = gain(update.rows, (update.step_size,) * len(update.rows), ())
+        factor = update.gradient[action]
+    before, after = (total(tuple(row[action] for row in one)) for one in (update.before, update.after))
+    symbols = ERROR[algorithm]
+    if update.reward is None or algorithm == "gradient_bandit":
+        shown = number(update.target)
+    else:
+        shown = number(update.reward)
+        if update.bootstrap is None:
             symbols = "δ = R - v(S)"
         else:
-            shown += f" + {power(number(config.discount), 1, ' · ')}{term(following)}"
-    shown += f" - {term(reference)} = {number(error)}"
+            shown += f" + {power(number(config.discount), 1, ' · ')}{term(update.bootstrap)}"
+    shown += f" - {term(update.reference)} = {number(update.error)}"
     name = "" if algorithm == "gradient_bandit" else "δ = "
     lines = [] if algorithm == "reinforce" else [(symbols, f"{name}{shown}")]
     symbol = SYMBOL.get(algorithm, "δ")
     with_traces = algorithm == "actor_critic_lambda"
-    discounts = "" if algorithm == "gradient_bandit" or with_traces else power("γ", step, " ")
+    discounts = "" if algorithm == "gradient_bandit" or with_traces else power("γ", update.step, " ")
     direction = "z" if with_traces else "∇ ln π(A | S)"
-    before, after = preference
     step_of = f"{number(size)} · "
-    discount = power(number(config.discount), step, " · ") if discounts else ""
+    discount = power(number(config.discount), update.step, " · ") if discounts else ""
     lines.append(
         (
             f"H(S, A) <- H(S, A) + α {discounts}{symbol} {direction}",
-            f"H(S, A) <- {number(before)} + {step_of}{discount}{term(error)} · {term(factor)} = {number(after)}",
+            f"H(S, A) <- {number(before)} + {step_of}{discount}{term(update.error)} · {term(factor)} = {number(after)}",
         )
     )
     return lines

@@ -1,49 +1,24 @@
 """Watches the updates of policy gradient methods: what an action was worth, and how the preferences changed."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from qtab.config import Config
 from qtab.config.options import WITH_STATE_VALUES
-from qtab.explanation.equations import gain
 from qtab.explanation.largest_traces import changed, largest_traces
 from qtab.explanation.policy_update import PolicyUpdate, equations_of
 from qtab.explanation.records import Trace
-from qtab.explanation.updates import Target, total
+from qtab.explanation.updates import Target
 from qtab.reference.action_masks import ActionMasks
 from qtab.reference.policies import Policy
 from qtab.reference.task import value, values
 
 Table = NDArray[np.float64]
 Cell = tuple[int, ...] | None
-
-
-@dataclass(frozen=True)
-class _Advantage:
-    step: int
-    reward: float | None
-    """None where the target is a return."""
-    following: float | None
-    target: float
-    reference: float
-    power: float
-    value: float | None
-
-
-@dataclass(frozen=True)
-class _Begun:
-    rows: tuple[int, ...]
-    action: int
-    step_size: float
-    gradient: tuple[float, ...]
-    traces: tuple[tuple[float, ...], ...]
-    largest: tuple[Trace, ...]
-    n_traces: int
-    before: tuple[tuple[float, ...], ...]
-    probabilities: tuple[float, ...]
 
 
 class PolicyWatcher:
@@ -53,8 +28,11 @@ class PolicyWatcher:
         self.config, self.cell = config, cell
         self.policy: Policy
         self.masks: ActionMasks
-        self._advantage: _Advantage
-        self._begun: _Begun
+        self._worth: dict[str, Any] = {}
+        """The fields of the next update that say what its action was worth."""
+        self._begun: PolicyUpdate
+        self._largest: tuple[tuple[Trace, ...], int]
+        """The largest traces, and the number of all."""
 
     def advantage(
         self,
@@ -69,7 +47,16 @@ class PolicyWatcher:
         known = value(tables[1], list(state), 0) if self.config.algorithm in WITH_STATE_VALUES else None
         assert reported.step is not None  # noqa: S101 - no policy gradient method plans
         reward = reported.rewards[0] if reported.rewards else None
-        self._advantage = _Advantage(reported.step, reward, reported.following, target, reference, power, known)
+        self._worth = {
+            "step": reported.step,
+            "reward": reward,
+            "bootstrap": reported.following,
+            "target": target,
+            "reference": reference,
+            "error": target - reference,
+            "power": power,
+            "value_before": known,
+        }
 
     def begin(
         self,
@@ -82,67 +69,37 @@ class PolicyWatcher:
     ) -> None:
         """Keeps the preferences before the update."""
         rows = tuple(state)
-        largest, n_traces = ((), 0) if z is None else largest_traces(z, H, self.cell)
-        self._begun = _Begun(
-            rows,
-            action,
-            step_size,
-            tuple(gradient),
-            () if z is None else _rows(z, rows),
-            largest,
-            n_traces,
-            _rows(H, rows),
-            self._probabilities(H, rows),
+        self._largest = ((), 0) if z is None else largest_traces(z, H, self.cell)
+        self._begun = PolicyUpdate(
+            **self._worth,
+            rows=rows,
+            cell=self.cell(rows[0]),
+            action=action,
+            step_size=step_size,
+            gradient=tuple(gradient),
+            traces=() if z is None else _rows(z, rows),
+            before=_rows(H, rows),
+            probabilities_before=self._probabilities(H, rows),
+            after=(),
+            probabilities_after=(),
+            value_after=None,
+            equations=(),
+            numbers=(),
         )
 
     def end(self, tables: Sequence[Table]) -> tuple[PolicyUpdate, tuple[Trace, ...], int]:
         """Returns the update, the largest traces with what they changed, and the number of traces."""
-        worth, begun, H = self._advantage, self._begun, tables[0]  # noqa: N806 - the book's name
-        error = worth.target - worth.reference
-        after = _rows(H, begun.rows)
-        if begun.traces:
-            # A preference changes once, however often its row is active.
-            alpha = begun.step_size * len(begun.rows)
-            direction = sum(row[begun.action] for row in begun.traces) / len(begun.traces)
-        else:
-            alpha = gain(begun.rows, (begun.step_size,) * len(begun.rows), ())
-            direction = begun.gradient[begun.action]
-        preferences = [total(tuple(row[begun.action] for row in one)) for one in (begun.before, after)]
-        lines = equations_of(
-            self.config,
-            (worth.reward, worth.following, worth.target, worth.reference, error),
-            worth.step,
-            alpha,
-            direction,
-            (preferences[0], preferences[1]),
+        begun, preferences = self._begun, tables[0]
+        update = replace(
+            begun,
+            after=_rows(preferences, begun.rows),
+            probabilities_after=self._probabilities(preferences, begun.rows),
+            value_after=None if begun.value_before is None else value(tables[1], list(begun.rows), 0),
         )
-        known = None
-        if worth.value is not None:
-            known = value(tables[1], list(begun.rows), 0)
-        update = PolicyUpdate(
-            step=worth.step,
-            rows=begun.rows,
-            cell=self.cell(begun.rows[0]),
-            action=begun.action,
-            reward=worth.reward,
-            bootstrap=worth.following,
-            target=worth.target,
-            reference=worth.reference,
-            error=error,
-            power=worth.power,
-            step_size=begun.step_size,
-            gradient=begun.gradient,
-            traces=begun.traces,
-            before=begun.before,
-            after=after,
-            probabilities_before=begun.probabilities,
-            probabilities_after=self._probabilities(H, begun.rows),
-            value_before=worth.value,
-            value_after=known,
-            equations=tuple(symbols for symbols, _ in lines),
-            numbers=tuple(numbers for _, numbers in lines),
-        )
-        return update, changed(begun.largest, H), begun.n_traces
+        lines = equations_of(self.config, update)
+        symbols, numbers = (tuple(texts) for texts in zip(*lines, strict=True))
+        largest, n_traces = self._largest
+        return replace(update, equations=symbols, numbers=numbers), changed(largest, preferences), n_traces
 
     def _probabilities(self, H: Table, rows: Sequence[int]) -> tuple[float, ...]:  # noqa: N803
         state = list(rows)

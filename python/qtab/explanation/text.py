@@ -3,10 +3,9 @@
 from collections.abc import Sequence
 
 from qtab._utils.html import report
-from qtab.explanation.equations import number
+from qtab.explanation.equations import number, total
 from qtab.explanation.policy_update import PolicyUpdate
 from qtab.explanation.records import ExplainedStep, Update
-from qtab.explanation.updates import total
 
 SHOWN_ROWS = 4
 """With more active rows, only the first ones are listed."""

@@ -8,6 +8,7 @@ from qtab.explanation.equations import (
     bootstrap_symbol,
     differential_equations,
     target_equation,
+    total,
     true_online_equation,
     update_equation,
 )
@@ -88,11 +89,3 @@ def finish_update(
         equations=tuple(symbols for symbols, _ in lines),
         numbers=tuple(numbers for _, numbers in lines),
     )
-
-
-def total(weights: tuple[float, ...]) -> float:
-    """Returns a value: the sum of its weights, from left to right."""
-    value, *others = weights
-    for weight in others:
-        value += weight
-    return value
