@@ -10,7 +10,6 @@ import qtab
 from qtab.book.drawing import draw_lines
 from qtab.book.drawing.colors import line_colors
 from qtab.book.drawing.end_labels import label_ends
-from qtab.book.drawing.top_labels import label_tops
 from qtab.book.line import Line
 from qtab.plots.colors import sequential
 
@@ -32,24 +31,6 @@ def test_names_at_the_ends_of_lines_near_the_axis_stay_above_its_ticks() -> None
     assert min(box.y0 for box in boxes) >= ax.get_window_extent().y0 - 1
     assert not boxes[0].overlaps(boxes[1])
     assert not boxes[1].overlaps(boxes[2])
-    plt.close(figure)
-
-
-def test_names_near_the_tops_cover_no_line() -> None:
-    figure, ax = plt.subplots()
-    lines = [line("the upper line", [1.0, 1.2, 1.0]), line("the lower line", [0.5, 1.18, 0.9])]
-    ax.set_ylim(0, 1.6)
-    for one in lines:
-        ax.plot(one.x, one.mean)
-    label_tops(ax, lines)
-    figure.canvas.draw()
-    boxes = [text.get_window_extent() for text in ax.texts]
-    assert len(boxes) == 2
-    assert not boxes[0].overlaps(boxes[1])
-    along = np.linspace(0, 2, 500)
-    for one in lines:
-        points = ax.transData.transform(np.column_stack([along, np.interp(along, one.x, one.mean)]))
-        assert not any(box.contains(x, y) for box in boxes for x, y in points)
     plt.close(figure)
 
 

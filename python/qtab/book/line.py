@@ -11,8 +11,24 @@ from numpy.typing import ArrayLike, NDArray
 from qtab.book.runner import FloatArray
 
 
+@dataclass(frozen=True, kw_only=True)
+class LineStyle:
+    """How a line is drawn."""
+
+    drawn: bool = True
+    """Whether the figure shows the line; the table always does."""
+    method: str = ""
+    """The method that decides the color of the line; empty means the name of the line."""
+    dashed: bool = False
+    """Whether the line is dashed."""
+    broad: bool = False
+    """Whether the line is a broad one behind the others, which coincide with it in many points."""
+    named: bool = True
+    """Whether the figure names the line. Runs that differ by their seeds alone have no names there."""
+
+
 @dataclass(frozen=True, eq=False, repr=False)
-class Line:
+class Line(LineStyle):
     """A line of a figure; all arrays are (points,)."""
 
     name: str
@@ -26,16 +42,6 @@ class Line:
     """The number of episodes behind the point that the time limit ended."""
     diverged: "NDArray[np.int64]"
     """The number of runs of the setting that diverged."""
-    drawn: bool = True
-    """Whether the figure shows the line."""
-    method: str = ""
-    """The method that decides the color of the line; empty means the name of the line."""
-    dashed: bool = False
-    """Whether the line is dashed."""
-    broad: bool = False
-    """Whether the line is a broad one behind the others, which coincide with it in many points."""
-    named: bool = True
-    """Whether the figure names the line. Runs that differ by their seeds alone have no names there."""
 
     def __repr__(self) -> str:
         """One line of text: the points are not shown."""
@@ -52,7 +58,7 @@ def line_from_samples(
     samples: FloatArray,
     truncated: "NDArray[np.int64] | int" = 0,
     diverged: int = 0,
-    **style: Any,
+    style: LineStyle | None = None,
 ) -> Line:
     """Returns the line through the means of runs.
 
@@ -62,7 +68,7 @@ def line_from_samples(
         samples: (runs, points): the measurements.
         truncated: The number of truncated episodes, for all points or (points,) for each.
         diverged: The number of runs that diverged.
-        **style: The fields of :class:`Line` that say how it is drawn.
+        style: How it is drawn; None draws it as most lines are.
     """
     runs, points = samples.shape
     with np.errstate(invalid="ignore", over="ignore"):  # runs that diverged can have infinite errors
@@ -75,7 +81,7 @@ def line_from_samples(
         runs,
         np.broadcast_to(truncated, points),
         np.broadcast_to(diverged, points),
-        **style,
+        **{one.name: getattr(style, one.name) for one in dataclasses.fields(LineStyle)} if style is not None else {},
     )
 
 

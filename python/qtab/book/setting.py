@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
+from qtab.book.line import LineStyle
 from qtab.book.runner import EpisodeLog, FloatArray
 from qtab.training.train_many import MakeEnv
 
@@ -11,8 +12,18 @@ Measure: TypeAlias = Callable[[EpisodeLog], FloatArray]
 """A function of the episodes of many runs that returns (runs, points)."""
 
 
+@dataclass(frozen=True, kw_only=True)
+class LineSetting(LineStyle):
+    """What the settings of all experiments share."""
+
+    max_runs: int | None = None
+    """The maximum number of runs, where the book has fewer runs of this setting than of the others."""
+    each_run: bool = False
+    """Whether each run is a line of its own, called by the name and its number."""
+
+
 @dataclass(frozen=True)
-class Setting:
+class Setting(LineSetting):
     """A config that is trained with many seeds, and the points of a line that are measured from it."""
 
     line: str
@@ -24,11 +35,3 @@ class Setting:
     measure: Measure
     x: tuple[float, ...] | None = None
     """The x coordinates of its points; None means the numbers of the episodes, from 1."""
-    max_runs: int | None = None
-    """The maximum number of runs, where the book has fewer runs of this setting than of the others."""
-    drawn: bool = True
-    """Whether the figure shows the line; the table always does."""
-    method: str = ""
-    """The method that decides the color of the line; empty means the name of the line."""
-    dashed: bool = False
-    """Whether the line is dashed."""

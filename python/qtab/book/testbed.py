@@ -1,7 +1,6 @@
 """An experiment on the k-armed testbed: many bandit problems, the reward and the choice of each step."""
 
 import dataclasses
-import time
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
@@ -9,12 +8,12 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 import numpy as np
 
 from qtab import _core
-from qtab._utils.progress import ProgressBar
-from qtab.book.drawing import Panel, draw_lines, draw_panels, label_tops
-from qtab.book.experiment import Experiment
+from qtab.book.drawing import Panel, draw_lines, draw_panels
 from qtab.book.line import Line, line_from_samples
-from qtab.book.result import Result
+from qtab.book.measured_experiment import Measured, MeasuredExperiment
+from qtab.book.result import Draw, Result
 from qtab.book.runner import FloatArray
+from qtab.book.setting import LineSetting
 from qtab.training.train_many import resolve_template
 
 if TYPE_CHECKING:
@@ -22,8 +21,6 @@ if TYPE_CHECKING:
 
 Measure: TypeAlias = Literal["reward", "optimal"]
 ENV = "qtab/KArmedBandit-v0"
-BATCH_RUNS = 500
-"""Problems are trained in batches of this size, which bounds the memory and moves the progress bar."""
 LABELS: Mapping[Measure, str] = {"reward": "average reward", "optimal": "% optimal action"}
 """What each measure is called."""
 SAMPLE_AVERAGES = {"learning_rate": 1.0, "learning_rate_schedule": "visits"}
@@ -37,7 +34,7 @@ GREEDY: Mapping[str, Any] = {
 
 
 @dataclass(frozen=True)
-class BanditSetting:
+class BanditSetting(LineSetting):
     """A method on the testbed."""
 
     line: str
@@ -46,17 +43,36 @@ class BanditSetting:
     """The keyword arguments of :func:`qtab.train`, without the environment."""
     x: float | None = None
     """Where its point is on the x axis of a parameter study; None for a curve over the steps."""
-    method: str = ""
-    """The method that decides the color of the line; empty means the name of the line."""
-    dashed: bool = False
-    """Whether the line is dashed."""
+
+
+def draw_measures(result: Result, ax: "Axes | None") -> "Axes":
+    """Draws a panel for each measure.
+
+    Raises:
+        ValueError: if there are several, and ``ax`` is not None.
+    """
+    experiment: Any = result.experiment
+    if len(experiment.measures) == 1:
+        return draw_lines(result, ax)
+    panels = []
+    for measure in experiment.measures:
+        suffix = f": {LABELS[measure]}"
+        lines = tuple(
+            dataclasses.replace(line, name=line.name.removesuffix(suffix))
+            for line in result.lines
+            if line.name.endswith(suffix)
+        )
+        y_range = (0.0, 100.0) if measure == "optimal" else experiment.y_range
+        panels.append(Panel("", lines, {"y_label": LABELS[measure], "y_range": y_range}))
+    return draw_panels(result, ax, panels, shared_x=True)
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
-class TestbedExperiment(Experiment):
+class TestbedExperiment(MeasuredExperiment):
     """An experiment that draws a bandit problem for each seed, and applies each setting to all of them."""
 
     __test__ = False  # not a test, whatever pytest thinks of its name
+    BATCH_RUNS = 500
 
     settings: Sequence[BanditSetting]
     measures: Sequence[Measure] = ("reward", "optimal")
@@ -64,6 +80,7 @@ class TestbedExperiment(Experiment):
     mean: float = 0.0
     """The mean of the true values."""
     steps: int = 1000
+    draw: Draw = draw_measures
 
     @property
     def line_names(self) -> Sequence[str]:
@@ -84,74 +101,22 @@ class TestbedExperiment(Experiment):
             **setting.config,
         }
 
-    def run(
-        self, runs: int | None = None, seed: int = 0, *, threads: int | None = None, progress: bool | None = None
-    ) -> Result:
-        """Applies every setting to the problem of every seed; see :func:`qtab.book.run`."""
-        runs, seed, threads = self.check_arguments(runs, seed, threads)
-        started = time.perf_counter()
-        samples: dict[str, list[FloatArray]] = {name: [] for name in self.line_names}
-        with ProgressBar(runs * len(self.settings), "run", progress, self.name) as bar:
-            for number, setting in enumerate(self.settings):
-                batches: dict[Measure, list[FloatArray]] = {measure: [] for measure in self.measures}
-                for first in range(0, runs, BATCH_RUNS):
-                    seeds = range(seed + first, seed + min(first + BATCH_RUNS, runs))
-                    rewards, optimal = run_testbeds(self.config(setting), seeds, threads)
-                    for measure, measured in (("reward", rewards), ("optimal", optimal)):
-                        if measure in batches:
-                            point = measured if setting.x is None else measured.mean(axis=1, keepdims=True)
-                            batches[measure].append(point)
-                    bar.move_to(number * runs + first + len(seeds))
-                for measure, parts in batches.items():
-                    samples[self._line_name(setting.line, measure)].append(np.concatenate(parts))
-        lines = tuple(self._line(name, measured) for name, measured in samples.items())
-        return Result(self, lines, runs, seed, time.perf_counter() - started, draw)
+    def measure(self, setting: BanditSetting, seeds: range, threads: int) -> Mapping[str, Measured]:
+        """Applies a setting to the problem of each seed."""
+        found = dict(zip(LABELS, run_testbeds(self.config(setting), seeds, threads), strict=True))
+        if setting.x is not None:
+            found = {measure: samples.mean(axis=1, keepdims=True) for measure, samples in found.items()}
+        return {self._line_name(setting.line, measure): Measured(found[measure]) for measure in self.measures}
+
+    def line(self, name: str, parts: Sequence[tuple[BanditSetting, Measured]]) -> Line:
+        """Returns the line of a measure of the settings of a name, each a curve or a point."""
+        first, _ = parts[0]
+        x = [setting.x for setting, _ in parts if setting.x is not None] or np.arange(1, self.steps + 1)
+        samples = np.concatenate([measured.samples for _, measured in parts], axis=1)
+        return line_from_samples(name, x, samples, style=dataclasses.replace(first, method=first.method or first.line))
 
     def _line_name(self, name: str, measure: Measure) -> str:
         return name if len(self.measures) == 1 else f"{name}: {LABELS[measure]}"
-
-    def _line(self, name: str, samples: Sequence[FloatArray]) -> Line:
-        """The line of a measure of the settings of that name, each a curve or a point."""
-        settings = [one for one in self.settings if name.removeprefix(one.line) in ("", *self._suffixes)]
-        points = [one.x for one in settings if one.x is not None] or np.arange(1, self.steps + 1)
-        first = settings[0]
-        style: dict[str, Any] = {"method": first.method or first.line, "dashed": first.dashed}
-        return line_from_samples(name, points, np.concatenate(samples, axis=1), **style)
-
-    @property
-    def _suffixes(self) -> Sequence[str]:
-        return [f": {LABELS[measure]}" for measure in self.measures]
-
-
-def draw(result: Result, ax: "Axes | None") -> "Axes":
-    """Draws a panel for each measure.
-
-    Raises:
-        ValueError: if there are several, and ``ax`` is not None.
-    """
-    experiment = result.experiment
-    assert isinstance(experiment, TestbedExperiment)  # noqa: S101
-    if len(experiment.measures) == 1:
-        axes = draw_lines(result, ax)
-        if experiment.x_ticks is not None:
-            axes.set_xticks(experiment.x_ticks, [_power_of_two(tick) for tick in experiment.x_ticks])
-            label_tops(axes, result.lines)
-        return axes
-    panels = []
-    for measure in experiment.measures:
-        suffix = f": {LABELS[measure]}"
-        lines = tuple(
-            dataclasses.replace(line, name=line.name.removesuffix(suffix))
-            for line in result.lines
-            if line.name.endswith(suffix)
-        )
-        y_range = (0.0, 100.0) if measure == "optimal" else experiment.y_range
-        panels.append(Panel("", lines, {"y_label": LABELS[measure], "y_range": y_range}))
-    return draw_panels(result, ax, panels, shared_x=True)
-
-
-def _power_of_two(number: float) -> str:
-    return f"1/{1 / number:g}" if number < 1 else f"{number:g}"
 
 
 def run_testbeds(config: Mapping[str, Any], seeds: Sequence[int], threads: int) -> tuple[FloatArray, FloatArray]:

@@ -5,7 +5,6 @@ from qtab.book.drawing.figures import figure_of_several, save_plot
 from qtab.book.drawing.grids import CellMap, draw_grids, greedy_actions
 from qtab.book.drawing.lines import BROAD, draw_in_range, draw_lines
 from qtab.book.drawing.panels import Panel, draw_panels
-from qtab.book.drawing.top_labels import label_tops
 
 __all__ = [
     "BROAD",
@@ -18,7 +17,6 @@ __all__ = [
     "draw_panels",
     "figure_of_several",
     "greedy_actions",
-    "label_tops",
     "line_colors",
     "save_plot",
 ]

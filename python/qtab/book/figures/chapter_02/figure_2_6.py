@@ -32,7 +32,7 @@ EXPERIMENT = TestbedExperiment(
     book="the average reward of the first 1,000 steps by the parameter of each method: ε, α, c, or Q1 with α = 0.1",
     unspecified="the number of runs (2,000 here); ties (broken at random here)",
     settings=tuple(
-        BanditSetting(line, {**config, parameter: value}, value, method)
+        BanditSetting(line, {**config, parameter: value}, value, method=method)
         for line, method, values, parameter, config in _METHODS
         for value in values
     ),
@@ -42,5 +42,6 @@ EXPERIMENT = TestbedExperiment(
     y_label="average reward of the first 1,000 steps",
     log_x=True,
     x_ticks=tuple(_powers(-7, 2)),
+    x_tick_labels=(*(f"1/{2**power}" for power in range(7, 0, -1)), "1", "2", "4"),
     y_range=(1.0, 1.56),
 )

@@ -49,6 +49,7 @@ EXPERIMENT = PredictionExperiment(
             estimates_of_state,
             _POINTS,
             each_run=True,
+            named=False,
         ),
     ),
     runs=10,

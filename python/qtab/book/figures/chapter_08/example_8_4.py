@@ -14,7 +14,7 @@ from qtab import _core
 from qtab._utils.progress import ProgressBar
 from qtab.book.drawing import draw_lines
 from qtab.book.experiment import Experiment
-from qtab.book.line import Line, line_from_samples
+from qtab.book.line import Line, LineStyle, line_from_samples
 from qtab.book.result import Result
 from qtab.book.runner import FloatArray
 from qtab.envs.dyna_maze import MOST_DOUBLINGS, DynaMazeEnv
@@ -135,7 +135,8 @@ class UpdatesToOptimum(Experiment):
         lines = []
         for name, algorithm in METHODS.items():
             samples = np.array([counts[name, maze.states] for maze in mazes], np.float64).T
-            lines.append(line_from_samples(name, sizes, samples, method=algorithm if name == "Dyna-Q" else ""))
+            style = LineStyle(method=algorithm if name == "Dyna-Q" else "")
+            lines.append(line_from_samples(name, sizes, samples, style=style))
         result = Result(self, tuple(lines), runs, seed, time.perf_counter() - started, draw_lines)
         return dataclasses.replace(result, table=_table(lines, missed))
 

@@ -13,7 +13,7 @@ import numpy as np
 from qtab._utils.progress import ProgressBar
 from qtab.book.drawing import figure_of_several, line_colors
 from qtab.book.experiment import Experiment
-from qtab.book.line import Line, line_from_samples
+from qtab.book.line import Line, LineStyle, line_from_samples
 from qtab.book.result import Result
 from qtab.book.runner import FloatArray
 from qtab.envs.random_mdp import random_mdp
@@ -89,7 +89,9 @@ class UpdateDistributions(Experiment):
         return [round(part * size.updates) for part in self.parts]
 
     def _line(self, size: Tasks, distribution: str, samples: FloatArray) -> Line:
-        return line_from_samples(size.line_name(distribution), self._times(size), samples, method=distribution)
+        return line_from_samples(
+            size.line_name(distribution), self._times(size), samples, style=LineStyle(method=distribution)
+        )
 
 
 def _in_threads(threads: int, measure: Callable[[int], T], seeds: range) -> Iterator[T]:

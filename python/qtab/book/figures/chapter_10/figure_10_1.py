@@ -9,12 +9,13 @@ import numpy as np
 from qtab._utils.progress import ProgressBar
 from qtab.book.drawing import figure_of_several
 from qtab.book.line import Line
+from qtab.book.measured_experiment import Measured, line_of
 from qtab.book.measures import mean_length
 from qtab.book.mountain_car import ENV, TILE_CODING, UNSPECIFIED
 from qtab.book.result import Result
 from qtab.book.runner import FloatArray
 from qtab.book.setting import Setting
-from qtab.book.training_experiment import TrainingExperiment, line_of
+from qtab.book.training_experiment import TrainingExperiment
 from qtab.results.run import Run
 from qtab.training.train import train
 
@@ -87,7 +88,7 @@ class CostToGo(TrainingExperiment):
                     if run.config.max_episode_steps != FIRST_STEPS:
                         truncated += int((~run.terminated).sum())
                     bar.move_to(len(lines) * runs + len(samples))
-                lines.append(line_of(setting, np.array(samples), truncated, 0))
+                lines.append(line_of(setting, Measured(np.array(samples), truncated)))
         return Result(self, tuple(lines), runs, seed, time.perf_counter() - started, draw_cost_to_go, surfaces)
 
 

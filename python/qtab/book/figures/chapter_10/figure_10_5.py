@@ -11,7 +11,7 @@ from qtab import _core
 from qtab._utils.progress import ProgressBar
 from qtab.book.drawing import figure_of_several, line_colors
 from qtab.book.experiment import Experiment
-from qtab.book.line import line_from_samples
+from qtab.book.line import LineStyle, line_from_samples
 from qtab.book.result import Result
 from qtab.training.resolve import resolve
 
@@ -102,7 +102,7 @@ class AccessControl(Experiment):
         values = np.stack(tables).max(axis=-1)
         samples = [*np.moveaxis(values, -1, 0), np.array(averages)[:, None]]
         lines = [
-            line_from_samples(name, np.arange(sample.shape[1]), sample, drawn=name != AVERAGE)
+            line_from_samples(name, np.arange(sample.shape[1]), sample, style=LineStyle(drawn=name != AVERAGE))
             for name, sample in zip(self.line_names, samples, strict=True)
         ]
         surfaces = {"policy": np.mean(tables, axis=0).argmax(axis=-1).astype(np.float64)}

@@ -1,0 +1,102 @@
+"""Experiments whose settings are run with many seeds, and measured."""
+
+import time
+from abc import abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab._utils.progress import ProgressBar
+from qtab.book.drawing import draw_lines
+from qtab.book.experiment import Experiment
+from qtab.book.line import Line, joined, line_from_samples
+from qtab.book.result import Draw, Result
+from qtab.book.runner import FloatArray
+
+
+class Measured(NamedTuple):
+    """What was measured of some runs of a setting."""
+
+    samples: FloatArray
+    """(runs, points)"""
+    truncated: "NDArray[np.int64] | int" = 0
+    """The number of truncated episodes, for all points or (points,) for each."""
+    diverged: int = 0
+    """The number of runs that diverged."""
+
+
+@dataclass(frozen=True, kw_only=True, repr=False)
+class MeasuredExperiment(Experiment):
+    """An experiment that runs settings with many seeds, and makes lines of the figure from each."""
+
+    BATCH_RUNS: ClassVar[int] = 5_000
+    """Runs are made and measured in batches of this size, which bounds the memory and moves the progress bar."""
+
+    settings: Sequence[Any]
+    """Each is a :class:`qtab.book.setting.LineSetting`, with the name of its ``line`` and its coordinates ``x``."""
+    draw: Draw = draw_lines
+    """Draws the figure."""
+
+    @property
+    def line_names(self) -> Sequence[str]:
+        """The names of the lines, each once."""
+        names: list[str] = []
+        for setting in self.settings:
+            names += [f"{setting.line} {run + 1}" for run in range(self.runs)] if setting.each_run else [setting.line]
+        return tuple(dict.fromkeys(names))
+
+    @abstractmethod
+    def measure(self, setting: Any, seeds: range, threads: int) -> Mapping[str, Measured]:
+        """Returns what was measured of a run with each seed, by the name of the line that it belongs to."""
+
+    def run(
+        self, runs: int | None = None, seed: int = 0, *, threads: int | None = None, progress: bool | None = None
+    ) -> Result:
+        """Runs every setting with every seed; see :func:`qtab.book.run`."""
+        runs, seed, threads = self.check_arguments(runs, seed, threads)
+        started = time.perf_counter()
+        counts = [min(runs, setting.max_runs or runs) for setting in self.settings]
+        parts: dict[str, list[tuple[Any, Measured]]] = {}
+        with ProgressBar(sum(counts), "run", progress, self.name) as bar:
+            done = 0
+            for setting, count in zip(self.settings, counts, strict=True):
+                batches: dict[str, list[Measured]] = {}
+                # Runs that are lines of their own are long: the bar moves as often as all threads are through with one.
+                size = threads if setting.each_run else self.BATCH_RUNS
+                for first in range(0, count, size):
+                    seeds = range(seed + first, seed + min(first + size, count))
+                    for name, measured in self.measure(setting, seeds, threads).items():
+                        batches.setdefault(name, []).append(measured)
+                    done += len(seeds)
+                    bar.move_to(done)
+                for name, measured in _together(batches, setting.each_run).items():
+                    parts.setdefault(name, []).append((setting, measured))
+        names = [name for name in {**dict.fromkeys(self.line_names), **parts} if name in parts]
+        lines = tuple(self.line(name, parts[name]) for name in names)
+        return Result(self, lines, runs, seed, time.perf_counter() - started, self.draw)
+
+    def line(self, name: str, parts: Sequence[tuple[Any, Measured]]) -> Line:
+        """Returns the line through the points of one or several settings."""
+        return joined([line_of(setting, measured, name) for setting, measured in parts])
+
+
+def line_of(setting: Any, measured: Measured, name: str | None = None) -> Line:
+    """Returns the line through the points of one setting."""
+    x = np.arange(1, measured.samples.shape[1] + 1) if setting.x is None else setting.x
+    return line_from_samples(setting.line if name is None else name, x, *measured, setting)
+
+
+def _together(batches: Mapping[str, Sequence[Measured]], each_run: bool) -> dict[str, Measured]:
+    """Returns what was measured in all batches, by the names of the lines."""
+    found: dict[str, Measured] = {}
+    for name, parts in batches.items():
+        samples, truncated, diverged = zip(*parts, strict=True)
+        whole = Measured(np.concatenate(samples), sum(truncated), sum(diverged))
+        if each_run:
+            found |= {f"{name} {run + 1}": whole._replace(samples=row[None]) for run, row in enumerate(whole.samples)}
+        else:
+            found[name] = whole
+    return found
