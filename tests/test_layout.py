@@ -32,7 +32,6 @@ ORDER = (
     {"sb3"},
     {"book"},
     {"playground"},
-    {"bench"},
     {"cli"},
     {"", "__main__"},
 )
