@@ -13,9 +13,15 @@ ONLY_FIRST = "only those can be repeated, because its falling rates were then sp
 """Why the later episodes of a run that was extended cannot be repeated, for messages."""
 
 
-def rates(schedule: Schedule, total: int) -> NDArray[np.float64]:
-    """Returns (total,): the value of a schedule in each episode of a run, with the bits that the learners use."""
-    values = np.full(total, schedule.value)
+def rates(schedule: Schedule, total: int, count: int) -> NDArray[np.float64]:
+    """Returns (count,): the values of a schedule in the first episodes of a run, with the bits that the learners use.
+
+    Args:
+        schedule: The schedule.
+        total: The number of episodes of the run, over which a linear fall is spread.
+        count: The number of episodes asked for. A run that is stopped early may need far fewer than ``total``.
+    """
+    values = np.full(count, schedule.value)
     if isinstance(schedule, Constant):
         return values
     falling = values[schedule.warm_up :]
@@ -39,10 +45,11 @@ def rates_of(run: Run, schedule: Schedule, episodes: NDArray[np.int64]) -> NDArr
 
     Each extension spreads a linear fall over the new number of episodes, from the first episode on.
     """
-    found: NDArray[np.float64] = rates(schedule, run.config.episodes)[episodes]
+    count = int(episodes.max(initial=-1)) + 1
+    found: NDArray[np.float64] = rates(schedule, run.config.episodes, count)[episodes]
     for finished, total in reversed(() if run.state is None else run.state.extensions):
         early = episodes < finished
-        found[early] = rates(schedule, total)[episodes[early]]
+        found[early] = rates(schedule, total, finished)[episodes[early]]
     return found
 
 

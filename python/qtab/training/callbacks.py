@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from qtab import _core
 from qtab._utils.fields import with_fields
 from qtab.config import Config
-from qtab.config.schedules import ByVisits, Constant, epsilon, learning_rate
+from qtab.config.schedules import ByVisits, Constant, Schedule, epsilon, learning_rate
 from qtab.results.rates import rates
 from qtab.results.summary import FINAL_EPISODES
 
@@ -74,13 +74,12 @@ class Progress:
     @cached_property
     def epsilon(self) -> float | None:
         """The exploration rate of the last finished episode; None with softmax exploration."""
-        rates = self._required.reader.epsilons
-        return None if rates is None else float(rates[max(self.episode, 0)])
+        return self._required.reader.epsilon(max(self.episode, 0))
 
     @cached_property
     def learning_rate(self) -> float:
         """The learning rate of the last finished episode; with schedule ``"visits"`` that of a first visit."""
-        return float(self._required.reader.learning_rates[max(self.episode, 0)])
+        return self._required.reader.learning_rate(max(self.episode, 0))
 
     @cached_property
     def tables(self) -> NDArray[np.float64]:
@@ -162,6 +161,8 @@ class EpisodeReader:
         self._began = began
         self._episodes = self._steps = 0
         self._returns, self._lengths = np.empty(0, np.float64), np.empty(0, np.int64)
+        self._rates: dict[Schedule, NDArray[np.float64]] = {}
+        """The rates of the first episodes."""
         self._source: ProgressSource | None = None
 
     def __enter__(self) -> "EpisodeReader":
@@ -187,18 +188,22 @@ class EpisodeReader:
         columns = _read_only(self._returns, self._episodes), _read_only(self._lengths, self._episodes)
         return Progress(self._episodes, total, *columns, self._source)
 
-    @cached_property
-    def epsilons(self) -> "NDArray[np.float64] | None":
-        """(total,): the exploration rate of each episode; None unless it is epsilon-greedy."""
-        if self.config.exploration != "epsilon_greedy":
-            return None
-        return rates(epsilon(self.config), self.config.episodes)
+    def epsilon(self, episode: int) -> float | None:
+        """Returns the exploration rate of an episode, counted from 0; None unless it is epsilon-greedy."""
+        return self._rate(epsilon(self.config), episode) if self.config.exploration == "epsilon_greedy" else None
 
-    @cached_property
-    def learning_rates(self) -> NDArray[np.float64]:
-        """(total,): the learning rate of each episode; with schedule ``"visits"`` that of a first visit."""
+    def learning_rate(self, episode: int) -> float:
+        """Returns the learning rate of an episode, counted from 0; with schedule ``"visits"`` that of a first visit."""
         rate = learning_rate(self.config)
-        return rates(Constant(rate.value) if isinstance(rate, ByVisits) else rate, self.config.episodes)
+        return self._rate(Constant(rate.value) if isinstance(rate, ByVisits) else rate, episode)
+
+    def _rate(self, schedule: Schedule, episode: int) -> float:
+        known = self._rates.get(schedule, np.empty(0, np.float64))
+        if episode >= len(known):
+            # As many as the columns have room for: their length doubles, so over a run few rates are computed twice.
+            count = max(len(self._returns), episode + 1)
+            known = self._rates[schedule] = rates(schedule, self.config.episodes, count)
+        return float(known[episode])
 
     def move_on(self) -> None:
         """Called before the trainer advances: the last Progress can no longer read its tables."""
