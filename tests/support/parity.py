@@ -6,7 +6,7 @@ import gymnasium as gym
 import numpy as np
 
 import qtab
-from qtab.reference.q_learning import q_learning
+from qtab.reference import q_learning
 
 
 def state_bytes(env: gym.Env) -> bytes:

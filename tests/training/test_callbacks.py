@@ -8,7 +8,7 @@ import pytest
 
 import qtab
 from qtab import _core
-from qtab.reference.q_learning import q_learning
+from qtab.reference import q_learning
 from qtab.training.resolve import resolve
 from support.parity import assert_same_run
 

@@ -56,4 +56,30 @@ LEARNERS: Mapping[str, Callable[..., Result]] = {
 }
 """Each algorithm by its name."""
 
-__all__ = ["LEARNERS", "agent_stream"]
+__all__ = [
+    "LEARNERS",
+    "actor_critic",
+    "actor_critic_lambda",
+    "agent_stream",
+    "differential_q_learning",
+    "differential_sarsa",
+    "double_q_learning",
+    "dyna_q",
+    "dyna_q_plus",
+    "expected_sarsa",
+    "gradient_bandit",
+    "monte_carlo",
+    "monte_carlo_es",
+    "n_step_q_sigma",
+    "n_step_sarsa",
+    "n_step_tree_backup",
+    "off_policy_monte_carlo",
+    "prioritized_sweeping",
+    "q_learning",
+    "reinforce",
+    "reinforce_with_baseline",
+    "sarsa",
+    "sarsa_lambda",
+    "true_online_sarsa_lambda",
+    "watkins_q_lambda",
+]
