@@ -1,5 +1,6 @@
 """The last episodes are replayed after training: the same episodes, without an effect on the table."""
 
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +10,9 @@ import pytest
 
 import qtab as package
 from qtab.cli import outputs
+from qtab.rendering import video
 from qtab.rendering.replay import make_render_env, replay_all, replay_episode
+from qtab.rendering.video import VideoRecorder
 from support.command import qtab, qtab_here, refused
 
 
@@ -88,6 +91,32 @@ def test_the_render_environment_has_the_time_limit_and_keyword_arguments_of_the_
 def test_an_environment_that_cannot_be_rendered_is_refused_before_training(tmp_path: Path) -> None:
     line = refused("train", "toys:Walk-v0", "--scale", "1", "--record", "videos", cwd=tmp_path, run=qtab)
     assert "cannot be rendered" in line
+
+
+def test_pictures_that_no_video_can_hold_are_refused_before_training(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    config = package.train("FrozenLake-v1", episodes=1, seed=0).config
+    env = gym.make("FrozenLake-v1", render_mode="rgb_array", disable_env_checker=True)
+    monkeypatch.setattr(env.unwrapped, "render", lambda: np.zeros((4, 4, 3)))
+    monkeypatch.setattr(video, "make_render_env", lambda *_: env)
+    with pytest.raises(TypeError, match=r"env\.render\(\) must return a \(height, width, 3\) array of uint8"):
+        VideoRecorder(config, tmp_path / "videos")
+    assert not (tmp_path / "videos").exists()
+
+
+def test_an_interrupted_call_leaves_only_complete_videos(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    run = package.train("FrozenLake-v1", episodes=3, seed=0, record=2)
+
+    def write(_: Any, path: Path) -> None:
+        path.write_bytes(b"part")
+        if list(tmp_path.glob("Frozen*.mp4")):
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(video, "write_mp4", write)
+    with closing(VideoRecorder(run.config, tmp_path)) as recorder, pytest.raises(KeyboardInterrupt):
+        recorder.record(run)
+    assert [file.name for file in tmp_path.iterdir()] == ["FrozenLake-v1-episode-2.mp4"]
 
 
 @pytest.mark.slow

@@ -64,8 +64,10 @@ def check_render_mode(name: str, env: gym.Env, render_mode: str) -> None:
         raise ValueError(f"{name} cannot be rendered as {render_mode!r}; its render modes are: {known}")
 
 
-def replay_episode(env: gym.Env, recording: Recording, see: Callable[[], object] = lambda: None) -> float:
-    """Replays a recorded episode in ``env`` and returns its return. It calls ``see`` after the reset and each step.
+def replay_episode(env: gym.Env, recording: Recording, on_frame: Callable[[], object] = lambda: None) -> float:
+    """Replays a recorded episode in ``env`` and returns its return.
+
+    It calls ``on_frame`` after the reset and after each step.
 
     The episode is the same if the environment draws random numbers from its ``np_random`` only, as all environments of
     Gymnasium do.
@@ -74,12 +76,12 @@ def replay_episode(env: gym.Env, recording: Recording, see: Callable[[], object]
     bit_generator.state = dict(recording.start)  # type: ignore[assignment]
     env.unwrapped.np_random = np.random.Generator(bit_generator)
     env.reset()
-    see()
+    on_frame()
     episode_return = 0.0
     for action in recording.actions:
         _, reward, terminated, truncated, _ = env.step(action)
         episode_return += float(reward)
-        see()
+        on_frame()
         if terminated or truncated:
             break
     return episode_return

@@ -25,6 +25,7 @@ class VideoRecorder:
     Raises:
         ModuleNotFoundError: without imageio-ffmpeg; the message names the ``pip install``.
         OSError: if the folder cannot be written to.
+        TypeError: if the environment does not render (height, width, 3) arrays of uint8.
         ValueError: if the environment cannot be rendered as images.
         gymnasium.error.Error: from Gymnasium, if rendering fails.
     """
@@ -37,7 +38,8 @@ class VideoRecorder:
         self._env = make_render_env(config, "rgb_array")
         try:
             self._env.reset()
-            self._env.render()
+            # A picture that no video can hold is refused here, before training.
+            Frames(frames_per_second(self._env, None)).append(self._env.render(), "")
             _create_folder(folder)
         except BaseException:
             self.close()
