@@ -35,7 +35,7 @@ ORDER = (
     {"cli"},
     {"", "__main__"},
 )
-"""The packages: each knows those before it. Those on one line still know each other."""
+"""The packages in the order of their imports: each imports only those before it and those in the same set."""
 
 Graph = dict[str, set[str]]
 
@@ -136,7 +136,7 @@ def package_of(module: str) -> str:
     return module.split(".")[1] if "." in module else ""
 
 
-def test_packages_know_only_those_below_them() -> None:
+def test_packages_import_only_those_below_them() -> None:
     known = modules()
     place = {package: index for index, group in enumerate(ORDER) for package in group}
     assert place.keys() == {package_of(name) for name in known}

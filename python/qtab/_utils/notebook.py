@@ -1,4 +1,4 @@
-"""What a notebook shows: whether there is one, and progress bars of which nothing is left once they are closed."""
+"""Whether a notebook is running, and progress bars that leave no output in it once they are closed."""
 
 import sys
 import warnings

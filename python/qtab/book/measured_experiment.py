@@ -33,7 +33,7 @@ class MeasuredExperiment(Experiment):
     """An experiment that runs settings with many seeds, and makes lines of the figure from each."""
 
     BATCH_RUNS: ClassVar[int] = 5_000
-    """Runs are made and measured in batches of this size, which bounds the memory and moves the progress bar."""
+    """Runs are executed and measured in batches of this size, which bounds the memory and moves the progress bar."""
 
     settings: Sequence[Any]
     """Each is a :class:`qtab.book.setting.LineSetting`, with the name of its ``line`` and its coordinates ``x``."""
@@ -64,7 +64,7 @@ class MeasuredExperiment(Experiment):
             done = 0
             for setting, count in zip(self.settings, counts, strict=True):
                 batches: dict[str, list[Measured]] = {}
-                # Runs that are lines of their own are long: the bar moves as often as all threads are through with one.
+                # Runs that are lines of their own are long: the bar moves each time every thread has finished one.
                 size = threads if setting.each_run else self.BATCH_RUNS
                 for first in range(0, count, size):
                     seeds = range(seed + first, seed + min(first + size, count))

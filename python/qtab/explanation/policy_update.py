@@ -80,7 +80,7 @@ class PolicyUpdate:
 
 
 def equations_of(config: Config, update: PolicyUpdate) -> list[tuple[str, str]]:
-    """Returns the equations of an update and their numbers, of which the update holds none yet."""
+    """Returns the equations of an update and their numbers. These two fields of ``update`` are not read."""
     algorithm, action = config.algorithm, update.action
     if update.traces:
         # A preference changes once, however often its row is active.

@@ -29,7 +29,7 @@ class PolicyWatcher:
         self.policy: Policy
         self.masks: ActionMasks
         self._worth: dict[str, Any] = {}
-        """The fields of the next update that say what its action was worth."""
+        """The reward, target and error of the next update, by the names of the fields of PolicyUpdate."""
         self._begun: PolicyUpdate
         self._largest: tuple[tuple[Trace, ...], int]
         """The largest traces, and the number of all."""

@@ -1,10 +1,10 @@
-"""What results need to know of the optimum of their environment."""
+"""The attributes that results read from the optimum of their environment."""
 
 from typing import Any, Protocol
 
 
 class KnownOptimum(Protocol):
-    """A result of :func:`qtab.optimum`, which is made in a package above this one."""
+    """A result of :func:`qtab.optimum`, whose class is in a package that imports this one."""
 
     @property
     def expected_return(self) -> float:
@@ -12,16 +12,16 @@ class KnownOptimum(Protocol):
 
     @property
     def label(self) -> str:
-        """What it is: the optimum, or the best known return."""
+        """``"optimum"``, or ``"best known"`` where it is not exact."""
 
     @property
     def exact(self) -> bool:
-        """Whether no policy returns more."""
+        """True if it is proven that no policy has a higher expected return."""
 
     @property
     def stationary(self) -> Any:
-        """The best policy that does not count the steps; None where it is not known."""
+        """The best policy that ignores the number of steps taken; None where it is not known."""
 
     @property
     def solver(self) -> Any:
-        """Computes the return of other policies."""
+        """Computes the expected return of other policies."""

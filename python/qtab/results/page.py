@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from qtab.results.known_optimum import KnownOptimum
 
 WRITER = ""
-"""The module that writes the page. ``qtab`` sets it: pictures need :class:`qtab.Run`, so they lie above this."""
+"""The name of the module that writes the page. ``qtab`` sets it, because that module imports :class:`qtab.Run`."""
 
 
 class WithPage:

@@ -20,8 +20,8 @@ def figure_of_several(result: Result, ax: "Axes | None", width: float, height: f
     """Returns a new figure for a result that has several axes, with the title on the left, in bold.
 
     Args:
-        result: What will be drawn.
-        ax: The axes that were asked for.
+        result: The result to draw.
+        ax: Must be None.
         width: In inches.
         height: In inches.
 
