@@ -49,8 +49,10 @@ def test_without_opening_nothing_is_opened(tmp_path, opened):
 
 @needs_module
 def test_a_folder_that_does_not_exist_is_an_error_in_one_line(tmp_path, opened, capsys):
-    assert main(["playground", "--out", str(tmp_path / "none/page.html")]) == 1
-    assert capsys.readouterr().err.count("\n") == 1
+    assert main(["playground", "--out", str(tmp_path / "none/page.html")]) == 2
+    message = capsys.readouterr().err
+    assert message.startswith("qtab playground: error: --out must be a file that can be written, got ")
+    assert message.count("\n") == 1
     assert opened == []
 
 
