@@ -49,7 +49,7 @@ class MeasuredExperiment(Experiment):
         return tuple(dict.fromkeys(names))
 
     @abstractmethod
-    def measure(self, setting: Any, seeds: range, threads: int) -> Mapping[str, Measured]:
+    def _measure(self, setting: Any, seeds: range, threads: int) -> Mapping[str, Measured]:
         """Returns what was measured of a run with each seed, by the name of the line that it belongs to."""
 
     def run(
@@ -68,17 +68,17 @@ class MeasuredExperiment(Experiment):
                 size = threads if setting.each_run else self.BATCH_RUNS
                 for first in range(0, count, size):
                     seeds = range(seed + first, seed + min(first + size, count))
-                    for name, measured in self.measure(setting, seeds, threads).items():
+                    for name, measured in self._measure(setting, seeds, threads).items():
                         batches.setdefault(name, []).append(measured)
                     done += len(seeds)
                     bar.move_to(done)
                 for name, measured in _together(batches, setting.each_run).items():
                     parts.setdefault(name, []).append((setting, measured))
         names = [name for name in {**dict.fromkeys(self.line_names), **parts} if name in parts]
-        lines = tuple(self.line(name, parts[name]) for name in names)
+        lines = tuple(self._line(name, parts[name]) for name in names)
         return Result(self, lines, runs, seed, time.perf_counter() - started, self.draw)
 
-    def line(self, name: str, parts: Sequence[tuple[Any, Measured]]) -> Line:
+    def _line(self, name: str, parts: Sequence[tuple[Any, Measured]]) -> Line:
         """Returns the line through the points of one or several settings."""
         return joined([line_of(setting, measured, name) for setting, measured in parts])
 

@@ -53,7 +53,7 @@ class PredictionExperiment(MeasuredExperiment):
 
     settings: Sequence[PredictionSetting]
 
-    def measure(self, setting: PredictionSetting, seeds: range, threads: int) -> Mapping[str, Measured]:
+    def _measure(self, setting: PredictionSetting, seeds: range, threads: int) -> Mapping[str, Measured]:
         """Estimates with each seed."""
         task = setting.task()
         estimates, diverged = _estimate(task, setting.arguments, seeds, threads)

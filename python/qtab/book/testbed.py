@@ -101,14 +101,14 @@ class TestbedExperiment(MeasuredExperiment):
             **setting.config,
         }
 
-    def measure(self, setting: BanditSetting, seeds: range, threads: int) -> Mapping[str, Measured]:
+    def _measure(self, setting: BanditSetting, seeds: range, threads: int) -> Mapping[str, Measured]:
         """Applies a setting to the problem of each seed."""
         found = dict(zip(LABELS, run_testbeds(self.config(setting), seeds, threads), strict=True))
         if setting.x is not None:
             found = {measure: samples.mean(axis=1, keepdims=True) for measure, samples in found.items()}
         return {self._line_name(setting.line, measure): Measured(found[measure]) for measure in self.measures}
 
-    def line(self, name: str, parts: Sequence[tuple[BanditSetting, Measured]]) -> Line:
+    def _line(self, name: str, parts: Sequence[tuple[BanditSetting, Measured]]) -> Line:
         """Returns the line of a measure of the settings of a name, each a curve or a point."""
         first, _ = parts[0]
         x = [setting.x for setting, _ in parts if setting.x is not None] or np.arange(1, self.steps + 1)

@@ -31,7 +31,7 @@ class TrainingExperiment(MeasuredExperiment):
         """Returns the keyword arguments of :func:`qtab.train` for a setting, without the seed."""
         return {"max_episode_steps": self.max_episode_steps, **setting.config}
 
-    def measure(self, setting: Setting, seeds: range, threads: int) -> Mapping[str, Measured]:
+    def _measure(self, setting: Setting, seeds: range, threads: int) -> Mapping[str, Measured]:
         """Trains a setting with each seed."""
         log = runner.train_runs(setting.env, self.config(setting), seeds, threads)
         # A point of a learning curve is made from one episode of each run, any other point from all episodes.
