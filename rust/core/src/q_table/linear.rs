@@ -69,26 +69,37 @@ impl<const N: usize> QTable<N> {
         target: f64,
         step_size: &mut impl StepSize,
     ) {
-        let old = self.value(rows, action);
-        let error = target - old;
+        let error = target - self.value(rows, action);
         let rows = rows.as_ref();
         if rows.len() != 1 {
             self.check_finite(error);
         }
-        if let Some(step) = step_size.uniform() {
-            for &row in rows {
-                *self.value_mut(row, action) += step * error;
-            }
-            return;
+        match step_size.uniform() {
+            Some(step) => rows.iter().for_each(|&row| *self.value_mut(row, action) += step * error),
+            None => self.update_each(rows, action, (target, error), step_size),
         }
+    }
+
+    /// The update where each weight has a step size, or where updates are logged. It is a function of its own because a step
+    /// of the learners whose step size is uniform takes up to 6 % more instructions when this is inlined.
+    #[inline(never)]
+    fn update_each(
+        &mut self,
+        rows: &[u32],
+        action: usize,
+        (target, error): (f64, f64),
+        step_size: &mut impl StepSize,
+    ) {
+        let old = step_size.log().is_some().then(|| self.value(rows, action));
+        let mut learning_rate = 0.0;
         for &row in rows {
             let weight_index = self.weight_index(row, action);
             step_size.visit(weight_index);
             let step = step_size.at(weight_index);
             *self.value_mut(row, action) += step * error;
+            learning_rate += step;
         }
-        if step_size.log().is_some() {
-            let learning_rate = rows.iter().map(|&row| step_size.at(self.weight_index(row, action))).sum();
+        if let Some(old) = old {
             self.log(rows, action, (old, target, Some(learning_rate)), step_size);
         }
     }
