@@ -59,14 +59,10 @@ where
 {
     /// Benchmarks a learner given by its update rule.
     fn rule<U: UpdateRule<F::Active, Agent>>(&mut self, name: &str, rule: impl Fn(&Agent) -> U) {
-        self.learner(name, |agent| TdLearner { rule: rule(&agent), agent });
-    }
-
-    /// Benchmarks a learner.
-    fn learner<L: Learner<F::Active>>(&mut self, name: &str, learner: impl Fn(Agent) -> L) {
         let (features, n_active) = (&self.features, self.n_active);
         let run = || {
-            let learner = learner(agent(features.len(), n_active));
+            let agent = agent(features.len(), n_active);
+            let learner = TdLearner { rule: rule(&agent), agent };
             steps(Trainer::new(task(features.clone()), learner, mountain_car_task::agent_rng()))
         };
         self.benchmarks.add(self.group, name, run);
@@ -80,10 +76,7 @@ where
         self.rule("Q-learning", |_| QLearning);
         self.rule("Sarsa", |_| Sarsa);
         self.rule("Expected Sarsa", |_| ExpectedSarsa);
-        self.learner("Double Q-learning", |agent| {
-            let second = agent.table.clone();
-            DoubleQLearning::new(agent, second)
-        });
+        self.rule("Double Q-learning", |agent| DoubleQLearning::new(agent.learning_rate.clone(), agent.table.clone()));
         self.rule("4-step Sarsa", |_| NStepSarsa::new(4));
         self.rule("Sarsa(0.9)", |agent| SarsaLambda { traces: traces(agent, 0.0), kind, trace_decay });
         self.rule("Sarsa(0.9), cut off", |agent| SarsaLambda { traces: traces(agent, CUTOFF), kind, trace_decay });

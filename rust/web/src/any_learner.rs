@@ -17,7 +17,7 @@ pub(crate) enum AnyLearner<R: ActiveRows> {
     QLearning(TdLearner<QLearning>),
     Sarsa(TdLearner<Sarsa>),
     ExpectedSarsa(TdLearner<ExpectedSarsa>),
-    DoubleQLearning(DoubleQLearning),
+    DoubleQLearning(TdLearner<DoubleQLearning>),
     NStepSarsa(TdLearner<NStepSarsa<R>>),
     SarsaLambda(TdLearner<SarsaLambda>),
     TrueOnlineSarsaLambda(TdLearner<TrueOnlineSarsaLambda>),
@@ -47,7 +47,8 @@ impl<R: ActiveRows> AnyLearner<R> {
             AnyAlgorithm::ExpectedSarsa => Self::ExpectedSarsa(TdLearner { agent, rule: ExpectedSarsa }),
             AnyAlgorithm::DoubleQLearning => {
                 let second_table = second_table.ok_or_else(|| Failure("algorithm must have a second table".into()))?;
-                Self::DoubleQLearning(DoubleQLearning::new(agent, second_table))
+                let rule = DoubleQLearning::new(agent.learning_rate.clone(), second_table);
+                Self::DoubleQLearning(TdLearner { agent, rule })
             }
             AnyAlgorithm::NStepSarsa { n_steps } => {
                 Self::NStepSarsa(TdLearner { agent, rule: NStepSarsa::new(n_steps) })

@@ -102,7 +102,7 @@ impl<R: ActiveRows> AnyLearner<R> {
     pub(crate) fn learning_rates(&mut self) -> impl Iterator<Item = &mut LearningRate> {
         let (first, second) = match self {
             Self::DoubleQLearning(learner) => {
-                (&mut learner.agent.learning_rate, Some(&mut learner.second_learning_rate))
+                (&mut learner.agent.learning_rate, Some(&mut learner.rule.second_learning_rate))
             }
             other => (&mut other.agent().learning_rate, None),
         };
@@ -134,8 +134,8 @@ impl<R: ActiveRows> AnyLearner<R> {
             }
             Self::ExpectedSarsa(learner) => NextValue::One(learner.agent.expected_value(next)),
             Self::DoubleQLearning(learner) => {
-                let (rows, num_actions) = (next.as_ref(), learner.second_table.num_actions());
-                let tables = [learner.agent.table.values(), learner.second_table.values()];
+                let (rows, num_actions) = (next.as_ref(), learner.rule.second_table.num_actions());
+                let tables = [learner.agent.table.values(), learner.rule.second_table.values()];
                 let of = |updated: usize| {
                     let greedy = greedy_action(&tables[updated..=updated], rows, num_actions).unwrap_or(0);
                     action_value(&[tables[1 - updated]], rows, num_actions, greedy).unwrap_or(f64::NAN)

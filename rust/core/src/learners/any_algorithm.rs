@@ -3,9 +3,8 @@
 use super::{
     ActorCritic, ActorCriticLambda, Agent, Critic, DifferentialQLearning, DifferentialSarsa, DoubleQLearning, DynaQ,
     DynaQPlus, ExpectedSarsa, GradientBandit, Learner, Model, MonteCarloControl, NStepQSigma, NStepSarsa,
-    NStepTreeBackup, OffPolicyMonteCarlo, PolicyGradientLearner, PolicyGradientRule, PrioritizedSweeping, QLearning,
-    Reinforce, Sarsa, SarsaLambda, StochasticModel, TargetPolicy, TdLearner, TraceOptions, Traces,
-    TrueOnlineSarsaLambda, UpdateRule, WatkinsQLambda,
+    NStepTreeBackup, OffPolicyMonteCarlo, PrioritizedSweeping, QLearning, Reinforce, Sarsa, SarsaLambda,
+    StochasticModel, TargetPolicy, TdLearner, TraceOptions, Traces, TrueOnlineSarsaLambda, UpdateRule, WatkinsQLambda,
 };
 use crate::features::ActiveRows;
 use crate::memory::AllocationError;
@@ -192,7 +191,7 @@ impl AnyAlgorithm {
     pub fn learner<R, V>(
         self,
         agent: Agent,
-        mut second_table: Option<QTable>,
+        second_table: Option<QTable>,
         stop: &StopFlag<'_>,
         visitor: V,
     ) -> Result<Option<V::Output>, AllocationError>
@@ -205,13 +204,8 @@ impl AnyAlgorithm {
             return Ok(None);
         }
         let (n_rows, num_actions) = agent.table.shape();
-        let critic = match self.value_learning_rate() {
-            Some(rate) => match second_table.take() {
-                Some(table) => Some(Critic { table, step_size: rate / agent.learning_rate.n_active() }),
-                None => return Ok(None),
-            },
-            None => None,
-        };
+        let n_active = agent.learning_rate.n_active();
+        let new_critic = |table, learning_rate: f64| Critic { table, step_size: learning_rate / n_active };
         let new_model = || Model::new(n_rows, num_actions, stop);
         let new_traces = |cutoff: f64| Traces::new(n_rows * num_actions, cutoff, stop);
         Ok(Some(match self {
@@ -219,7 +213,10 @@ impl AnyAlgorithm {
             Self::Sarsa => with_rule(agent, Sarsa, visitor),
             Self::ExpectedSarsa => with_rule(agent, ExpectedSarsa, visitor),
             Self::DoubleQLearning => match second_table {
-                Some(second_table) => visitor.visit(DoubleQLearning::new(agent, second_table)),
+                Some(second_table) => {
+                    let rule = DoubleQLearning::new(agent.learning_rate.clone(), second_table);
+                    with_rule(agent, rule, visitor)
+                }
                 None => return Ok(None),
             },
             Self::NStepSarsa { n_steps } => with_rule(agent, NStepSarsa::new(n_steps), visitor),
@@ -269,24 +266,24 @@ impl AnyAlgorithm {
             Self::GradientBandit { baseline } => {
                 with_rule(agent, GradientBandit::new(baseline, n_rows, stop)?, visitor)
             }
-            Self::Reinforce | Self::ReinforceWithBaseline { .. } => {
-                with_gradient(agent, critic, Reinforce::new(), visitor)
-            }
-            Self::ActorCritic { .. } => with_gradient(agent, critic, ActorCritic::new(), visitor),
-            Self::ActorCriticLambda { trace_decay, .. } => {
-                with_gradient(agent, critic, ActorCriticLambda::new(trace_decay, n_rows, stop)?, visitor)
-            }
+            Self::Reinforce => with_rule(agent, Reinforce::new(None), visitor),
+            Self::ReinforceWithBaseline { value_learning_rate } => match second_table {
+                Some(table) => with_rule(agent, Reinforce::new(Some(new_critic(table, value_learning_rate))), visitor),
+                None => return Ok(None),
+            },
+            Self::ActorCritic { value_learning_rate } => match second_table {
+                Some(table) => with_rule(agent, ActorCritic::new(new_critic(table, value_learning_rate)), visitor),
+                None => return Ok(None),
+            },
+            Self::ActorCriticLambda { value_learning_rate, trace_decay } => match second_table {
+                Some(table) => {
+                    let critic = new_critic(table, value_learning_rate);
+                    with_rule(agent, ActorCriticLambda::new(critic, trace_decay, stop)?, visitor)
+                }
+                None => return Ok(None),
+            },
         }))
     }
-}
-
-fn with_gradient<R, U, V>(agent: Agent, critic: Option<Critic>, rule: U, visitor: V) -> V::Output
-where
-    R: ActiveRows + Send + 'static,
-    U: PolicyGradientRule<R> + Send + 'static,
-    V: LearnerVisitor<R>,
-{
-    visitor.visit(PolicyGradientLearner { agent, critic, rule })
 }
 
 fn with_rule<R, U, V>(agent: Agent, rule: U, visitor: V) -> V::Output

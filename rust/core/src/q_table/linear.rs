@@ -83,13 +83,7 @@ impl<const N: usize> QTable<N> {
     /// The update where each weight has a step size, or where updates are logged. It is a function of its own because a step
     /// of the learners whose step size is uniform takes up to 6 % more instructions when this is inlined.
     #[inline(never)]
-    fn update_each(
-        &mut self,
-        rows: &[u32],
-        action: usize,
-        (target, error): (f64, f64),
-        step_size: &mut impl StepSize,
-    ) {
+    fn update_each(&mut self, rows: &[u32], action: usize, (target, error): (f64, f64), step_size: &mut impl StepSize) {
         let old = step_size.log().is_some().then(|| self.value(rows, action));
         let mut learning_rate = 0.0;
         for &row in rows {

@@ -4,7 +4,7 @@ use super::*;
 use crate::envs::classic_control::MountainCar;
 use crate::features::{Axis, Rounding};
 use crate::learners::{
-    Agent, DynaQ, Model, NStepSarsa, PrioritizedSweeping, TdLearner, TruncationHandling, UpdateRule,
+    Agent, DynaQ, DynaQPlus, Model, NStepSarsa, PrioritizedSweeping, TdLearner, TruncationHandling, UpdateRule,
 };
 use crate::policies::{AnyPolicy, TieBreaking};
 use crate::q_table::{QTable, TerminalUpdate};
@@ -53,6 +53,8 @@ fn a_step_in_parts_is_the_same_step() {
     let stop = StopFlag::new();
     let model = || Model::new(ROWS, ACTIONS, &stop).expect("a small model");
     for terminate in [false, true] {
+        check_parts(&DynaQ::new(model(), 20_000), 4, terminate);
+        check_parts(&DynaQPlus::new(model(), 20_000, 1e-3, &stop).expect("a small model"), 4, terminate);
         // Every error is large enough, so that the queue is never empty.
         let sweeping = PrioritizedSweeping::new(model(), 20_000, -1.0, &stop).expect("a small model");
         check_parts(&sweeping, 4, terminate);

@@ -10,8 +10,8 @@ use crate::features::{Axis, Features, Rounding, TileCoding};
 use crate::learners::{
     ActorCritic, ActorCriticLambda, Agent, Critic, DifferentialQLearning, DifferentialSarsa, DoubleQLearning, DynaQ,
     DynaQPlus, ExpectedSarsa, Model, MonteCarloControl, NStepQSigma, NStepSarsa, NStepTreeBackup, OffPolicyMonteCarlo,
-    PolicyGradientLearner, PrioritizedSweeping, QLearning, Reinforce, Sarsa, SarsaLambda, StochasticModel,
-    TargetPolicy, TdLearner, TraceKind, Traces, TrueOnlineSarsaLambda, WatkinsQLambda,
+    PrioritizedSweeping, QLearning, Reinforce, Sarsa, SarsaLambda, StochasticModel, TargetPolicy, TdLearner, TraceKind,
+    Traces, TrueOnlineSarsaLambda, WatkinsQLambda,
 };
 use crate::policies::{AnyPolicy, TieBreaking};
 use crate::q_table::TerminalUpdate;
@@ -135,7 +135,12 @@ impl Setup {
         self.check(features, || TdLearner { agent: agent(), rule: QLearning });
         self.check(features, || TdLearner { agent: agent(), rule: Sarsa });
         self.check(features, || TdLearner { agent: agent(), rule: ExpectedSarsa });
-        self.check(features, || DoubleQLearning::new(agent(), QTable::new(vec![0.0; rows * ACTIONS], ACTIONS)));
+        let zeros = || QTable::new(vec![0.0; rows * ACTIONS], ACTIONS);
+        self.check(features, || {
+            let agent = agent();
+            let rule = DoubleQLearning::new(agent.learning_rate.clone(), zeros());
+            TdLearner { agent, rule }
+        });
         self.check(features, || TdLearner { agent: agent(), rule: NStepSarsa::new(4) });
         let target = TargetPolicy::Greedy;
         self.check(features, || TdLearner { agent: agent(), rule: NStepTreeBackup::new(4, target) });
@@ -148,16 +153,12 @@ impl Setup {
         self.check(features, || TdLearner { agent: agent(), rule: rule() });
         if !self.visits {
             self.check(features, || TdLearner { agent: agent(), rule: TrueOnlineSarsaLambda::new(traces(), 0.8) });
-            let critic = || Some(Critic { table: QTable::new(vec![0.0; rows * ACTIONS], ACTIONS), step_size: 0.1 });
+            let critic = || Critic { table: zeros(), step_size: 0.1 };
             let actor = || Agent { policy: AnyPolicy::softmax(1.0, ACTIONS), ..agent() };
-            self.check(features, || PolicyGradientLearner { agent: actor(), critic: critic(), rule: Reinforce::new() });
-            self.check(features, || PolicyGradientLearner {
-                agent: actor(),
-                critic: critic(),
-                rule: ActorCritic::new(),
-            });
-            let rule = || ActorCriticLambda::new(0.8, rows, &StopFlag::new()).expect("a few rows");
-            self.check(features, || PolicyGradientLearner { agent: actor(), critic: critic(), rule: rule() });
+            self.check(features, || TdLearner { agent: actor(), rule: Reinforce::new(Some(critic())) });
+            self.check(features, || TdLearner { agent: actor(), rule: ActorCritic::new(critic()) });
+            let rule = || ActorCriticLambda::new(critic(), 0.8, &StopFlag::new()).expect("a few rows");
+            self.check(features, || TdLearner { agent: actor(), rule: rule() });
         }
     }
 
@@ -167,15 +168,15 @@ impl Setup {
         self.check_all(grid, 1);
         let (agent, stop) = (|| self.agent(rows, 1), StopFlag::new());
         let model = || Model::new(rows, ACTIONS, &stop).expect("a small model");
-        self.check(grid, || TdLearner { agent: agent(), rule: DynaQ::new(model(), 3) });
-        let stochastic = || StochasticModel::new(rows, ACTIONS, &stop).expect("a small model");
-        self.check(grid, || TdLearner { agent: agent(), rule: DynaQ::new(stochastic(), 5) });
         // More planning than is done in one call, so that a run can stop within a step. It takes long: a few steps do.
         let (planner, planning) = if self.damage.is_empty() {
             (Self { limit: LIMIT / 10, steps: 1000 * self.steps, ..self.clone() }, 9000)
         } else {
             (self.clone(), 3)
         };
+        planner.check(grid, || TdLearner { agent: agent(), rule: DynaQ::new(model(), planning) });
+        let stochastic = || StochasticModel::new(rows, ACTIONS, &stop).expect("a small model");
+        self.check(grid, || TdLearner { agent: agent(), rule: DynaQ::new(stochastic(), 5) });
         let sweeping = || PrioritizedSweeping::new(model(), planning, 1e-4, &stop).expect("a small model");
         planner.check(grid, || TdLearner { agent: agent(), rule: sweeping() });
         let pairs = rows * ACTIONS;
@@ -185,8 +186,8 @@ impl Setup {
         }
         let off_policy = || OffPolicyMonteCarlo::new(pairs, LIMIT, (1.0, 0.0), &stop).expect("a few pairs");
         self.check(grid, || TdLearner { agent: agent(), rule: off_policy() });
-        let dyna_q_plus = || DynaQPlus::new(model(), 3, 1e-3, &StopFlag::new()).expect("a small model");
-        self.check(grid, || TdLearner { agent: agent(), rule: dyna_q_plus() });
+        let dyna_q_plus = || DynaQPlus::new(model(), planning, 1e-3, &StopFlag::new()).expect("a small model");
+        planner.check(grid, || TdLearner { agent: agent(), rule: dyna_q_plus() });
     }
 }
 

@@ -1,13 +1,14 @@
 //! Checkpoints within an episode: at its time limit, and where it is lost.
 
-use super::{LIMIT, Setup};
+use super::{ACTIONS, LIMIT, Setup};
 use crate::checkpoint::{Checkpoint, CheckpointError, EpisodeProgress, Persist};
 use crate::envs::classic_control::MountainCar;
 use crate::features::{Axis, Features, Rounding};
-use crate::learners::{NStepSarsa, QLearning, TdLearner, TruncationHandling};
+use crate::learners::{Agent, MonteCarloControl, NStepSarsa, QLearning, Reinforce, TdLearner, TruncationHandling};
+use crate::policies::AnyPolicy;
 use crate::random::{AgentRng, Pcg64, SeedSequence};
 use crate::tasks::{NativeTask, Next, Task, TimeAware, Transition};
-use crate::{Budget, Learner, Trainer};
+use crate::{Budget, Learner, StopFlag, Trainer};
 
 const SETUP: Setup = Setup { steps: 0, limit: LIMIT, seed: 7, mt19937: false, visits: false, damage: Vec::new() };
 
@@ -56,7 +57,16 @@ fn check_at_the_limit<L: Learner<[u32; 1]>>(learner: impl Fn(usize) -> L) {
 
 #[test]
 fn a_run_resumes_while_the_last_step_before_the_limit_is_learned_from() {
+    let stop = StopFlag::new();
     check_at_the_limit(|rows| TdLearner { agent: SETUP.agent(rows, 1), rule: NStepSarsa::new(8000) });
+    check_at_the_limit(|rows| {
+        let rule = MonteCarloControl::new(rows * ACTIONS, LONG, false, &stop).expect("a few pairs");
+        TdLearner { agent: SETUP.agent(rows, 1), rule }
+    });
+    check_at_the_limit(|rows| {
+        let agent = Agent { policy: AnyPolicy::softmax(1.0, ACTIONS), ..SETUP.agent(rows, 1) };
+        TdLearner { agent, rule: Reinforce::new(None) }
+    });
 }
 
 /// Two states, one action; it fails at the given step.

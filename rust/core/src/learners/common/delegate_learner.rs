@@ -73,10 +73,6 @@ macro_rules! delegate_learner {
             match self { $($pattern => $crate::Learner::<$active>::shape($learner)),+ }
         }
 
-        fn skip_episodes(&mut self, episodes: usize) {
-            match self { $($pattern => $crate::Learner::<$active>::skip_episodes($learner, episodes)),+ }
-        }
-
         fn abandon_episode(&mut self) {
             match self { $($pattern => $crate::Learner::<$active>::abandon_episode($learner)),+ }
         }

@@ -82,7 +82,9 @@ pub trait Learner<R> {
     fn shape(&self) -> (usize, usize);
 
     /// Moves the schedules on by this many episodes without learning.
-    fn skip_episodes(&mut self, episodes: usize);
+    fn skip_episodes(&mut self, episodes: usize) {
+        (0..episodes).for_each(|_| self.end_episode());
+    }
 
     /// Gives up an unfinished episode, so that another one can begin.
     fn abandon_episode(&mut self);

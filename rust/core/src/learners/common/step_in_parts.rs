@@ -3,10 +3,9 @@
 use super::MAX_WORK_PER_CALL;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 
-/// How far the learning from a step is done, for the methods of which one step can take longer than 0.2 s: the end of an
-/// episode with n-step methods, whose work grows with n², prioritized sweeping of states with many predecessors, and batch TD,
-/// which repeats itself until the values settle. The other learners do a step in one call: a million planning updates, the
-/// most that Dyna-Q may make, take 0.05 s, and what learns at the end of an episode then takes no longer than the episode.
+/// How far the learning from a step is done, for the methods of which one step can take longer than a user who pressed Ctrl-C
+/// should wait: those that learn when an episode ends, n-step methods, whose work then grows with n², and batch TD, which
+/// repeats itself until the values settle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct StepInParts {
     is_unfinished: bool,

@@ -1,9 +1,10 @@
-//! A temporal-difference learner with one table.
+//! A learner made of an agent and an update rule.
 
 use super::{Agent, Learner, UpdateRule};
 use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::memory::{AllocationError, RunMemory};
 use crate::policies::Policy;
+use crate::q_table::QTable;
 use crate::random::Rng;
 use crate::schedules::StepSize;
 use crate::tasks::Next;
@@ -84,19 +85,17 @@ where
     }
 
     fn tables(&self) -> Vec<&[f64]> {
-        vec![self.agent.table.values()]
+        let second = self.rule.second_table().map(QTable::values);
+        std::iter::once(self.agent.table.values()).chain(second).collect()
     }
 
     fn tables_mut(&mut self) -> Vec<&mut [f64]> {
-        vec![self.agent.table.values_mut()]
+        let second = self.rule.second_table_mut().map(QTable::values_mut);
+        std::iter::once(self.agent.table.values_mut()).chain(second).collect()
     }
 
     fn shape(&self) -> (usize, usize) {
         self.agent.table.shape()
-    }
-
-    fn skip_episodes(&mut self, episodes: usize) {
-        (0..episodes).for_each(|_| self.agent.end_episode());
     }
 
     fn abandon_episode(&mut self) {
@@ -110,6 +109,6 @@ where
 
     #[inline]
     fn diverged(&self) -> bool {
-        self.agent.table.diverged()
+        self.agent.table.diverged() || self.rule.second_table().is_some_and(QTable::diverged)
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::memory::{AllocationError, RunMemory};
+use crate::q_table::QTable;
 use crate::random::Rng;
 use crate::tasks::Next;
 
@@ -62,12 +63,22 @@ pub trait UpdateRule<R, G> {
         None
     }
 
-    /// Called after the last step of every episode.
+    /// The table beside the agent's, if it learns two.
+    fn second_table(&self) -> Option<&QTable> {
+        None
+    }
+
+    /// The same, to be replaced when a run is resumed.
+    fn second_table_mut(&mut self) -> Option<&mut QTable> {
+        None
+    }
+
+    /// Called after the last step of every episode. It forgets what it stores of the episode.
     fn end_episode(&mut self, agent: &mut G) {
         let _ = agent;
     }
 
-    /// Called where an episode is given up without its last step.
+    /// Called where an episode is given up before its end.
     fn abandon_episode(&mut self, agent: &mut G) {
         self.end_episode(agent);
     }

@@ -10,6 +10,9 @@ pub trait DynaModel: Persist {
     /// The number of actions.
     fn num_actions(&self) -> usize;
 
+    /// Whether it has learned from a transition.
+    fn is_empty(&self) -> bool;
+
     /// Learns from a transition.
     fn record(&mut self, row: u32, action: usize, entry: ModelEntry);
 
@@ -41,6 +44,10 @@ pub trait DynaModel: Persist {
 impl DynaModel for Model {
     fn num_actions(&self) -> usize {
         Self::num_actions(self)
+    }
+
+    fn is_empty(&self) -> bool {
+        Self::is_empty(self)
     }
 
     #[inline]

@@ -1,7 +1,7 @@
 //! Dyna-Q: Q-learning that also learns from a model (R. Sutton, 1990; Sutton & Barto, the box in section 8.2).
 
-use super::{DynaModel, Model, ModelEntry, single_row};
-use crate::checkpoint::{Checkpoint, CheckpointError};
+use super::{DynaModel, Model, ModelEntry, Planning, single_row};
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::learners::{Agent, UpdateRule, row_work};
 use crate::memory::{AllocationError, RunMemory};
 use crate::random::Rng;
@@ -20,12 +20,14 @@ pub struct DynaQ<M = Model> {
     pub model: M,
     /// The number of planning updates per step, n.
     pub planning_steps: u32,
+    /// The planning of the last step.
+    planning: Planning,
 }
 
 impl<M: DynaModel> DynaQ<M> {
     /// An update rule before the first step.
     pub fn new(model: M, planning_steps: u32) -> Self {
-        Self { model, planning_steps }
+        Self { model, planning_steps, planning: Planning::default() }
     }
 }
 
@@ -43,27 +45,43 @@ impl<R: Copy + AsRef<[u32]>, M: DynaModel> UpdateRule<R, Agent> for DynaQ<M> {
         let (row, entry) = (single_row(&state), ModelEntry::new(reward, &next));
         agent.update_from_entry(row, action, entry);
         self.model.record(row, action, entry);
-        for _ in 0..self.planning_steps {
-            let row = self.model.sample_state(rng);
-            let action = self.model.sample_action(row, rng);
-            if let Some(entry) = self.model.sample(row, action, rng) {
-                agent.update_from_entry(row, action, entry);
-            }
-        }
-        agent.next_action(next, rng)
+        self.planning.begin(self.planning_steps);
+        self.resume(agent, next, rng)
     }
 
     #[inline]
     fn work(&self, _agent: &Agent) -> u64 {
-        (1 + u64::from(self.planning_steps)) * (row_work(self.model.num_actions()) + self.model.work())
+        self.planning.work()
     }
 
     fn reserve(&mut self, _agent: &mut Agent, work: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
         self.model.reserve(work, memory)
     }
 
+    #[inline]
+    fn is_unfinished(&self) -> bool {
+        self.planning.is_unfinished()
+    }
+
+    #[inline]
+    fn resume(&mut self, agent: &mut Agent, next: Next<R>, rng: &mut impl Rng) -> usize {
+        for _ in 0..self.planning.take(row_work(self.model.num_actions()) + self.model.work()) {
+            let row = self.model.sample_state(rng);
+            let action = self.model.sample_action(row, rng);
+            if let Some(entry) = self.model.sample(row, action, rng) {
+                agent.update_from_entry(row, action, entry);
+            }
+        }
+        if self.planning.is_unfinished() { 0 } else { agent.next_action(next, rng) }
+    }
+
+    fn end_episode(&mut self, _agent: &mut Agent) {
+        self.planning.clear();
+    }
+
     fn persist(&mut self, _shape: (usize, usize), checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
-        self.model.persist(checkpoint)
+        (&mut self.model, &mut self.planning).persist(checkpoint)?;
+        checkpoint.check(!self.planning.is_unfinished() || !self.model.is_empty(), "number of planning updates")
     }
 }
 

@@ -1,6 +1,6 @@
 //! Dyna-Q+: Dyna-Q with an exploration bonus (R. Sutton, 1990; Sutton & Barto, section 8.3).
 
-use super::{Model, ModelEntry, single_row};
+use super::{Model, ModelEntry, Planning, single_row};
 use crate::StopFlag;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::learners::{Agent, UpdateRule, row_work};
@@ -23,6 +23,8 @@ pub struct DynaQPlus {
     now: u64,
     /// The step at which each pair was last tried.
     last_tried: Vec<u64>,
+    /// The planning of the last step.
+    planning: Planning,
 }
 
 impl DynaQPlus {
@@ -37,7 +39,7 @@ impl DynaQPlus {
         stop: &StopFlag<'_>,
     ) -> Result<Self, AllocationError> {
         let last_tried = filled(&0, model.num_pairs(), stop)?;
-        Ok(Self { model, planning_steps, time_weight, now: 0, last_tried })
+        Ok(Self { model, planning_steps, time_weight, now: 0, last_tried, planning: Planning::default() })
     }
 }
 
@@ -57,7 +59,23 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for DynaQPlus {
         self.last_tried[agent.table.weight_index(row, action)] = self.now;
         agent.update_from_entry(row, action, entry);
         self.model.record(row, action, entry);
-        for _ in 0..self.planning_steps {
+        self.planning.begin(self.planning_steps);
+        self.resume(agent, next, rng)
+    }
+
+    #[inline]
+    fn work(&self, _agent: &Agent) -> u64 {
+        self.planning.work()
+    }
+
+    #[inline]
+    fn is_unfinished(&self) -> bool {
+        self.planning.is_unfinished()
+    }
+
+    #[inline]
+    fn resume(&mut self, agent: &mut Agent, next: Next<R>, rng: &mut impl Rng) -> usize {
+        for _ in 0..self.planning.take(row_work(self.model.num_actions())) {
             let row = self.model.sample_state(rng);
             let action = agent.sample_action([row], rng);
             let ModelEntry { reward, next } =
@@ -66,16 +84,16 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for DynaQPlus {
             let reward = reward + self.time_weight * elapsed.sqrt();
             agent.update_from_entry(row, action, ModelEntry { reward, next });
         }
-        agent.next_action(next, rng)
+        if self.planning.is_unfinished() { 0 } else { agent.next_action(next, rng) }
     }
 
-    #[inline]
-    fn work(&self, _agent: &Agent) -> u64 {
-        (1 + u64::from(self.planning_steps)) * row_work(self.model.num_actions())
+    fn end_episode(&mut self, _agent: &mut Agent) {
+        self.planning.clear();
     }
 
     fn persist(&mut self, _shape: (usize, usize), checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
-        self.model.persist(checkpoint)?;
+        (&mut self.model, &mut self.planning).persist(checkpoint)?;
+        checkpoint.check(!self.planning.is_unfinished() || !self.model.is_empty(), "number of planning updates")?;
         self.now.persist(checkpoint)?;
         self.last_tried.persist(checkpoint)?;
         checkpoint.check(self.last_tried.iter().all(|&step| step <= self.now), "step of a visit")

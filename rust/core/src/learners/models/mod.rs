@@ -7,6 +7,7 @@ mod model;
 mod outcome_trees;
 #[cfg(test)]
 mod outcome_trees_tests;
+mod planning;
 mod predecessors;
 mod prioritized_sweeping;
 mod priority_queue;
@@ -17,6 +18,7 @@ pub use dyna_q::DynaQ;
 pub use dyna_q_plus::DynaQPlus;
 pub(super) use model::single_row;
 pub use model::{Model, ModelEntry};
+use planning::Planning;
 use predecessors::Predecessors;
 pub use prioritized_sweeping::PrioritizedSweeping;
 use priority_queue::PriorityQueue;

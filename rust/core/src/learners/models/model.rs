@@ -91,6 +91,11 @@ impl Model {
         self.entries[row as usize * self.num_actions + action]
     }
 
+    /// Whether it has learned from a transition.
+    pub fn is_empty(&self) -> bool {
+        self.visited.is_empty()
+    }
+
     /// A random row among those visited.
     ///
     /// # Panics

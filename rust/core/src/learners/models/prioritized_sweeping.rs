@@ -1,10 +1,10 @@
 //! Prioritized sweeping for a deterministic environment (A. Moore & C. Atkeson, 1993; J. Peng & R. Williams, 1993; Sutton &
 //! Barto, the box in section 8.4).
 
-use super::{Model, ModelEntry, Predecessors, PriorityQueue, single_row};
+use super::{Model, ModelEntry, Planning, Predecessors, PriorityQueue, single_row};
 use crate::StopFlag;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
-use crate::learners::{Agent, StepInParts, UpdateRule, row_work};
+use crate::learners::{Agent, UpdateRule, row_work};
 use crate::memory::AllocationError;
 use crate::numeric::maximum;
 use crate::random::Rng;
@@ -27,12 +27,10 @@ pub struct PrioritizedSweeping {
     planning_steps: u32,
     /// The smallest priority, θ.
     threshold: f64,
-    /// The updates of the last step that are still to do.
-    remaining: u32,
+    /// The planning of the last step.
+    planning: Planning,
     /// The number of updates since the start of the run.
     updates: u64,
-    /// The updates of the last step.
-    planning: StepInParts,
 }
 
 impl PrioritizedSweeping {
@@ -49,28 +47,16 @@ impl PrioritizedSweeping {
         let pairs = model.num_pairs();
         let predecessors = Predecessors::new(pairs / model.num_actions(), pairs, stop)?;
         let queue = PriorityQueue::new(pairs, stop)?;
-        Ok(Self {
-            model,
-            predecessors,
-            queue,
-            planning_steps,
-            threshold,
-            remaining: 0,
-            updates: 0,
-            planning: StepInParts::new(),
-        })
+        let planning = Planning::default();
+        Ok(Self { model, predecessors, queue, planning_steps, threshold, planning, updates: 0 })
     }
 
     /// Does the updates that remain, or a part of them.
     fn sweep(&mut self, agent: &mut Agent) {
-        let Self { model, predecessors, queue, threshold, remaining, updates, planning, .. } = self;
+        let Self { model, predecessors, queue, threshold, planning, updates, .. } = self;
         let work = row_work(model.num_actions());
         planning.advance(|| {
-            if *remaining == 0 {
-                return (0, false);
-            }
-            let Some(pair) = queue.pop() else { return (0, false) };
-            *remaining -= 1;
+            let pair = queue.pop()?;
             *updates += 1;
             let (row, action) = ((pair / model.num_actions()) as u32, pair % model.num_actions());
             if let Some(entry) = model.entry(row, action) {
@@ -83,7 +69,7 @@ impl PrioritizedSweeping {
                 done += work;
                 predecessor = predecessors.after(found);
             }
-            (done, *remaining > 0)
+            Some(done)
         });
     }
 }
@@ -126,7 +112,7 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for PrioritizedSweeping {
         }
         self.model.record(row, action, entry);
         consider(&mut self.queue, &self.model, agent, (pair, self.threshold));
-        self.remaining = self.planning_steps;
+        self.planning.begin(self.planning_steps);
         self.resume(agent, next, rng)
     }
 
@@ -149,7 +135,7 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for PrioritizedSweeping {
         Some(self.updates)
     }
 
-    fn abandon_episode(&mut self, _agent: &mut Agent) {
+    fn end_episode(&mut self, _agent: &mut Agent) {
         self.planning.clear();
     }
 
@@ -160,7 +146,7 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for PrioritizedSweeping {
     ) -> Result<(), CheckpointError> {
         self.model.persist(checkpoint)?;
         self.queue.persist(checkpoint)?;
-        (&mut self.remaining, &mut self.updates, &mut self.planning).persist(checkpoint)?;
+        (&mut self.planning, &mut self.updates).persist(checkpoint)?;
         if checkpoint.is_restoring() {
             self.predecessors.clear();
             for pair in 0..self.model.num_pairs() {

@@ -50,6 +50,10 @@ impl DynaModel for StochasticModel {
         self.tried.sample_state(rng)
     }
 
+    fn is_empty(&self) -> bool {
+        self.tried.is_empty()
+    }
+
     #[inline]
     fn sample_action(&self, row: u32, rng: &mut impl Rng) -> usize {
         self.tried.sample_action(row, rng)

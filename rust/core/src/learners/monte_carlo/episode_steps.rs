@@ -1,6 +1,7 @@
 //! The steps of an episode, which Monte Carlo methods learn from when it ends.
 
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
+use crate::learners::StepInParts;
 use crate::memory::{AllocationError, RunMemory};
 
 /// A step of an episode, on a table.
@@ -16,20 +17,24 @@ pub(in crate::learners) struct EpisodeStep<M> {
     pub(in crate::learners) memo: M,
 }
 
-/// The steps of an unfinished episode, which are learned from at its end, from the last one backwards.
+/// The steps of an unfinished episode, and the learning from them at its end, from the last one backwards.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::learners) struct EpisodeSteps<M> {
     steps: Vec<EpisodeStep<M>>,
     /// The most steps of an episode.
     limit: u64,
-    /// The work of the last step.
+    /// The return G that follows the steps that are left to learn from.
+    pub(in crate::learners) following: f64,
+    /// The learning at the end of the episode.
+    end: StepInParts,
+    /// The work of the last step, without that.
     work: u64,
 }
 
 impl<M: Copy + Default + Persist> EpisodeSteps<M> {
     /// Before the first episode, whose steps are at most `limit`.
     pub(in crate::learners) fn new(limit: u64) -> Self {
-        Self { steps: Vec::new(), limit, work: 1 }
+        Self { steps: Vec::new(), limit, following: 0.0, end: StepInParts::new(), work: 1 }
     }
 
     /// Makes room for so many steps more.
@@ -49,20 +54,37 @@ impl<M: Copy + Default + Persist> EpisodeSteps<M> {
         self.steps.iter()
     }
 
-    /// Takes out the steps of an episode that is over, the last one first, for an update that does so much work for each.
-    pub(in crate::learners) fn drain(&mut self, work_per_step: u64) -> impl Iterator<Item = EpisodeStep<M>> {
-        self.work = 1 + work_per_step * self.steps.len() as u64;
-        self.steps.drain(..).rev()
+    /// Calls `learn` for the steps of an episode that is over, the last one first, or for a part of them where they are many.
+    /// It changes the return G, does so much work for each step, and returns whether to learn from the steps before.
+    pub(in crate::learners) fn finish(
+        &mut self,
+        work_per_step: u64,
+        mut learn: impl FnMut(&mut f64, EpisodeStep<M>) -> bool,
+    ) {
+        let Self { steps, following, end, .. } = self;
+        end.advance(|| {
+            let Some(step) = steps.pop() else { return (0, false) };
+            if !learn(following, step) {
+                steps.clear();
+            }
+            (work_per_step, !steps.is_empty())
+        });
+    }
+
+    #[inline]
+    pub(in crate::learners) fn is_unfinished(&self) -> bool {
+        self.end.is_unfinished()
     }
 
     #[inline]
     pub(in crate::learners) fn work(&self) -> u64 {
-        self.work
+        self.work + self.end.work()
     }
 
-    /// Forgets the steps.
+    /// Begins the next episode.
     pub(in crate::learners) fn clear(&mut self) {
         self.steps.clear();
+        self.end.clear();
     }
 
     pub(in crate::learners) fn persist(
@@ -85,7 +107,9 @@ impl<M: Copy + Default + Persist> EpisodeSteps<M> {
             checkpoint.index_u32(action, num_actions, "action")?;
             (reward, memo).persist(checkpoint)?;
         }
-        // An episode that has reached the limit was learned from.
-        checkpoint.check((self.steps.len() as u64) < self.limit || self.steps.is_empty(), "number of steps")
+        (&mut self.following, &mut self.end).persist(checkpoint)?;
+        // An episode that has reached the limit is learned from.
+        let is_valid = if self.is_unfinished() { count > 0 } else { (count as u64) < self.limit || count == 0 };
+        checkpoint.check(is_valid, "number of steps")
     }
 }

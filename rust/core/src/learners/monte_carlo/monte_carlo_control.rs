@@ -1,10 +1,10 @@
 //! First-visit Monte Carlo control, on-policy or with exploring starts (Sutton & Barto, the boxes in sections 5.3 and 5.4).
 
-use super::{FirstVisits, step_of};
+use super::EpisodeSteps;
 use crate::StopFlag;
 use crate::checkpoint::{Checkpoint, CheckpointError};
-use crate::learners::{Agent, UpdateRule};
-use crate::memory::{AllocationError, RunMemory};
+use crate::learners::{Agent, UpdateRule, row_work, single_row};
+use crate::memory::{AllocationError, RunMemory, filled};
 use crate::random::Rng;
 use crate::tasks::Next;
 
@@ -20,7 +20,9 @@ use crate::tasks::Next;
 /// greedy in the book; the environment draws the first state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MonteCarloControl {
-    visits: FirstVisits,
+    steps: EpisodeSteps<()>,
+    /// How often each pair occurs in the steps.
+    occurrences: Vec<u32>,
     exploring_starts: bool,
 }
 
@@ -35,7 +37,22 @@ impl MonteCarloControl {
         exploring_starts: bool,
         stop: &StopFlag<'_>,
     ) -> Result<Self, AllocationError> {
-        Ok(Self { visits: FirstVisits::new(pairs, max_episode_steps, stop)?, exploring_starts })
+        let (steps, occurrences) = (EpisodeSteps::new(max_episode_steps), filled(&0, pairs, stop)?);
+        Ok(Self { steps, occurrences, exploring_starts })
+    }
+
+    /// Learns from the steps of the episode, or from a part of them.
+    fn finish(&mut self, agent: &mut Agent) {
+        let Self { steps, occurrences, .. } = self;
+        steps.finish(row_work(agent.table.num_actions()), |following, step| {
+            *following = agent.discount * *following + step.reward;
+            let earlier = &mut occurrences[agent.table.weight_index(step.row, step.action as usize)];
+            *earlier -= 1;
+            if *earlier == 0 {
+                agent.update([step.row], step.action as usize, *following);
+            }
+            true
+        });
     }
 }
 
@@ -54,26 +71,52 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for MonteCarloControl {
         next: Next<R>,
         rng: &mut impl Rng,
     ) -> usize {
-        self.visits.learn(agent, step_of(&state, action, reward), next, rng)
+        let row = single_row(&state);
+        self.steps.push(row, action, reward, (), agent.work());
+        self.occurrences[agent.table.weight_index(row, action)] += 1;
+        let following = agent.sample_next(next, rng);
+        if !matches!(next, Next::NonTerminal(_)) {
+            self.steps.following = following.map_or(0.0, |(rows, action)| agent.value(rows, action));
+            self.finish(agent);
+        }
+        following.map_or(0, |(_, next_action)| next_action)
     }
 
     #[inline]
     fn work(&self, _agent: &Agent) -> u64 {
-        self.visits.steps().work()
+        self.steps.work()
     }
 
     fn reserve(&mut self, _agent: &mut Agent, work: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
-        self.visits.reserve(work, memory)
+        self.steps.reserve(work, memory)
     }
 
-    fn end_episode(&mut self, _agent: &mut Agent) {}
+    #[inline]
+    fn is_unfinished(&self) -> bool {
+        self.steps.is_unfinished()
+    }
 
-    fn abandon_episode(&mut self, agent: &mut Agent) {
-        self.visits.abandon(agent);
+    fn resume(&mut self, agent: &mut Agent, _next: Next<R>, _rng: &mut impl Rng) -> usize {
+        self.finish(agent);
+        0
+    }
+
+    fn end_episode(&mut self, agent: &mut Agent) {
+        for step in self.steps.iter() {
+            self.occurrences[agent.table.weight_index(step.row, step.action as usize)] = 0;
+        }
+        self.steps.clear();
     }
 
     fn persist(&mut self, shape: (usize, usize), checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
-        self.visits.persist(shape, checkpoint)
+        self.steps.persist(shape, checkpoint)?;
+        if checkpoint.is_restoring() {
+            self.occurrences.fill(0);
+            for step in self.steps.iter() {
+                self.occurrences[step.row as usize * shape.1 + step.action as usize] += 1;
+            }
+        }
+        Ok(())
     }
 }
 

@@ -22,6 +22,8 @@ pub struct OffPolicyMonteCarlo {
     steps: EpisodeSteps<f64>,
     /// C: the sum of the weights of each pair.
     weights: Vec<f64>,
+    /// W.
+    weight: f64,
     /// b(A|S) of the next action.
     probability: f64,
     /// α, and the smallest step size.
@@ -41,7 +43,7 @@ impl OffPolicyMonteCarlo {
         stop: &StopFlag<'_>,
     ) -> Result<Self, AllocationError> {
         let (steps, weights) = (EpisodeSteps::new(max_episode_steps), filled(&0.0, pairs, stop)?);
-        Ok(Self { steps, weights, probability: 1.0, learning_rate })
+        Ok(Self { steps, weights, weight: 1.0, probability: 1.0, learning_rate })
     }
 
     /// Samples an action, and keeps its probability before any value changes.
@@ -52,25 +54,22 @@ impl OffPolicyMonteCarlo {
         action
     }
 
-    /// Learns from the steps of the episode; `following` is the value of its last state.
-    fn finish(&mut self, agent: &mut Agent, mut following: f64) {
-        let (rate, least) = self.learning_rate;
-        let mut weight = 1.0;
-        for step in self.steps.drain(row_work(agent.table.num_actions())) {
+    /// Learns from the steps of the episode, or from a part of them.
+    fn finish(&mut self, agent: &mut Agent) {
+        let Self { steps, weights, weight, learning_rate: (rate, least), .. } = self;
+        steps.finish(row_work(agent.table.num_actions()), |following, step| {
             let action = step.action as usize;
-            following = agent.discount * following + step.reward;
-            let sum = &mut self.weights[agent.table.weight_index(step.row, action)];
-            *sum += weight;
-            let step_size = (rate * weight / *sum).max(least);
+            *following = agent.discount * *following + step.reward;
+            let sum = &mut weights[agent.table.weight_index(step.row, action)];
+            *sum += *weight;
+            let step_size = (*rate * *weight / *sum).max(*least);
             // A weight can overflow.
             agent.table.check_finite(step_size);
             let value = agent.table.value_mut(step.row, action);
-            *value += step_size * (following - *value);
-            weight /= step.memo;
-            if argmax(agent.action_values([step.row])) != action {
-                break;
-            }
-        }
+            *value += step_size * (*following - *value);
+            *weight /= step.memo;
+            argmax(agent.action_values([step.row])) == action
+        });
     }
 }
 
@@ -92,12 +91,11 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for OffPolicyMonteCarlo {
         self.steps.push(single_row(&state), action, reward, self.probability, 2 * agent.work());
         match next {
             Next::NonTerminal(next_state) => return self.choose(agent, next_state, rng),
-            Next::Truncated(next_state) => {
-                let following = maximum(agent.action_values(next_state));
-                self.finish(agent, following);
-            }
-            Next::Terminal => self.finish(agent, 0.0),
+            Next::Truncated(next_state) => self.steps.following = maximum(agent.action_values(next_state)),
+            Next::Terminal => self.steps.following = 0.0,
         }
+        self.weight = 1.0;
+        self.finish(agent);
         0
     }
 
@@ -110,15 +108,23 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for OffPolicyMonteCarlo {
         self.steps.reserve(work, memory)
     }
 
-    fn end_episode(&mut self, _agent: &mut Agent) {}
+    #[inline]
+    fn is_unfinished(&self) -> bool {
+        self.steps.is_unfinished()
+    }
 
-    fn abandon_episode(&mut self, _agent: &mut Agent) {
+    fn resume(&mut self, agent: &mut Agent, _next: Next<R>, _rng: &mut impl Rng) -> usize {
+        self.finish(agent);
+        0
+    }
+
+    fn end_episode(&mut self, _agent: &mut Agent) {
         self.steps.clear();
     }
 
     fn persist(&mut self, shape: (usize, usize), checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
         self.steps.persist(shape, checkpoint)?;
-        self.probability.persist(checkpoint)?;
+        (&mut self.weight, &mut self.probability).persist(checkpoint)?;
         self.weights.persist(checkpoint)
     }
 }

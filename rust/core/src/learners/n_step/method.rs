@@ -120,6 +120,7 @@ impl<R: ActiveRows, M: NStepMethod<R>> UpdateRule<R, Agent> for NStep<R, M> {
     }
 
     fn end_episode(&mut self, _agent: &mut Agent) {
+        self.visits.clear();
         self.end.clear();
     }
 
@@ -175,11 +176,5 @@ impl<R: ActiveRows, M: NStepMethod<R>> UpdateRule<R, Agent> for NStep<R, M> {
             None
         };
         Ok(())
-    }
-
-    /// The pairs that await their updates are forgotten.
-    fn abandon_episode(&mut self, _agent: &mut Agent) {
-        self.end.clear();
-        self.visits.clear();
     }
 }

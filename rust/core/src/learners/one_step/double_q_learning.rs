@@ -1,7 +1,7 @@
 //! Double Q-learning (H. van Hasselt, 2010; Sutton & Barto, equation 6.10).
 
 use crate::checkpoint::{Checkpoint, CheckpointError};
-use crate::learners::{Agent, Learner, available};
+use crate::learners::{Agent, UpdateRule, available};
 use crate::numeric::argmax;
 use crate::policies::Policy;
 use crate::q_table::QTable;
@@ -12,11 +12,9 @@ use crate::tasks::Next;
 /// Q₁(S, A) ← Q₁(S, A) + α [R + γ Q₂(S′, argmaxₐ Q₁(S′, a)) - Q₁(S, A)] with probability 1/2, otherwise the same with Q₁
 /// and Q₂ exchanged.
 ///
-/// The policy uses Q₁ + Q₂. The argmax takes the first maximum, whatever the policy's tie breaking.
+/// Q₁ is the agent's table. The policy uses Q₁ + Q₂. The argmax takes the first maximum, whatever the policy's tie breaking.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DoubleQLearning {
-    /// Q₁, the policy and the constants.
-    pub agent: Agent,
     /// Q₂.
     pub second_table: QTable,
     /// The learning rate of Q₂, which counts the visits of Q₂ only.
@@ -26,33 +24,40 @@ pub struct DoubleQLearning {
 }
 
 impl DoubleQLearning {
-    /// An agent with a second table.
-    pub fn new(agent: Agent, second_table: QTable) -> Self {
+    /// An update rule for an agent with this learning rate, and for a second table.
+    pub fn new(learning_rate: LearningRate, second_table: QTable) -> Self {
         let sums = vec![0.0; second_table.num_actions()];
-        let second_learning_rate = agent.learning_rate.clone();
-        Self { agent, second_table, second_learning_rate, sums }
+        Self { second_table, second_learning_rate: learning_rate, sums }
     }
 
     #[inline]
-    fn choose(&mut self, rows: &[u32], rng: &mut impl Rng) -> usize {
-        self.sums.copy_from_slice(self.agent.action_values(rows));
+    fn choose(&mut self, agent: &mut Agent, rows: &[u32], rng: &mut impl Rng) -> usize {
+        self.sums.copy_from_slice(agent.action_values(rows));
         for (sum, value) in self.sums.iter_mut().zip(self.second_table.action_values(rows)) {
             *sum += value;
         }
-        self.agent.policy.choose_in(rows, &self.sums, rng)
+        agent.policy.choose_in(rows, &self.sums, rng)
     }
 }
 
-impl<R: Copy + AsRef<[u32]>> Learner<R> for DoubleQLearning {
+impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for DoubleQLearning {
     #[inline]
-    fn first_action(&mut self, state: R, rng: &mut impl Rng) -> usize {
-        self.choose(state.as_ref(), rng)
+    fn first_action(&mut self, agent: &mut Agent, state: R, rng: &mut impl Rng) -> Option<usize> {
+        Some(self.choose(agent, state.as_ref(), rng))
     }
 
     #[inline]
-    fn learn(&mut self, state: R, action: usize, reward: f64, next: Next<R>, rng: &mut impl Rng) -> usize {
+    fn learn(
+        &mut self,
+        agent: &mut Agent,
+        state: R,
+        action: usize,
+        reward: f64,
+        next: Next<R>,
+        rng: &mut impl Rng,
+    ) -> usize {
         let first = rng.random() < 0.5;
-        let Agent { table, learning_rate, discount, terminal_update, masks, .. } = &mut self.agent;
+        let Agent { table, learning_rate, discount, terminal_update, masks, .. } = &mut *agent;
         let (updated, other, learning_rate) = if first {
             (table, &self.second_table, learning_rate)
         } else {
@@ -69,53 +74,31 @@ impl<R: Copy + AsRef<[u32]>> Learner<R> for DoubleQLearning {
                 updated.update_terminal(state.as_ref(), action, reward, *terminal_update, learning_rate);
             }
         }
-        if let Next::NonTerminal(next_state) = next { self.choose(next_state.as_ref(), rng) } else { 0 }
+        if let Next::NonTerminal(next_state) = next { self.choose(agent, next_state.as_ref(), rng) } else { 0 }
     }
 
     #[inline]
-    fn set_action_mask(&mut self, state: R, mask: &[bool]) {
-        self.agent.set_action_mask(state, mask);
+    fn work(&self, agent: &Agent) -> u64 {
+        agent.work()
     }
 
-    fn action_masks(&self) -> Option<&[bool]> {
-        self.agent.action_masks()
+    fn second_table(&self) -> Option<&QTable> {
+        Some(&self.second_table)
     }
 
-    #[inline]
-    fn work(&self) -> u64 {
-        self.agent.work()
+    fn second_table_mut(&mut self) -> Option<&mut QTable> {
+        Some(&mut self.second_table)
     }
 
-    fn end_episode(&mut self) {
-        self.agent.end_episode();
+    fn end_episode(&mut self, _agent: &mut Agent) {
         self.second_learning_rate.end_episode();
     }
 
-    fn tables(&self) -> Vec<&[f64]> {
-        vec![self.agent.table.values(), self.second_table.values()]
-    }
+    /// The schedules count the episodes that end.
+    fn abandon_episode(&mut self, _agent: &mut Agent) {}
 
-    fn tables_mut(&mut self) -> Vec<&mut [f64]> {
-        vec![self.agent.table.values_mut(), self.second_table.values_mut()]
-    }
-
-    fn shape(&self) -> (usize, usize) {
-        self.agent.table.shape()
-    }
-
-    fn skip_episodes(&mut self, episodes: usize) {
-        (0..episodes).for_each(|_| <Self as Learner<R>>::end_episode(self));
-    }
-
-    fn abandon_episode(&mut self) {}
-
-    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
-        self.agent.persist_counts(checkpoint)?;
+    fn persist(&mut self, _shape: (usize, usize), checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
         self.second_learning_rate.persist_counts(checkpoint)
-    }
-
-    fn diverged(&self) -> bool {
-        self.agent.table.diverged() || self.second_table.diverged()
     }
 }
 
@@ -123,23 +106,32 @@ impl<R: Copy + AsRef<[u32]>> Learner<R> for DoubleQLearning {
 mod tests {
     use super::*;
     use crate::learners::test_support::{agent, rng};
+    use crate::learners::{Learner, TdLearner};
+
+    fn learner(first: &[f64], second: &[f64]) -> TdLearner<DoubleQLearning> {
+        let agent = agent(first);
+        let rule = DoubleQLearning::new(agent.learning_rate.clone(), QTable::new(second.to_vec(), 2));
+        TdLearner { agent, rule }
+    }
 
     #[test]
     fn each_table_is_updated_with_the_value_of_the_other() {
-        let mut learner = DoubleQLearning::new(agent(&[1.0, 0.0, 2.0, 4.0]), QTable::new(vec![3.0, 0.0, 8.0, 6.0], 2));
+        let mut learner = learner(&[1.0, 0.0, 2.0, 4.0], &[3.0, 0.0, 8.0, 6.0]);
+        let first_values = |learner: &TdLearner<DoubleQLearning>| {
+            (learner.agent.table.values()[0], learner.rule.second_table.values()[0])
+        };
         // The first random numbers are 0.636… and 0.269…, so Q₂ is updated first and then Q₁.
         let mut rng = rng();
         // The argmax of Q₂ is action 0, whose value in Q₁ is 2: 3 + 0.5 (-1 + 0.5 · 2 - 3)
         learner.learn([0], 0, -1.0, Next::Truncated([1]), &mut rng);
-        assert_eq!((learner.agent.table.values()[0], learner.second_table.values()[0]), (1.0, 1.5));
+        assert_eq!(first_values(&learner), (1.0, 1.5));
         // The argmax of Q₁ is action 1, whose value in Q₂ is 6: 1 + 0.5 (-1 + 0.5 · 6 - 1)
         learner.learn([0], 0, -1.0, Next::Truncated([1]), &mut rng);
-        assert_eq!((learner.agent.table.values()[0], learner.second_table.values()[0]), (1.5, 1.5));
+        assert_eq!(first_values(&learner), (1.5, 1.5));
     }
 
     #[test]
     fn the_policy_uses_the_sum_of_both_tables() {
-        let mut learner = DoubleQLearning::new(agent(&[1.0, 0.0]), QTable::new(vec![0.0, 2.0], 2));
-        assert_eq!(learner.first_action([0], &mut rng()), 1);
+        assert_eq!(learner(&[1.0, 0.0], &[0.0, 2.0]).first_action([0], &mut rng()), 1);
     }
 }

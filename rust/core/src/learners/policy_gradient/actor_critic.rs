@@ -1,8 +1,10 @@
 //! One-step actor-critic (Sutton & Barto, the box in section 13.5).
 
-use super::{Critic, PolicyGradientRule};
+use super::Critic;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
-use crate::learners::Agent;
+use crate::learners::{Agent, UpdateRule};
+use crate::q_table::QTable;
+use crate::random::Rng;
 use crate::tasks::Next;
 
 /// In each step:
@@ -13,15 +15,15 @@ use crate::tasks::Next;
 /// - I ← γ I
 #[derive(Clone, Debug, PartialEq)]
 pub struct ActorCritic {
+    critic: Critic,
     /// I = γᵗ
     power: f64,
 }
 
 impl ActorCritic {
     /// Before the first episode.
-    #[expect(clippy::new_without_default, reason = "as for the other learners")]
-    pub fn new() -> Self {
-        Self { power: 1.0 }
+    pub fn new(critic: Critic) -> Self {
+        Self { critic, power: 1.0 }
     }
 }
 
@@ -45,22 +47,22 @@ pub(super) fn td_error<R: Copy + AsRef<[u32]>>(
     error
 }
 
-impl<R: Copy + AsRef<[u32]>> PolicyGradientRule<R> for ActorCritic {
+impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for ActorCritic {
     #[inline]
     fn learn(
         &mut self,
         agent: &mut Agent,
-        critic: Option<&mut Critic>,
         state: R,
         action: usize,
         reward: f64,
         next: Next<R>,
-    ) {
-        let Some(critic) = critic else { return };
-        let error = td_error(agent, critic, state, reward, next);
-        critic.update(state, error);
+        rng: &mut impl Rng,
+    ) -> usize {
+        let error = td_error(agent, &self.critic, state, reward, next);
+        self.critic.update(state, error);
         agent.ascend(state, action, self.power * error);
         self.power *= agent.discount;
+        agent.next_action(next, rng)
     }
 
     #[inline]
@@ -68,7 +70,15 @@ impl<R: Copy + AsRef<[u32]>> PolicyGradientRule<R> for ActorCritic {
         agent.work()
     }
 
-    fn end_episode(&mut self) {
+    fn second_table(&self) -> Option<&QTable> {
+        Some(&self.critic.table)
+    }
+
+    fn second_table_mut(&mut self) -> Option<&mut QTable> {
+        Some(&mut self.critic.table)
+    }
+
+    fn end_episode(&mut self, _agent: &mut Agent) {
         self.power = 1.0;
     }
 
@@ -81,15 +91,14 @@ impl<R: Copy + AsRef<[u32]>> PolicyGradientRule<R> for ActorCritic {
 mod tests {
     use super::*;
     use crate::learners::test_support::{agent, rng};
-    use crate::learners::{Learner, PolicyGradientLearner};
+    use crate::learners::{Learner, TdLearner};
     use crate::policies::AnyPolicy;
-    use crate::q_table::QTable;
 
     #[test]
     fn two_steps_by_hand() {
         let agent = Agent { policy: AnyPolicy::softmax(1.0, 2), ..agent(&[0.0; 4]) };
         let critic = Critic { table: QTable::new(vec![1.0, 1.0, 4.0, 4.0], 2), step_size: 0.25 };
-        let mut learner = PolicyGradientLearner { agent, critic: Some(critic), rule: ActorCritic::new() };
+        let mut learner = TdLearner { agent, rule: ActorCritic::new(critic) };
         // δ = 3 + 0.5 · 4 - 1
         learner.learn([0], 0, 3.0, Next::NonTerminal([1]), &mut rng());
         assert_eq!(Learner::<[u32; 1]>::tables(&learner), [&[1.0, -1.0, 0.0, 0.0], &[2.0, 2.0, 4.0, 4.0]]);

@@ -1,11 +1,13 @@
 //! Actor-critic with eligibility traces (Sutton & Barto, the box in section 13.5).
 
+use super::Critic;
 use super::actor_critic::td_error;
-use super::{Critic, PolicyGradientRule};
 use crate::StopFlag;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
-use crate::learners::{Agent, VALUES_PER_WORK};
+use crate::learners::{Agent, UpdateRule, VALUES_PER_WORK};
 use crate::memory::{AllocationError, RunMemory, filled, reserve};
+use crate::q_table::QTable;
+use crate::random::Rng;
 use crate::tasks::Next;
 
 /// The mark of a row without traces.
@@ -23,6 +25,7 @@ const NONE: u32 = u32::MAX;
 /// Both traces have the same λ.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ActorCriticLambda {
+    critic: Critic,
     trace_decay: f64,
     /// I = γᵗ
     power: f64,
@@ -37,14 +40,14 @@ pub struct ActorCriticLambda {
 }
 
 impl ActorCriticLambda {
-    /// With the trace decay λ, for a table of so many rows.
+    /// With the trace decay λ.
     ///
     /// # Errors
     /// `OutOfMemory`; `Stopped` after `stop` was set.
-    pub fn new(trace_decay: f64, n_rows: usize, stop: &StopFlag<'_>) -> Result<Self, AllocationError> {
-        let positions = filled(&NONE, n_rows, stop)?;
+    pub fn new(critic: Critic, trace_decay: f64, stop: &StopFlag<'_>) -> Result<Self, AllocationError> {
+        let positions = filled(&NONE, critic.table.shape().0, stop)?;
         let (visited, value_traces, preference_traces) = (Vec::new(), Vec::new(), Vec::new());
-        Ok(Self { trace_decay, power: 1.0, visited, positions, value_traces, preference_traces })
+        Ok(Self { critic, trace_decay, power: 1.0, visited, positions, value_traces, preference_traces })
     }
 
     /// The position of a row, which gets traces if it has none.
@@ -67,21 +70,31 @@ impl ActorCriticLambda {
         reserve(&mut self.value_traces, missing)?;
         reserve(&mut self.preference_traces, missing * num_actions)
     }
+
+    /// Forgets the traces of the episode.
+    fn clear(&mut self) {
+        for &row in &self.visited {
+            self.positions[row as usize] = NONE;
+        }
+        self.visited.clear();
+        self.value_traces.clear();
+        self.preference_traces.clear();
+        self.power = 1.0;
+    }
 }
 
-impl<R: Copy + AsRef<[u32]>> PolicyGradientRule<R> for ActorCriticLambda {
+impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for ActorCriticLambda {
     #[inline]
     fn learn(
         &mut self,
         agent: &mut Agent,
-        critic: Option<&mut Critic>,
         state: R,
         action: usize,
         reward: f64,
         next: Next<R>,
-    ) {
-        let Some(critic) = critic else { return };
-        let error = td_error(agent, critic, state, reward, next);
+        rng: &mut impl Rng,
+    ) -> usize {
+        let error = td_error(agent, &self.critic, state, reward, next);
         let num_actions = agent.table.num_actions();
         let decay = agent.discount * self.trace_decay;
         for trace in self.value_traces.iter_mut().chain(&mut self.preference_traces) {
@@ -101,12 +114,13 @@ impl<R: Copy + AsRef<[u32]>> PolicyGradientRule<R> for ActorCriticLambda {
         let step = agent.step_size() * error;
         let traces = self.value_traces.iter().zip(self.preference_traces.chunks_exact(num_actions));
         for (&row, (value_trace, preference_traces)) in self.visited.iter().zip(traces) {
-            critic.add(row, critic.step_size * error * value_trace);
+            self.critic.add(row, self.critic.step_size * error * value_trace);
             for (action, trace) in preference_traces.iter().enumerate() {
                 *agent.table.value_mut(row, action) += step * trace;
             }
         }
         self.power *= agent.discount;
+        agent.next_action(next, rng)
     }
 
     #[inline]
@@ -115,18 +129,21 @@ impl<R: Copy + AsRef<[u32]>> PolicyGradientRule<R> for ActorCriticLambda {
     }
 
     /// The caller knows of these bytes: they are those of a table.
-    fn reserve(&mut self, shape: (usize, usize), _work: u64, _memory: &mut RunMemory) -> Result<(), AllocationError> {
-        self.make_room(shape.0, shape.1)
+    fn reserve(&mut self, agent: &mut Agent, _work: u64, _memory: &mut RunMemory) -> Result<(), AllocationError> {
+        let (n_rows, num_actions) = agent.table.shape();
+        self.make_room(n_rows, num_actions)
     }
 
-    fn end_episode(&mut self) {
-        for &row in &self.visited {
-            self.positions[row as usize] = NONE;
-        }
-        self.visited.clear();
-        self.value_traces.clear();
-        self.preference_traces.clear();
-        self.power = 1.0;
+    fn second_table(&self) -> Option<&QTable> {
+        Some(&self.critic.table)
+    }
+
+    fn second_table_mut(&mut self) -> Option<&mut QTable> {
+        Some(&mut self.critic.table)
+    }
+
+    fn end_episode(&mut self, _agent: &mut Agent) {
+        self.clear();
     }
 
     fn persist(
@@ -137,7 +154,7 @@ impl<R: Copy + AsRef<[u32]>> PolicyGradientRule<R> for ActorCriticLambda {
         let mut count = self.visited.len();
         checkpoint.index(&mut count, num_rows + 1, "number of rows")?;
         if checkpoint.is_restoring() {
-            PolicyGradientRule::<[u32; 1]>::end_episode(self);
+            self.clear();
             self.make_room(num_rows, num_actions).map_err(|_| CheckpointError::OutOfMemory)?;
         }
         for index in 0..count {
@@ -155,16 +172,15 @@ impl<R: Copy + AsRef<[u32]>> PolicyGradientRule<R> for ActorCriticLambda {
 mod tests {
     use super::*;
     use crate::learners::test_support::{agent, rng};
-    use crate::learners::{Learner, PolicyGradientLearner};
+    use crate::learners::{Learner, TdLearner};
     use crate::policies::AnyPolicy;
-    use crate::q_table::QTable;
 
     #[test]
     fn an_error_updates_earlier_states_along_the_traces() {
         let agent = Agent { policy: AnyPolicy::softmax(1.0, 2), ..agent(&[0.0; 4]) };
         let critic = Critic { table: QTable::new(vec![1.0, 1.0, 4.0, 4.0], 2), step_size: 0.25 };
-        let rule = ActorCriticLambda::new(0.5, 2, &StopFlag::new()).expect("two rows");
-        let mut learner = PolicyGradientLearner { agent, critic: Some(critic), rule };
+        let rule = ActorCriticLambda::new(critic, 0.5, &StopFlag::new()).expect("two rows");
+        let mut learner = TdLearner { agent, rule };
         learner.rule.make_room(2, 2).expect("two rows");
         // δ = 3 + 0.5 · 4 - 1
         learner.learn([0], 0, 3.0, Next::NonTerminal([1]), &mut rng());

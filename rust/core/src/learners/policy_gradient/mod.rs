@@ -4,11 +4,9 @@ mod actor_critic;
 mod actor_critic_lambda;
 mod critic;
 mod gradient;
-mod learner;
 mod reinforce;
 
 pub use actor_critic::ActorCritic;
 pub use actor_critic_lambda::ActorCriticLambda;
 pub use critic::Critic;
-pub use learner::{PolicyGradientLearner, PolicyGradientRule};
 pub use reinforce::Reinforce;

@@ -1,10 +1,12 @@
 //! REINFORCE (R. Williams, 1992; Sutton & Barto, the boxes in sections 13.3 and 13.4).
 
-use super::{Critic, PolicyGradientRule};
+use super::Critic;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist, persist_rows};
 use crate::features::ActiveRows;
-use crate::learners::{Agent, VALUES_PER_WORK};
+use crate::learners::{Agent, StepInParts, UpdateRule};
 use crate::memory::{AllocationError, RunMemory, reserve};
+use crate::q_table::QTable;
+use crate::random::Rng;
 use crate::tasks::Next;
 
 /// A state-action pair, and the reward that followed; at the end of the episode its return.
@@ -24,72 +26,104 @@ struct PastStep<R> {
 /// An episode that its time limit cuts off has the return up to there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reinforce<R> {
-    /// The steps of the episode.
+    baseline: Option<Critic>,
+    /// The steps of the episode, and how many of them have been learned from.
     steps: Vec<PastStep<R>>,
-    /// The work of the last step.
-    work: u64,
+    learned: usize,
+    /// γᵗ
+    power: f64,
+    /// The learning at the end of the episode.
+    end: StepInParts,
 }
 
 impl<R: ActiveRows> Reinforce<R> {
     /// Before the first episode.
-    #[expect(clippy::new_without_default, reason = "as for the other learners")]
-    pub fn new() -> Self {
-        Self { steps: Vec::new(), work: 1 }
+    pub fn new(baseline: Option<Critic>) -> Self {
+        Self { baseline, steps: Vec::new(), learned: 0, power: 1.0, end: StepInParts::new() }
     }
 
-    /// Learns from the steps of the episode.
-    #[inline(never)]
-    fn finish(&mut self, agent: &mut Agent, mut critic: Option<&mut Critic>) {
+    /// Turns the rewards into returns, from the last step back.
+    fn sum_rewards(&mut self, discount: f64) {
         let mut episode_return = 0.0;
         for step in self.steps.iter_mut().rev() {
-            episode_return = step.reward + agent.discount * episode_return;
+            episode_return = step.reward + discount * episode_return;
             step.reward = episode_return;
         }
-        let mut power = 1.0;
-        for &PastStep { rows, action, reward: episode_return } in &self.steps {
+    }
+
+    /// Learns from the steps of the episode, or from a part of them where they are many.
+    #[inline(never)]
+    fn finish(&mut self, agent: &mut Agent) {
+        let Self { baseline, steps, learned, power, end } = self;
+        end.advance(|| {
+            let Some(&PastStep { rows, action, reward: episode_return }) = steps.get(*learned) else {
+                return (0, false);
+            };
             let mut error = episode_return;
-            if let Some(critic) = &mut critic {
+            if let Some(critic) = baseline {
                 error -= critic.value(rows);
                 critic.update(rows, error);
             }
-            agent.ascend(rows, action, power * error);
-            power *= agent.discount;
-        }
-        let steps = self.steps.len() as u64;
-        self.work += steps * agent.work() + steps / VALUES_PER_WORK;
+            agent.ascend(rows, action, *power * error);
+            *power *= agent.discount;
+            *learned += 1;
+            (agent.work(), *learned < steps.len())
+        });
     }
 }
 
-impl<R: ActiveRows> PolicyGradientRule<R> for Reinforce<R> {
+impl<R: ActiveRows> UpdateRule<R, Agent> for Reinforce<R> {
     #[inline]
     fn learn(
         &mut self,
         agent: &mut Agent,
-        critic: Option<&mut Critic>,
         state: R,
         action: usize,
         reward: f64,
         next: Next<R>,
-    ) {
+        rng: &mut impl Rng,
+    ) -> usize {
         self.steps.push(PastStep { rows: state, action, reward });
-        self.work = agent.work();
         if !matches!(next, Next::NonTerminal(_)) {
-            self.finish(agent, critic);
+            self.sum_rewards(agent.discount);
+            self.finish(agent);
         }
+        agent.next_action(next, rng)
     }
 
     #[inline]
-    fn work(&self, _agent: &Agent) -> u64 {
-        self.work
+    fn work(&self, agent: &Agent) -> u64 {
+        agent.work() + self.end.work()
     }
 
     /// An episode has as many steps as there is work for them.
-    fn reserve(&mut self, _shape: (usize, usize), work: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
+    fn reserve(&mut self, _agent: &mut Agent, work: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
         memory.reserve(&mut self.steps, usize::try_from(work).unwrap_or(usize::MAX).min(1 << 20))
     }
 
-    fn end_episode(&mut self) {
+    #[inline]
+    fn is_unfinished(&self) -> bool {
+        self.end.is_unfinished()
+    }
+
+    /// Only the end of an episode is left unfinished: there is no next action.
+    fn resume(&mut self, agent: &mut Agent, _next: Next<R>, _rng: &mut impl Rng) -> usize {
+        self.finish(agent);
+        0
+    }
+
+    fn second_table(&self) -> Option<&QTable> {
+        self.baseline.as_ref().map(|critic| &critic.table)
+    }
+
+    fn second_table_mut(&mut self) -> Option<&mut QTable> {
+        self.baseline.as_mut().map(|critic| &mut critic.table)
+    }
+
+    fn end_episode(&mut self, _agent: &mut Agent) {
         self.steps.clear();
+        self.end.clear();
+        (self.learned, self.power) = (0, 1.0);
     }
 
     fn persist(
@@ -113,7 +147,8 @@ impl<R: ActiveRows> PolicyGradientRule<R> for Reinforce<R> {
                 self.steps.push(PastStep { rows, action, reward });
             }
         }
-        Ok(())
+        checkpoint.index(&mut self.learned, self.steps.len() + 1, "number of steps")?;
+        (&mut self.power, &mut self.end).persist(checkpoint)
     }
 }
 
@@ -121,13 +156,12 @@ impl<R: ActiveRows> PolicyGradientRule<R> for Reinforce<R> {
 mod tests {
     use super::*;
     use crate::learners::test_support::{agent, rng};
-    use crate::learners::{Learner, PolicyGradientLearner};
+    use crate::learners::{Learner, TdLearner};
     use crate::policies::AnyPolicy;
-    use crate::q_table::QTable;
 
-    fn learner(critic: Option<Critic>) -> PolicyGradientLearner<Reinforce<[u32; 1]>> {
+    fn learner(critic: Option<Critic>) -> TdLearner<Reinforce<[u32; 1]>> {
         let agent = Agent { policy: AnyPolicy::softmax(1.0, 2), ..agent(&[0.0; 4]) };
-        PolicyGradientLearner { agent, critic, rule: Reinforce::new() }
+        TdLearner { agent, rule: Reinforce::new(critic) }
     }
 
     #[test]

@@ -14,6 +14,9 @@ use crate::simd::SimdLevel;
 
 /// The eligible weights, those whose traces are not zero, and some whose traces have become zero. Each has a place. While the
 /// run learns, their values have moved out of the table, to the same places behind it; see [`QTable::values_at`].
+///
+/// Updating the values in the table instead, each at the index of its weight, takes a pass 2.7 (64 traces) to 7.6 times (256
+/// traces) as long, measured with AVX2 on an Intel Xeon; a run of Sarsa(λ) with 8 tilings has some hundreds of traces.
 #[derive(Clone, Debug)]
 pub(super) struct EligibleWeights {
     /// The number of places in use. They are the first ones.
