@@ -8,6 +8,7 @@ use pulp::cast;
 use pulp::x86::V3;
 
 use super::Simd;
+use super::operations::operations;
 use super::portable::all_bits;
 use super::registers::{WIDTH, bools, both, narrowed, pairs_of, widened};
 
@@ -19,6 +20,65 @@ impl Simd for V3 {
     type U64s<const K: usize> = [__m256i; 2];
     /// All bits of a lane, or none.
     type Mask<const K: usize> = [__m256i; 2];
+
+    operations! {
+        self, both |half|;
+        f64s_add(a: F64s, b: F64s) -> F64s = self.avx._mm256_add_pd(a[half], b[half]);
+        f64s_sub(a: F64s, b: F64s) -> F64s = self.avx._mm256_sub_pd(a[half], b[half]);
+        f64s_mul(a: F64s, b: F64s) -> F64s = self.avx._mm256_mul_pd(a[half], b[half]);
+        f64s_div(a: F64s, b: F64s) -> F64s = self.avx._mm256_div_pd(a[half], b[half]);
+        f64s_mul_add(a: F64s, b: F64s, c: F64s) -> F64s = self.fma._mm256_fmadd_pd(a[half], b[half], c[half]);
+        f64s_larger(a: F64s, b: F64s) -> F64s = self.avx._mm256_max_pd(a[half], b[half]);
+        f64s_smaller(a: F64s, b: F64s) -> F64s = self.avx._mm256_min_pd(a[half], b[half]);
+        f64s_less(a: F64s, b: F64s) -> Mask = cast(self.avx._mm256_cmp_pd::<_CMP_LT_OQ>(a[half], b[half]));
+        f64s_less_or_equal(a: F64s, b: F64s) -> Mask = cast(self.avx._mm256_cmp_pd::<_CMP_LE_OQ>(a[half], b[half]));
+        f64s_equal(a: F64s, b: F64s) -> Mask = cast(self.avx._mm256_cmp_pd::<_CMP_EQ_OQ>(a[half], b[half]));
+        f64s_select(m: Mask, yes: F64s, no: F64s) -> F64s = {
+            self.avx._mm256_blendv_pd(no[half], yes[half], cast(m[half]))
+        };
+        f64s_to_f32s(a: F64s) -> F32s = self.avx._mm256_cvtpd_ps(a[half]);
+        f32s_sub(a: F32s, b: F32s) -> F32s = self.sse._mm_sub_ps(a[half], b[half]);
+        f32s_to_f64s(a: F32s) -> F64s = self.avx._mm256_cvtps_pd(a[half]);
+        u64s_add(a: U64s, b: U64s) -> U64s = self.avx2._mm256_add_epi64(a[half], b[half]);
+        u64s_sub(a: U64s, b: U64s) -> U64s = self.avx2._mm256_sub_epi64(a[half], b[half]);
+        /// By halves of numbers: the upper half of the product is the sum of two products' lower halves and one's upper half.
+        u64s_mul(a: U64s, b: U64s) -> U64s = {
+            let first = self.avx2._mm256_mul_epu32(self.avx2._mm256_srli_epi64::<32>(a[half]), b[half]);
+            let second = self.avx2._mm256_mul_epu32(a[half], self.avx2._mm256_srli_epi64::<32>(b[half]));
+            let crossed = self.avx2._mm256_slli_epi64::<32>(self.avx2._mm256_add_epi64(first, second));
+            self.avx2._mm256_add_epi64(self.avx2._mm256_mul_epu32(a[half], b[half]), crossed)
+        };
+        u64s_mul_lower(a: U64s, b: U64s) -> U64s = self.avx2._mm256_mul_epu32(a[half], b[half]);
+        u64s_and(a: U64s, b: U64s) -> U64s = self.avx2._mm256_and_si256(a[half], b[half]);
+        u64s_or(a: U64s, b: U64s) -> U64s = self.avx2._mm256_or_si256(a[half], b[half]);
+        u64s_xor(a: U64s, b: U64s) -> U64s = self.avx2._mm256_xor_si256(a[half], b[half]);
+        /// A shift by 64 bits gives 0.
+        u64s_rotate_right(a: U64s, bits: U64s) -> U64s = {
+            let others = self.avx2._mm256_sub_epi64(self.avx._mm256_set1_epi64x(64), bits[half]);
+            let right = self.avx2._mm256_srlv_epi64(a[half], bits[half]);
+            let left = self.avx2._mm256_sllv_epi64(a[half], others);
+            self.avx2._mm256_or_si256(right, left)
+        };
+        /// As signed integers of the same order.
+        u64s_less(a: U64s, b: U64s) -> Mask = {
+            let least = self.avx._mm256_set1_epi64x(i64::MIN);
+            self.avx2._mm256_cmpgt_epi64(self.avx2._mm256_xor_si256(b[half], least), self.avx2._mm256_xor_si256(a[half], least))
+        };
+        u64s_equal(a: U64s, b: U64s) -> Mask = self.avx2._mm256_cmpeq_epi64(a[half], b[half]);
+        u64s_select(m: Mask, yes: U64s, no: U64s) -> U64s = self.avx2._mm256_blendv_epi8(no[half], yes[half], m[half]);
+    }
+
+    operations! {
+        self;
+        f64s_to_bits(a: F64s) -> U64s = a.map(cast);
+        f64s_from_bits(a: U64s) -> F64s = a.map(cast);
+        mask_and(a: Mask, b: Mask) -> Mask = self.u64s_and::<K>(a, b);
+        mask_or(a: Mask, b: Mask) -> Mask = self.u64s_or::<K>(a, b);
+        mask_xor(a: Mask, b: Mask) -> Mask = self.u64s_xor::<K>(a, b);
+        mask_not(a: Mask) -> Mask = self.u64s_xor::<K>(a, [self.avx._mm256_set1_epi64x(-1); 2]);
+        /// A mask is -1 as a number.
+        u64s_increment(m: Mask, a: U64s) -> U64s = self.u64s_sub::<K>(a, m);
+    }
 
     #[inline(always)]
     fn f64s<const K: usize>(self, array: [f64; K]) -> [__m256d; 2] {
@@ -33,76 +93,6 @@ impl Simd for V3 {
     #[inline(always)]
     fn f64s_splat<const K: usize>(self, number: f64) -> [__m256d; 2] {
         [self.avx._mm256_set1_pd(number); 2]
-    }
-
-    #[inline(always)]
-    fn f64s_add<const K: usize>(self, a: [__m256d; 2], b: [__m256d; 2]) -> [__m256d; 2] {
-        both!(K, |half| self.avx._mm256_add_pd(a[half], b[half]))
-    }
-
-    #[inline(always)]
-    fn f64s_sub<const K: usize>(self, a: [__m256d; 2], b: [__m256d; 2]) -> [__m256d; 2] {
-        both!(K, |half| self.avx._mm256_sub_pd(a[half], b[half]))
-    }
-
-    #[inline(always)]
-    fn f64s_mul<const K: usize>(self, a: [__m256d; 2], b: [__m256d; 2]) -> [__m256d; 2] {
-        both!(K, |half| self.avx._mm256_mul_pd(a[half], b[half]))
-    }
-
-    #[inline(always)]
-    fn f64s_div<const K: usize>(self, a: [__m256d; 2], b: [__m256d; 2]) -> [__m256d; 2] {
-        both!(K, |half| self.avx._mm256_div_pd(a[half], b[half]))
-    }
-
-    #[inline(always)]
-    fn f64s_mul_add<const K: usize>(self, a: [__m256d; 2], b: [__m256d; 2], c: [__m256d; 2]) -> [__m256d; 2] {
-        both!(K, |half| self.fma._mm256_fmadd_pd(a[half], b[half], c[half]))
-    }
-
-    #[inline(always)]
-    fn f64s_larger<const K: usize>(self, a: [__m256d; 2], b: [__m256d; 2]) -> [__m256d; 2] {
-        both!(K, |half| self.avx._mm256_max_pd(a[half], b[half]))
-    }
-
-    #[inline(always)]
-    fn f64s_smaller<const K: usize>(self, a: [__m256d; 2], b: [__m256d; 2]) -> [__m256d; 2] {
-        both!(K, |half| self.avx._mm256_min_pd(a[half], b[half]))
-    }
-
-    #[inline(always)]
-    fn f64s_less<const K: usize>(self, a: [__m256d; 2], b: [__m256d; 2]) -> [__m256i; 2] {
-        both!(K, |half| cast(self.avx._mm256_cmp_pd::<_CMP_LT_OQ>(a[half], b[half])))
-    }
-
-    #[inline(always)]
-    fn f64s_less_or_equal<const K: usize>(self, a: [__m256d; 2], b: [__m256d; 2]) -> [__m256i; 2] {
-        both!(K, |half| cast(self.avx._mm256_cmp_pd::<_CMP_LE_OQ>(a[half], b[half])))
-    }
-
-    #[inline(always)]
-    fn f64s_equal<const K: usize>(self, a: [__m256d; 2], b: [__m256d; 2]) -> [__m256i; 2] {
-        both!(K, |half| cast(self.avx._mm256_cmp_pd::<_CMP_EQ_OQ>(a[half], b[half])))
-    }
-
-    #[inline(always)]
-    fn f64s_select<const K: usize>(self, m: [__m256i; 2], yes: [__m256d; 2], no: [__m256d; 2]) -> [__m256d; 2] {
-        both!(K, |half| self.avx._mm256_blendv_pd(no[half], yes[half], cast(m[half])))
-    }
-
-    #[inline(always)]
-    fn f64s_to_bits<const K: usize>(self, a: [__m256d; 2]) -> [__m256i; 2] {
-        a.map(cast)
-    }
-
-    #[inline(always)]
-    fn f64s_from_bits<const K: usize>(self, a: [__m256i; 2]) -> [__m256d; 2] {
-        a.map(cast)
-    }
-
-    #[inline(always)]
-    fn f64s_to_f32s<const K: usize>(self, a: [__m256d; 2]) -> [__m128; 2] {
-        both!(K, |half| self.avx._mm256_cvtpd_ps(a[half]))
     }
 
     /// Pairs of columns together: a row's pair of numbers is half a register.
@@ -135,16 +125,6 @@ impl Simd for V3 {
     }
 
     #[inline(always)]
-    fn f32s_sub<const K: usize>(self, a: [__m128; 2], b: [__m128; 2]) -> [__m128; 2] {
-        both!(K, |half| self.sse._mm_sub_ps(a[half], b[half]))
-    }
-
-    #[inline(always)]
-    fn f32s_to_f64s<const K: usize>(self, a: [__m128; 2]) -> [__m256d; 2] {
-        both!(K, |half| self.avx._mm256_cvtps_pd(a[half]))
-    }
-
-    #[inline(always)]
     fn u64s<const K: usize>(self, array: [u64; K]) -> [__m256i; 2] {
         cast(widened(array, 0))
     }
@@ -160,47 +140,6 @@ impl Simd for V3 {
     }
 
     #[inline(always)]
-    fn u64s_add<const K: usize>(self, a: [__m256i; 2], b: [__m256i; 2]) -> [__m256i; 2] {
-        both!(K, |half| self.avx2._mm256_add_epi64(a[half], b[half]))
-    }
-
-    #[inline(always)]
-    fn u64s_sub<const K: usize>(self, a: [__m256i; 2], b: [__m256i; 2]) -> [__m256i; 2] {
-        both!(K, |half| self.avx2._mm256_sub_epi64(a[half], b[half]))
-    }
-
-    /// By halves of numbers: the upper half of the product is the sum of two products' lower halves and one's upper half.
-    #[inline(always)]
-    fn u64s_mul<const K: usize>(self, a: [__m256i; 2], b: [__m256i; 2]) -> [__m256i; 2] {
-        both!(K, |half| {
-            let first = self.avx2._mm256_mul_epu32(self.avx2._mm256_srli_epi64::<32>(a[half]), b[half]);
-            let second = self.avx2._mm256_mul_epu32(a[half], self.avx2._mm256_srli_epi64::<32>(b[half]));
-            let crossed = self.avx2._mm256_slli_epi64::<32>(self.avx2._mm256_add_epi64(first, second));
-            self.avx2._mm256_add_epi64(self.avx2._mm256_mul_epu32(a[half], b[half]), crossed)
-        })
-    }
-
-    #[inline(always)]
-    fn u64s_mul_lower<const K: usize>(self, a: [__m256i; 2], b: [__m256i; 2]) -> [__m256i; 2] {
-        both!(K, |half| self.avx2._mm256_mul_epu32(a[half], b[half]))
-    }
-
-    #[inline(always)]
-    fn u64s_and<const K: usize>(self, a: [__m256i; 2], b: [__m256i; 2]) -> [__m256i; 2] {
-        both!(K, |half| self.avx2._mm256_and_si256(a[half], b[half]))
-    }
-
-    #[inline(always)]
-    fn u64s_or<const K: usize>(self, a: [__m256i; 2], b: [__m256i; 2]) -> [__m256i; 2] {
-        both!(K, |half| self.avx2._mm256_or_si256(a[half], b[half]))
-    }
-
-    #[inline(always)]
-    fn u64s_xor<const K: usize>(self, a: [__m256i; 2], b: [__m256i; 2]) -> [__m256i; 2] {
-        both!(K, |half| self.avx2._mm256_xor_si256(a[half], b[half]))
-    }
-
-    #[inline(always)]
     fn u64s_shift_left<const BITS: i32, const K: usize>(self, a: [__m256i; 2]) -> [__m256i; 2] {
         both!(K, |half| self.avx2._mm256_slli_epi64::<BITS>(a[half]))
     }
@@ -208,41 +147,6 @@ impl Simd for V3 {
     #[inline(always)]
     fn u64s_shift_right<const BITS: i32, const K: usize>(self, a: [__m256i; 2]) -> [__m256i; 2] {
         both!(K, |half| self.avx2._mm256_srli_epi64::<BITS>(a[half]))
-    }
-
-    /// A shift by 64 bits gives 0.
-    #[inline(always)]
-    fn u64s_rotate_right<const K: usize>(self, a: [__m256i; 2], bits: [__m256i; 2]) -> [__m256i; 2] {
-        both!(K, |half| {
-            let others = self.avx2._mm256_sub_epi64(self.avx._mm256_set1_epi64x(64), bits[half]);
-            let right = self.avx2._mm256_srlv_epi64(a[half], bits[half]);
-            let left = self.avx2._mm256_sllv_epi64(a[half], others);
-            self.avx2._mm256_or_si256(right, left)
-        })
-    }
-
-    #[inline(always)]
-    fn u64s_less<const K: usize>(self, a: [__m256i; 2], b: [__m256i; 2]) -> [__m256i; 2] {
-        // Signed integers of the same order can be compared.
-        let least = [self.avx._mm256_set1_epi64x(i64::MIN); 2];
-        let [a, b] = [self.u64s_xor::<K>(a, least), self.u64s_xor::<K>(b, least)];
-        both!(K, |half| self.avx2._mm256_cmpgt_epi64(b[half], a[half]))
-    }
-
-    #[inline(always)]
-    fn u64s_increment<const K: usize>(self, m: [__m256i; 2], a: [__m256i; 2]) -> [__m256i; 2] {
-        // A mask is -1 as a number.
-        self.u64s_sub::<K>(a, m)
-    }
-
-    #[inline(always)]
-    fn u64s_equal<const K: usize>(self, a: [__m256i; 2], b: [__m256i; 2]) -> [__m256i; 2] {
-        both!(K, |half| self.avx2._mm256_cmpeq_epi64(a[half], b[half]))
-    }
-
-    #[inline(always)]
-    fn u64s_select<const K: usize>(self, m: [__m256i; 2], yes: [__m256i; 2], no: [__m256i; 2]) -> [__m256i; 2] {
-        both!(K, |half| self.avx2._mm256_blendv_epi8(no[half], yes[half], m[half]))
     }
 
     #[inline(always)]
@@ -253,26 +157,6 @@ impl Simd for V3 {
     #[inline(always)]
     fn bool_array<const K: usize>(self, a: [__m256i; 2]) -> [bool; K] {
         bools(self.mask_bits::<K>(a))
-    }
-
-    #[inline(always)]
-    fn mask_and<const K: usize>(self, a: [__m256i; 2], b: [__m256i; 2]) -> [__m256i; 2] {
-        self.u64s_and::<K>(a, b)
-    }
-
-    #[inline(always)]
-    fn mask_or<const K: usize>(self, a: [__m256i; 2], b: [__m256i; 2]) -> [__m256i; 2] {
-        self.u64s_or::<K>(a, b)
-    }
-
-    #[inline(always)]
-    fn mask_xor<const K: usize>(self, a: [__m256i; 2], b: [__m256i; 2]) -> [__m256i; 2] {
-        self.u64s_xor::<K>(a, b)
-    }
-
-    #[inline(always)]
-    fn mask_not<const K: usize>(self, a: [__m256i; 2]) -> [__m256i; 2] {
-        self.u64s_xor::<K>(a, [self.avx._mm256_set1_epi64x(-1); 2])
     }
 
     #[inline(always)]

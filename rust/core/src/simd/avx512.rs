@@ -8,6 +8,7 @@ use pulp::cast;
 use pulp::x86::V4;
 
 use super::Simd;
+use super::operations::operations;
 use super::registers::{bools, narrowed, pairs_of, widened};
 
 /// The numbers of two registers of AVX2.
@@ -25,6 +26,44 @@ impl Simd for V4 {
     /// A bit for each lane; those of lanes that are not in use are arbitrary.
     type Mask<const K: usize> = u8;
 
+    operations! {
+        self;
+        f64s_add(a: F64s, b: F64s) -> F64s = self.avx512f._mm512_add_pd(a, b);
+        f64s_sub(a: F64s, b: F64s) -> F64s = self.avx512f._mm512_sub_pd(a, b);
+        f64s_mul(a: F64s, b: F64s) -> F64s = self.avx512f._mm512_mul_pd(a, b);
+        f64s_div(a: F64s, b: F64s) -> F64s = self.avx512f._mm512_div_pd(a, b);
+        f64s_mul_add(a: F64s, b: F64s, c: F64s) -> F64s = self.avx512f._mm512_fmadd_pd(a, b, c);
+        f64s_larger(a: F64s, b: F64s) -> F64s = self.avx512f._mm512_max_pd(a, b);
+        f64s_smaller(a: F64s, b: F64s) -> F64s = self.avx512f._mm512_min_pd(a, b);
+        f64s_less(a: F64s, b: F64s) -> Mask = self.avx512f._mm512_cmplt_pd_mask(a, b);
+        f64s_less_or_equal(a: F64s, b: F64s) -> Mask = self.avx512f._mm512_cmple_pd_mask(a, b);
+        f64s_equal(a: F64s, b: F64s) -> Mask = self.avx512f._mm512_cmpeq_pd_mask(a, b);
+        f64s_select(m: Mask, yes: F64s, no: F64s) -> F64s = self.avx512f._mm512_mask_blend_pd(m, no, yes);
+        f64s_to_bits(a: F64s) -> U64s = self.avx512f._mm512_castpd_si512(a);
+        f64s_from_bits(a: U64s) -> F64s = self.avx512f._mm512_castsi512_pd(a);
+        f64s_to_f32s(a: F64s) -> F32s = self.avx512f._mm512_cvtpd_ps(a);
+        f32s_sub(a: F32s, b: F32s) -> F32s = self.avx._mm256_sub_ps(a, b);
+        f32s_to_f64s(a: F32s) -> F64s = self.avx512f._mm512_cvtps_pd(a);
+        u64s_add(a: U64s, b: U64s) -> U64s = self.avx512f._mm512_add_epi64(a, b);
+        u64s_sub(a: U64s, b: U64s) -> U64s = self.avx512f._mm512_sub_epi64(a, b);
+        u64s_mul(a: U64s, b: U64s) -> U64s = self.avx512dq._mm512_mullo_epi64(a, b);
+        u64s_mul_lower(a: U64s, b: U64s) -> U64s = self.avx512f._mm512_mul_epu32(a, b);
+        u64s_and(a: U64s, b: U64s) -> U64s = self.avx512f._mm512_and_si512(a, b);
+        u64s_or(a: U64s, b: U64s) -> U64s = self.avx512f._mm512_or_si512(a, b);
+        u64s_xor(a: U64s, b: U64s) -> U64s = self.avx512f._mm512_xor_si512(a, b);
+        u64s_rotate_right(a: U64s, bits: U64s) -> U64s = self.avx512f._mm512_rorv_epi64(a, bits);
+        u64s_less(a: U64s, b: U64s) -> Mask = self.avx512f._mm512_cmplt_epu64_mask(a, b);
+        u64s_increment(m: Mask, a: U64s) -> U64s = {
+            self.avx512f._mm512_mask_add_epi64(a, m, a, self.avx512f._mm512_set1_epi64(1))
+        };
+        u64s_equal(a: U64s, b: U64s) -> Mask = self.avx512f._mm512_cmpeq_epi64_mask(a, b);
+        u64s_select(m: Mask, yes: U64s, no: U64s) -> U64s = self.avx512f._mm512_mask_blend_epi64(m, no, yes);
+        mask_and(a: Mask, b: Mask) -> Mask = a & b;
+        mask_or(a: Mask, b: Mask) -> Mask = a | b;
+        mask_xor(a: Mask, b: Mask) -> Mask = a ^ b;
+        mask_not(a: Mask) -> Mask = !a;
+    }
+
     #[inline(always)]
     fn f64s<const K: usize>(self, array: [f64; K]) -> __m512d {
         cast(widened(array, 0.0))
@@ -38,76 +77,6 @@ impl Simd for V4 {
     #[inline(always)]
     fn f64s_splat<const K: usize>(self, number: f64) -> __m512d {
         self.avx512f._mm512_set1_pd(number)
-    }
-
-    #[inline(always)]
-    fn f64s_add<const K: usize>(self, a: __m512d, b: __m512d) -> __m512d {
-        self.avx512f._mm512_add_pd(a, b)
-    }
-
-    #[inline(always)]
-    fn f64s_sub<const K: usize>(self, a: __m512d, b: __m512d) -> __m512d {
-        self.avx512f._mm512_sub_pd(a, b)
-    }
-
-    #[inline(always)]
-    fn f64s_mul<const K: usize>(self, a: __m512d, b: __m512d) -> __m512d {
-        self.avx512f._mm512_mul_pd(a, b)
-    }
-
-    #[inline(always)]
-    fn f64s_div<const K: usize>(self, a: __m512d, b: __m512d) -> __m512d {
-        self.avx512f._mm512_div_pd(a, b)
-    }
-
-    #[inline(always)]
-    fn f64s_mul_add<const K: usize>(self, a: __m512d, b: __m512d, c: __m512d) -> __m512d {
-        self.avx512f._mm512_fmadd_pd(a, b, c)
-    }
-
-    #[inline(always)]
-    fn f64s_larger<const K: usize>(self, a: __m512d, b: __m512d) -> __m512d {
-        self.avx512f._mm512_max_pd(a, b)
-    }
-
-    #[inline(always)]
-    fn f64s_smaller<const K: usize>(self, a: __m512d, b: __m512d) -> __m512d {
-        self.avx512f._mm512_min_pd(a, b)
-    }
-
-    #[inline(always)]
-    fn f64s_less<const K: usize>(self, a: __m512d, b: __m512d) -> u8 {
-        self.avx512f._mm512_cmplt_pd_mask(a, b)
-    }
-
-    #[inline(always)]
-    fn f64s_less_or_equal<const K: usize>(self, a: __m512d, b: __m512d) -> u8 {
-        self.avx512f._mm512_cmple_pd_mask(a, b)
-    }
-
-    #[inline(always)]
-    fn f64s_equal<const K: usize>(self, a: __m512d, b: __m512d) -> u8 {
-        self.avx512f._mm512_cmpeq_pd_mask(a, b)
-    }
-
-    #[inline(always)]
-    fn f64s_select<const K: usize>(self, m: u8, yes: __m512d, no: __m512d) -> __m512d {
-        self.avx512f._mm512_mask_blend_pd(m, no, yes)
-    }
-
-    #[inline(always)]
-    fn f64s_to_bits<const K: usize>(self, a: __m512d) -> __m512i {
-        self.avx512f._mm512_castpd_si512(a)
-    }
-
-    #[inline(always)]
-    fn f64s_from_bits<const K: usize>(self, a: __m512i) -> __m512d {
-        self.avx512f._mm512_castsi512_pd(a)
-    }
-
-    #[inline(always)]
-    fn f64s_to_f32s<const K: usize>(self, a: __m512d) -> __m256 {
-        self.avx512f._mm512_cvtpd_ps(a)
     }
 
     /// Pairs of columns together: a row's pair of numbers is a quarter of a register. Gathers would take longer.
@@ -140,16 +109,6 @@ impl Simd for V4 {
     }
 
     #[inline(always)]
-    fn f32s_sub<const K: usize>(self, a: __m256, b: __m256) -> __m256 {
-        self.avx._mm256_sub_ps(a, b)
-    }
-
-    #[inline(always)]
-    fn f32s_to_f64s<const K: usize>(self, a: __m256) -> __m512d {
-        self.avx512f._mm512_cvtps_pd(a)
-    }
-
-    #[inline(always)]
     fn u64s<const K: usize>(self, array: [u64; K]) -> __m512i {
         cast(widened(array, 0))
     }
@@ -165,41 +124,6 @@ impl Simd for V4 {
     }
 
     #[inline(always)]
-    fn u64s_add<const K: usize>(self, a: __m512i, b: __m512i) -> __m512i {
-        self.avx512f._mm512_add_epi64(a, b)
-    }
-
-    #[inline(always)]
-    fn u64s_sub<const K: usize>(self, a: __m512i, b: __m512i) -> __m512i {
-        self.avx512f._mm512_sub_epi64(a, b)
-    }
-
-    #[inline(always)]
-    fn u64s_mul<const K: usize>(self, a: __m512i, b: __m512i) -> __m512i {
-        self.avx512dq._mm512_mullo_epi64(a, b)
-    }
-
-    #[inline(always)]
-    fn u64s_mul_lower<const K: usize>(self, a: __m512i, b: __m512i) -> __m512i {
-        self.avx512f._mm512_mul_epu32(a, b)
-    }
-
-    #[inline(always)]
-    fn u64s_and<const K: usize>(self, a: __m512i, b: __m512i) -> __m512i {
-        self.avx512f._mm512_and_si512(a, b)
-    }
-
-    #[inline(always)]
-    fn u64s_or<const K: usize>(self, a: __m512i, b: __m512i) -> __m512i {
-        self.avx512f._mm512_or_si512(a, b)
-    }
-
-    #[inline(always)]
-    fn u64s_xor<const K: usize>(self, a: __m512i, b: __m512i) -> __m512i {
-        self.avx512f._mm512_xor_si512(a, b)
-    }
-
-    #[inline(always)]
     fn u64s_shift_left<const BITS: i32, const K: usize>(self, a: __m512i) -> __m512i {
         self.avx512f._mm512_sll_epi64(a, self.sse2._mm_cvtsi32_si128(BITS))
     }
@@ -210,31 +134,6 @@ impl Simd for V4 {
     }
 
     #[inline(always)]
-    fn u64s_rotate_right<const K: usize>(self, a: __m512i, bits: __m512i) -> __m512i {
-        self.avx512f._mm512_rorv_epi64(a, bits)
-    }
-
-    #[inline(always)]
-    fn u64s_less<const K: usize>(self, a: __m512i, b: __m512i) -> u8 {
-        self.avx512f._mm512_cmplt_epu64_mask(a, b)
-    }
-
-    #[inline(always)]
-    fn u64s_increment<const K: usize>(self, m: u8, a: __m512i) -> __m512i {
-        self.avx512f._mm512_mask_add_epi64(a, m, a, self.avx512f._mm512_set1_epi64(1))
-    }
-
-    #[inline(always)]
-    fn u64s_equal<const K: usize>(self, a: __m512i, b: __m512i) -> u8 {
-        self.avx512f._mm512_cmpeq_epi64_mask(a, b)
-    }
-
-    #[inline(always)]
-    fn u64s_select<const K: usize>(self, m: u8, yes: __m512i, no: __m512i) -> __m512i {
-        self.avx512f._mm512_mask_blend_epi64(m, no, yes)
-    }
-
-    #[inline(always)]
     fn mask<const K: usize>(self, array: [bool; K]) -> u8 {
         (0..K).fold(0, |bits, lane| bits | u8::from(array[lane]) << lane)
     }
@@ -242,26 +141,6 @@ impl Simd for V4 {
     #[inline(always)]
     fn bool_array<const K: usize>(self, a: u8) -> [bool; K] {
         bools(a)
-    }
-
-    #[inline(always)]
-    fn mask_and<const K: usize>(self, a: u8, b: u8) -> u8 {
-        a & b
-    }
-
-    #[inline(always)]
-    fn mask_or<const K: usize>(self, a: u8, b: u8) -> u8 {
-        a | b
-    }
-
-    #[inline(always)]
-    fn mask_xor<const K: usize>(self, a: u8, b: u8) -> u8 {
-        a ^ b
-    }
-
-    #[inline(always)]
-    fn mask_not<const K: usize>(self, a: u8) -> u8 {
-        !a
     }
 
     #[inline(always)]

@@ -16,6 +16,7 @@ mod lane_type;
 mod level;
 mod map;
 mod mask;
+mod operations;
 mod portable;
 #[cfg(target_arch = "x86_64")]
 mod registers;

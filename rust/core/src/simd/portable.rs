@@ -3,6 +3,7 @@
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
 use super::Simd;
+use super::operations::operations;
 
 /// The instructions that every processor of the target has.
 #[derive(Clone, Copy, Debug)]
@@ -20,14 +21,18 @@ fn select(mask: u64, yes: u64, no: u64) -> u64 {
     (yes & mask) | (no & !mask)
 }
 
-/// `f` of each lane. `std::array::from_fn` is not always inlined.
-#[inline(always)]
-fn lanes<T: Copy + Default, const K: usize>(f: impl Fn(usize) -> T) -> [T; K] {
-    let mut results = [T::default(); K];
-    for (lane, result) in results.iter_mut().enumerate() {
-        *result = f(lane);
-    }
-    results
+/// The lower half of the bits of a u64.
+const LOWER_HALF: u64 = 0xffff_ffff;
+
+/// A result for each lane. `std::array::from_fn` is not always inlined.
+macro_rules! lanes {
+    ($lanes:ident, |$lane:ident| $result:expr) => {{
+        let mut results = [Default::default(); $lanes];
+        for ($lane, result) in results.iter_mut().enumerate() {
+            *result = $result;
+        }
+        results
+    }};
 }
 
 impl Simd for Portable {
@@ -38,6 +43,50 @@ impl Simd for Portable {
     type U64s<const K: usize> = [u64; K];
     /// All bits of a number, or none.
     type Mask<const K: usize> = [u64; K];
+
+    operations! {
+        self, lanes |lane|;
+        f64s_add(a: F64s, b: F64s) -> F64s = a[lane] + b[lane];
+        f64s_sub(a: F64s, b: F64s) -> F64s = a[lane] - b[lane];
+        f64s_mul(a: F64s, b: F64s) -> F64s = a[lane] * b[lane];
+        f64s_div(a: F64s, b: F64s) -> F64s = a[lane] / b[lane];
+        f64s_mul_add(a: F64s, b: F64s, c: F64s) -> F64s = a[lane].mul_add(b[lane], c[lane]);
+        f64s_larger(a: F64s, b: F64s) -> F64s = if a[lane] > b[lane] { a[lane] } else { b[lane] };
+        f64s_smaller(a: F64s, b: F64s) -> F64s = if a[lane] < b[lane] { a[lane] } else { b[lane] };
+        f64s_less(a: F64s, b: F64s) -> Mask = all_bits(a[lane] < b[lane]);
+        f64s_less_or_equal(a: F64s, b: F64s) -> Mask = all_bits(a[lane] <= b[lane]);
+        f64s_equal(a: F64s, b: F64s) -> Mask = all_bits(a[lane] == b[lane]);
+        /// By bits: a select between f64 would be an unpredictable branch where there are no vector registers.
+        f64s_select(m: Mask, yes: F64s, no: F64s) -> F64s = {
+            f64::from_bits(select(m[lane], yes[lane].to_bits(), no[lane].to_bits()))
+        };
+        f64s_to_bits(a: F64s) -> U64s = a[lane].to_bits();
+        f64s_from_bits(a: U64s) -> F64s = f64::from_bits(a[lane]);
+        f64s_to_f32s(a: F64s) -> F32s = a[lane] as f32;
+        f32s_sub(a: F32s, b: F32s) -> F32s = a[lane] - b[lane];
+        f32s_to_f64s(a: F32s) -> F64s = a[lane].into();
+        u64s_add(a: U64s, b: U64s) -> U64s = a[lane].wrapping_add(b[lane]);
+        u64s_sub(a: U64s, b: U64s) -> U64s = a[lane].wrapping_sub(b[lane]);
+        u64s_mul(a: U64s, b: U64s) -> U64s = a[lane].wrapping_mul(b[lane]);
+        u64s_mul_lower(a: U64s, b: U64s) -> U64s = (a[lane] & LOWER_HALF) * (b[lane] & LOWER_HALF);
+        u64s_and(a: U64s, b: U64s) -> U64s = a[lane] & b[lane];
+        u64s_or(a: U64s, b: U64s) -> U64s = a[lane] | b[lane];
+        u64s_xor(a: U64s, b: U64s) -> U64s = a[lane] ^ b[lane];
+        u64s_rotate_right(a: U64s, bits: U64s) -> U64s = a[lane].rotate_right(bits[lane] as u32);
+        u64s_less(a: U64s, b: U64s) -> Mask = all_bits(a[lane] < b[lane]);
+        u64s_equal(a: U64s, b: U64s) -> Mask = all_bits(a[lane] == b[lane]);
+        u64s_select(m: Mask, yes: U64s, no: U64s) -> U64s = select(m[lane], yes[lane], no[lane]);
+        mask_not(a: Mask) -> Mask = !a[lane];
+    }
+
+    operations! {
+        self;
+        mask_and(a: Mask, b: Mask) -> Mask = self.u64s_and(a, b);
+        mask_or(a: Mask, b: Mask) -> Mask = self.u64s_or(a, b);
+        mask_xor(a: Mask, b: Mask) -> Mask = self.u64s_xor(a, b);
+        /// A mask is -1 as a number.
+        u64s_increment(m: Mask, a: U64s) -> U64s = self.u64s_sub(a, m);
+    }
 
     #[inline(always)]
     fn f64s<const K: usize>(self, array: [f64; K]) -> [f64; K] {
@@ -52,77 +101,6 @@ impl Simd for Portable {
     #[inline(always)]
     fn f64s_splat<const K: usize>(self, number: f64) -> [f64; K] {
         [number; K]
-    }
-
-    #[inline(always)]
-    fn f64s_add<const K: usize>(self, a: [f64; K], b: [f64; K]) -> [f64; K] {
-        lanes(|lane| a[lane] + b[lane])
-    }
-
-    #[inline(always)]
-    fn f64s_sub<const K: usize>(self, a: [f64; K], b: [f64; K]) -> [f64; K] {
-        lanes(|lane| a[lane] - b[lane])
-    }
-
-    #[inline(always)]
-    fn f64s_mul<const K: usize>(self, a: [f64; K], b: [f64; K]) -> [f64; K] {
-        lanes(|lane| a[lane] * b[lane])
-    }
-
-    #[inline(always)]
-    fn f64s_div<const K: usize>(self, a: [f64; K], b: [f64; K]) -> [f64; K] {
-        lanes(|lane| a[lane] / b[lane])
-    }
-
-    #[inline(always)]
-    fn f64s_mul_add<const K: usize>(self, a: [f64; K], b: [f64; K], c: [f64; K]) -> [f64; K] {
-        lanes(|lane| a[lane].mul_add(b[lane], c[lane]))
-    }
-
-    #[inline(always)]
-    fn f64s_larger<const K: usize>(self, a: [f64; K], b: [f64; K]) -> [f64; K] {
-        lanes(|lane| if a[lane] > b[lane] { a[lane] } else { b[lane] })
-    }
-
-    #[inline(always)]
-    fn f64s_smaller<const K: usize>(self, a: [f64; K], b: [f64; K]) -> [f64; K] {
-        lanes(|lane| if a[lane] < b[lane] { a[lane] } else { b[lane] })
-    }
-
-    #[inline(always)]
-    fn f64s_less<const K: usize>(self, a: [f64; K], b: [f64; K]) -> [u64; K] {
-        lanes(|lane| all_bits(a[lane] < b[lane]))
-    }
-
-    #[inline(always)]
-    fn f64s_less_or_equal<const K: usize>(self, a: [f64; K], b: [f64; K]) -> [u64; K] {
-        lanes(|lane| all_bits(a[lane] <= b[lane]))
-    }
-
-    #[inline(always)]
-    fn f64s_equal<const K: usize>(self, a: [f64; K], b: [f64; K]) -> [u64; K] {
-        lanes(|lane| all_bits(a[lane] == b[lane]))
-    }
-
-    /// By bits: a select between f64 would be an unpredictable branch where there are no vector registers.
-    #[inline(always)]
-    fn f64s_select<const K: usize>(self, m: [u64; K], yes: [f64; K], no: [f64; K]) -> [f64; K] {
-        lanes(|lane| f64::from_bits(select(m[lane], yes[lane].to_bits(), no[lane].to_bits())))
-    }
-
-    #[inline(always)]
-    fn f64s_to_bits<const K: usize>(self, a: [f64; K]) -> [u64; K] {
-        lanes(|lane| a[lane].to_bits())
-    }
-
-    #[inline(always)]
-    fn f64s_from_bits<const K: usize>(self, a: [u64; K]) -> [f64; K] {
-        lanes(|lane| f64::from_bits(a[lane]))
-    }
-
-    #[inline(always)]
-    fn f64s_to_f32s<const K: usize>(self, a: [f64; K]) -> [f32; K] {
-        lanes(|lane| a[lane] as f32)
     }
 
     #[inline(always)]
@@ -147,16 +125,6 @@ impl Simd for Portable {
     }
 
     #[inline(always)]
-    fn f32s_sub<const K: usize>(self, a: [f32; K], b: [f32; K]) -> [f32; K] {
-        lanes(|lane| a[lane] - b[lane])
-    }
-
-    #[inline(always)]
-    fn f32s_to_f64s<const K: usize>(self, a: [f32; K]) -> [f64; K] {
-        lanes(|lane| a[lane].into())
-    }
-
-    #[inline(always)]
     fn u64s<const K: usize>(self, array: [u64; K]) -> [u64; K] {
         array
     }
@@ -172,105 +140,23 @@ impl Simd for Portable {
     }
 
     #[inline(always)]
-    fn u64s_add<const K: usize>(self, a: [u64; K], b: [u64; K]) -> [u64; K] {
-        lanes(|lane| a[lane].wrapping_add(b[lane]))
-    }
-
-    #[inline(always)]
-    fn u64s_sub<const K: usize>(self, a: [u64; K], b: [u64; K]) -> [u64; K] {
-        lanes(|lane| a[lane].wrapping_sub(b[lane]))
-    }
-
-    #[inline(always)]
-    fn u64s_mul<const K: usize>(self, a: [u64; K], b: [u64; K]) -> [u64; K] {
-        lanes(|lane| a[lane].wrapping_mul(b[lane]))
-    }
-
-    #[inline(always)]
-    fn u64s_mul_lower<const K: usize>(self, a: [u64; K], b: [u64; K]) -> [u64; K] {
-        const LOWER_HALF: u64 = 0xffff_ffff;
-        lanes(|lane| (a[lane] & LOWER_HALF) * (b[lane] & LOWER_HALF))
-    }
-
-    #[inline(always)]
-    fn u64s_and<const K: usize>(self, a: [u64; K], b: [u64; K]) -> [u64; K] {
-        lanes(|lane| a[lane] & b[lane])
-    }
-
-    #[inline(always)]
-    fn u64s_or<const K: usize>(self, a: [u64; K], b: [u64; K]) -> [u64; K] {
-        lanes(|lane| a[lane] | b[lane])
-    }
-
-    #[inline(always)]
-    fn u64s_xor<const K: usize>(self, a: [u64; K], b: [u64; K]) -> [u64; K] {
-        lanes(|lane| a[lane] ^ b[lane])
-    }
-
-    #[inline(always)]
     fn u64s_shift_left<const BITS: i32, const K: usize>(self, a: [u64; K]) -> [u64; K] {
-        lanes(|lane| a[lane] << BITS)
+        lanes!(K, |lane| a[lane] << BITS)
     }
 
     #[inline(always)]
     fn u64s_shift_right<const BITS: i32, const K: usize>(self, a: [u64; K]) -> [u64; K] {
-        lanes(|lane| a[lane] >> BITS)
-    }
-
-    #[inline(always)]
-    fn u64s_rotate_right<const K: usize>(self, a: [u64; K], bits: [u64; K]) -> [u64; K] {
-        lanes(|lane| a[lane].rotate_right(bits[lane] as u32))
-    }
-
-    #[inline(always)]
-    fn u64s_less<const K: usize>(self, a: [u64; K], b: [u64; K]) -> [u64; K] {
-        lanes(|lane| all_bits(a[lane] < b[lane]))
-    }
-
-    #[inline(always)]
-    fn u64s_increment<const K: usize>(self, m: [u64; K], a: [u64; K]) -> [u64; K] {
-        // A mask is -1 as a number.
-        self.u64s_sub(a, m)
-    }
-
-    #[inline(always)]
-    fn u64s_equal<const K: usize>(self, a: [u64; K], b: [u64; K]) -> [u64; K] {
-        lanes(|lane| all_bits(a[lane] == b[lane]))
-    }
-
-    #[inline(always)]
-    fn u64s_select<const K: usize>(self, m: [u64; K], yes: [u64; K], no: [u64; K]) -> [u64; K] {
-        lanes(|lane| select(m[lane], yes[lane], no[lane]))
+        lanes!(K, |lane| a[lane] >> BITS)
     }
 
     #[inline(always)]
     fn mask<const K: usize>(self, array: [bool; K]) -> [u64; K] {
-        lanes(|lane| all_bits(array[lane]))
+        lanes!(K, |lane| all_bits(array[lane]))
     }
 
     #[inline(always)]
     fn bool_array<const K: usize>(self, a: [u64; K]) -> [bool; K] {
-        lanes(|lane| a[lane] != 0)
-    }
-
-    #[inline(always)]
-    fn mask_and<const K: usize>(self, a: [u64; K], b: [u64; K]) -> [u64; K] {
-        self.u64s_and(a, b)
-    }
-
-    #[inline(always)]
-    fn mask_or<const K: usize>(self, a: [u64; K], b: [u64; K]) -> [u64; K] {
-        self.u64s_or(a, b)
-    }
-
-    #[inline(always)]
-    fn mask_xor<const K: usize>(self, a: [u64; K], b: [u64; K]) -> [u64; K] {
-        self.u64s_xor(a, b)
-    }
-
-    #[inline(always)]
-    fn mask_not<const K: usize>(self, a: [u64; K]) -> [u64; K] {
-        lanes(|lane| !a[lane])
+        lanes!(K, |lane| a[lane] != 0)
     }
 
     #[inline(always)]
