@@ -5,7 +5,8 @@
 //! last operation is a rounded addition, and what it rounds is within 3.5 × 2⁻⁶² of the cosine. Rounding is monotone, so
 //! the platform's cosine lies between the roundings of `hi + (lo - bound)` and `hi + (lo + bound)`, where `bound` is that
 //! and the error of `hi + lo`. Where `f` returns the same bits for both, it returns the same bits for the platform's
-//! cosine, because it is monotone. Otherwise (about one step in a hundred) the platform's cosine is called.
+//! cosine, because it is monotone. Otherwise (about one step in a hundred) the platform's cosine is called, and always on
+//! processors without fused multiply-adds.
 //!
 //! glibc's error follows from `do_cos` and `do_sin` in `sysdeps/ieee754/dbl-64/s_sin.c`, with or without fused
 //! multiply-adds; before version 2.28 the result was always the correctly rounded one. An angle, reduced to at most 0.86 with
@@ -13,12 +14,22 @@
 //! below 2⁻⁸, so that each of its roundings errs by at most 2⁻⁶². There are four: of the rest, of its sine (both then
 //! multiplied by at most 0.76), of the product with the sine of the middle and of the last sum. Reduced angles below 0.126
 //! have a shorter series, whose terms after the first are below 2⁻¹¹ and are rounded six times.
+//!
+//! For `hi + lo`, an angle is the middle of a cell plus a rest `r` of at most 2⁻⁷, and with cosine and sine of the middle,
+//! which are sums of two numbers, `cos(middle + r) = cos - sin·r + small`, where
+//! `small = cos_lo - sin_lo·r - sin·(sin(r) - r) - cos·(1 - cos(r))` stays below 2⁻¹⁴. The product and the first sum are
+//! computed as two numbers each, without an error: `|cos|` is at least 2⁻⁸ in the middle of every cell, so its exponent is at
+//! least that of the product (T. Dekker's fast sum). In units of 2⁻⁶¹, the errors of `hi + lo` are at most:
+//!
+//! | error | source |
+//! |---|---|
+//! | 0 | `r`: the subtractions are exact (Sterbenz) |
+//! | 0.04 | the roundings of `small`, of it plus `product_lo`, of `lo`, and of `lo` plus or minus the bound, each at most 2⁻⁶⁸ |
+//! | 0.04 | three roundings of `cos_minus_one`, which is at most 2⁻¹⁵, and those of `sin_rest`, which is below 2⁻²³; their series, cut off at r⁸/8! and r⁹/9! |
+//!
+//! Together they are below 1/8.
 
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
-
-mod fused;
-mod plain;
-mod table;
 
 use std::sync::OnceLock;
 
@@ -29,6 +40,58 @@ const MAX_ANGLE: f64 = 3.99;
 
 /// The error bound of the number that glibc rounds to the cosine, 2⁻⁶⁰.
 const PLATFORM_ERROR: f64 = 1.0 / 1_152_921_504_606_846_976.0;
+/// The error bound of `hi + lo` and of the platform's cosine: 2⁻⁶⁴ of the first.
+const BOUND: f64 = 1.0 / 18_446_744_073_709_551_616.0 + PLATFORM_ERROR;
+
+/// Angles from -4 to 4 are divided into cells of width 1/64.
+const CELLS_PER_UNIT: i128 = 64;
+/// The number of cells from 0 to 4.
+const CELLS: usize = 256;
+
+/// The number of fractional bits of the fixed-point numbers that the table is computed with.
+const FRACTION: u32 = 110;
+const ONE: i128 = 1 << FRACTION;
+
+/// Adding this rounds an angle to a whole number of cells and leaves that number in the low bits of the sum, negative
+/// ones in two's complement.
+const ROUND_TO_CELL: f64 = 6_755_399_441_055_744.0 / CELLS_PER_UNIT as f64; // 1.5 × 2⁵²
+
+/// Cosine and sine of `cell / CELLS_PER_UNIT` by their Taylor series, in units of 2⁻¹¹⁰. Each of some 60 terms is cut
+/// off by less than a unit. `cell` may be negative.
+const fn in_middle(cell: i128) -> (i128, i128) {
+    let (mut cos, mut sin) = (0, 0);
+    let mut term = ONE;
+    let mut power = 0;
+    while term != 0 {
+        match power % 4 {
+            0 => cos += term,
+            1 => sin += term,
+            2 => cos -= term,
+            _ => sin -= term,
+        }
+        power += 1;
+        term = term * cell / (CELLS_PER_UNIT * power);
+    }
+    (cos, sin)
+}
+
+/// `[cos, cos_lo, -sin, -sin_lo]` in the middle of each cell, first of those from 0 on, then of the negative ones.
+static TABLE: [[f64; 4]; 2 * CELLS] = {
+    let mut table = [[0.0; 4]; 2 * CELLS];
+    let mut index = 0;
+    while index < 2 * CELLS {
+        let (cos, sin) = in_middle(if index < CELLS { index as i128 } else { index as i128 - 2 * CELLS as i128 });
+        let (cos_hi, sin_hi) = (cos as f64, sin as f64);
+        table[index] = [cos_hi, (cos - cos_hi as i128) as f64, -sin_hi, (sin_hi as i128 - sin) as f64];
+        let mut column = 0;
+        while column < 4 {
+            table[index][column] /= ONE as f64;
+            column += 1;
+        }
+        index += 1;
+    }
+    table
+};
 
 /// Whether the platform's cosine has the error bound that [`map_cos`] relies on: glibc's does. Another C library in its
 /// place would show itself at a few thousand angles.
@@ -42,7 +105,7 @@ fn is_close(cosine: impl Fn(f64) -> f64) -> bool {
     (-1999..=1999).all(|index| {
         let angle = f64::from(index) * (MAX_ANGLE / 1999.7);
         let simd = Portable;
-        let [[lower], [upper]] = plain::bounds(simd, F64s::new(simd, [angle])).map(F64s::to_array);
+        let [[lower], [upper]] = bounds(simd, F64s::new(simd, [angle])).map(F64s::to_array);
         (lower..=upper).contains(&cosine(angle))
     })
 }
@@ -54,7 +117,10 @@ pub(crate) fn map_cos<S: Simd, const K: usize>(
     angles: F64s<S, K>,
     f: impl Fn(F64s<S, K>) -> F64s<S, K>,
 ) -> F64s<S, K> {
-    let [lower, upper] = if S::HAS_FMA { fused::bounds(simd, angles) } else { plain::bounds(simd, angles) };
+    if !S::HAS_FMA {
+        return f(F64s::new(simd, angles.to_array().map(f64::cos)));
+    }
+    let [lower, upper] = bounds(simd, angles);
     let [lower, upper] = [f(lower), f(upper)];
     // NaN is not in the range.
     let certain = lower.to_bits().equal(upper.to_bits()) & angles.abs().less_or_equal(MAX_ANGLE);
@@ -70,6 +136,26 @@ pub(crate) fn map_cos<S: Simd, const K: usize>(
 #[inline(never)]
 fn platform_where<const K: usize>(chosen: &[bool; K], angles: &[f64; K]) -> [f64; K] {
     std::array::from_fn(|lane| if chosen[lane] { angles[lane].cos() } else { 0.0 })
+}
+
+/// The least and the largest value that the platform's cosine can have.
+#[inline(always)]
+fn bounds<S: Simd, const K: usize>(simd: S, angles: F64s<S, K>) -> [F64s<S, K>; 2] {
+    let shifted = angles + ROUND_TO_CELL;
+    let rest = angles - (shifted - ROUND_TO_CELL);
+    let cells = shifted.to_bits().to_array();
+    let [cos, cos_lo, minus_sin, minus_sin_lo] =
+        F64s::columns(simd, cells.map(|cell| &TABLE[cell as usize % (2 * CELLS)]));
+    let square = rest * rest;
+    let sin_rest = rest * square * square.mul_add(square.mul_add(-1.0 / 5040.0, 1.0 / 120.0), -1.0 / 6.0);
+    let cos_minus_one = square * square.mul_add(square.mul_add(-1.0 / 720.0, 1.0 / 24.0), -0.5);
+    let lows = minus_sin_lo.mul_add(rest, cos_lo);
+    let small = cos.mul_add(cos_minus_one, minus_sin.mul_add(sin_rest, lows));
+    let product = minus_sin * rest;
+    let product_lo = minus_sin.mul_add(rest, product.negated());
+    let hi = cos + product;
+    let lo = ((cos - hi) + product) + (product_lo + small);
+    [hi + (lo - BOUND), hi + (lo + BOUND)]
 }
 
 #[cfg(test)]
@@ -104,7 +190,7 @@ mod tests {
         }
     }
 
-    /// Compares both forms with the platform: the fused one where this processor has the instructions.
+    /// Compares each level with the platform.
     fn check(angle: f64, velocity: f64, gravity: f64) {
         let velocities = Velocities { angles: [angle, -angle], velocity, gravity };
         let expected = velocities.angles.map(|angle| velocities.after(angle.cos()).to_bits());
@@ -150,6 +236,11 @@ mod tests {
         assert!(!is_close(|angle| f64::from_bits(angle.cos().to_bits() + 1)));
         assert!(!is_close(|angle| f64::from(angle.cos() as f32)));
         assert!(!is_close(|angle| (angle + std::f64::consts::FRAC_PI_2).sin()));
+    }
+
+    #[test]
+    fn every_cells_cosine_is_large_enough_for_the_fast_sum() {
+        assert!(TABLE.iter().all(|[cos, ..]| cos.abs() >= 1.0 / 256.0));
     }
 
     proptest! {
