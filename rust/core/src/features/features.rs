@@ -1,6 +1,10 @@
-//! The trait of all features.
+//! The traits of features, and their error.
 
-use super::OutOfBounds;
+use std::error::Error;
+use std::fmt;
+
+use super::LaneRows;
+use crate::simd::{F32s, Simd};
 
 /// The active rows of an observation, which are stored and passed by value.
 pub trait ActiveRows: Copy + AsRef<[u32]> + for<'a> TryFrom<&'a [u32]> {}
@@ -41,3 +45,36 @@ pub trait Features<O: ?Sized> {
         self.len() == 0
     }
 }
+
+/// Features of `M` components that find the active rows of several observations at once.
+pub trait BatchFeatures<const M: usize>: Features<[f32; M]> + Clone + PartialEq {
+    /// The active rows as a lane holds them.
+    type ActiveInLane: LaneRows<Active = Self::Active>;
+
+    /// Writes the active rows of the observation in each lane, given component by component. Returns `false` if one of them
+    /// has no row; the rows are then of no use.
+    #[must_use]
+    fn write_active_rows_batch<S: Simd, const K: usize>(
+        &self,
+        simd: S,
+        observations: [F32s<S, K>; M],
+        active: &mut [Self::ActiveInLane; K],
+    ) -> bool;
+}
+
+/// An observation that the features have no row for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OutOfBounds {
+    /// The index of the component of the observation.
+    pub axis: usize,
+    /// Its value.
+    pub value: f64,
+}
+
+impl fmt::Display for OutOfBounds {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "observation[{}] is {}, outside the observation space", self.axis, self.value)
+    }
+}
+
+impl Error for OutOfBounds {}

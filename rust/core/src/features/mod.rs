@@ -1,7 +1,6 @@
 //! Features: from an observation to the active rows of a Q table.
 
 mod any_grid;
-mod batch_features;
 mod bins;
 #[expect(clippy::module_inception, reason = "each trait is in the file named for it")]
 mod features;
@@ -10,20 +9,17 @@ mod hashing;
 mod identity;
 mod lane_rows;
 mod multi_discrete_index;
-mod out_of_bounds;
 mod product;
 mod rounding;
 mod tile_coding;
 
 pub use any_grid::AnyGrid;
-pub use batch_features::BatchFeatures;
 pub use bins::{Bins, Edges};
-pub use features::{ActiveRows, Features};
+pub use features::{ActiveRows, BatchFeatures, Features, OutOfBounds};
 pub use fixed_tile_coding::{FixedTileCoding, FixedTiles};
 pub use identity::Identity;
 pub use lane_rows::LaneRows;
 pub use multi_discrete_index::MultiDiscreteIndex;
-pub use out_of_bounds::OutOfBounds;
 pub use product::{Factor, FactorFeatures, Product};
 pub use rounding::{Axis, Rounding};
 pub use tile_coding::{ActiveTiles, MAX_TILINGS, TileCoding};

@@ -5,19 +5,19 @@
 #[inline]
 pub(crate) fn argmax(values: &[f64]) -> usize {
     // The pairs carry the value along: looking it up by index would add a load to the chain of comparisons.
-    let larger = |one: (usize, f64), other: (usize, f64)| if other.1 > one.1 { other } else { one };
+    let better = |one: (usize, f64), other: (usize, f64)| if other.1 > one.1 { other } else { one };
     let mut best = (0, values[0]);
     if values.len() < 4 {
         for (index, &value) in values.iter().enumerate().skip(1) {
-            best = larger(best, (index, value));
+            best = better(best, (index, value));
         }
         return best.0;
     }
     // Comparing pairs first shortens the chain of dependent comparisons.
     for (pair, values) in values.chunks(2).enumerate() {
         let first = (2 * pair, values[0]);
-        let of_pair = if let &[_, second] = values { larger(first, (2 * pair + 1, second)) } else { first };
-        best = if pair == 0 { of_pair } else { larger(best, of_pair) };
+        let of_pair = if let &[_, second] = values { better(first, (2 * pair + 1, second)) } else { first };
+        best = if pair == 0 { of_pair } else { better(best, of_pair) };
     }
     best.0
 }

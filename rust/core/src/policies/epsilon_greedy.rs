@@ -2,8 +2,8 @@
 
 use std::hint::select_unpredictable;
 
-use super::{Policy, TieBreaking};
-use crate::numeric::{argmax, sum};
+use super::{Policy, TieBreaking, sum};
+use crate::numeric::argmax;
 use crate::random::Rng;
 
 /// The ε-greedy policy (Sutton & Barto, section 2.2): a random action with probability ε, otherwise the greedy action,

@@ -1,8 +1,8 @@
 //! The softmax policy.
 
-use super::Policy;
 use super::any_policy::is_available;
-use crate::numeric::{maximum, sum};
+use super::{Policy, sum};
+use crate::numeric::maximum;
 use crate::random::Rng;
 
 /// The softmax (Boltzmann) policy over the available actions: π(a) ∝ exp(Q(a) / τ) with the temperature τ (Sutton & Barto, equation 2.11).

@@ -2,7 +2,8 @@
 
 use std::hint::select_unpredictable;
 
-use crate::numeric::{argmax, sum};
+use super::sum;
+use crate::numeric::argmax;
 use crate::random::Rng;
 
 /// Which of several actions with the maximal value is the greedy one.

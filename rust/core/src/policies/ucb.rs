@@ -1,11 +1,10 @@
 //! Upper-confidence-bound action selection.
 
-use super::TieBreaking;
 use super::any_policy::is_available;
+use super::{TieBreaking, sum};
 use crate::StopFlag;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::memory::{AllocationError, filled};
-use crate::numeric::sum;
 use crate::random::Rng;
 
 /// Chooses argmaxₐ [Q(S, a) + c √(ln t / N(S, a))] (Sutton & Barto, equation 2.10), where N(S, a) is how often a was chosen

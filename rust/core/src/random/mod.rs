@@ -3,7 +3,6 @@
 mod agent_rng;
 mod mt19937;
 mod pcg64;
-mod pcg64_engine;
 mod pcg64_lanes;
 mod rng;
 mod seed_sequence;

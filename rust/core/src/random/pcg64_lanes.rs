@@ -2,7 +2,7 @@
 
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
-use super::pcg64_engine::{MULTIPLIER, Pcg64Engine};
+use super::pcg64::{MULTIPLIER, Pcg64Engine};
 use super::{Pcg64, Rng, TWO_POW_53};
 use crate::numeric::cold_path;
 use crate::simd::{Mask, Simd, U64s};

@@ -88,13 +88,13 @@ impl Pcg64 {
 }
 
 /// a + b, and its rounding error, where |a| ≥ |b|.
-fn sum(a: f64, b: f64) -> (f64, f64) {
-    let sum = a + b;
-    (sum, b - (sum - a))
+fn two_sum(a: f64, b: f64) -> (f64, f64) {
+    let rounded = a + b;
+    (rounded, b - (rounded - a))
 }
 
 /// a · b as the sum of two floats (T. Dekker, 1971).
-fn product(a: f64, b: f64) -> (f64, f64) {
+fn two_product(a: f64, b: f64) -> (f64, f64) {
     let split = |x: f64| {
         let shifted = x * 134_217_729.0;
         let high = shifted - (shifted - x);
@@ -108,8 +108,8 @@ fn product(a: f64, b: f64) -> (f64, f64) {
 fn exp(x: f64) -> (f64, f64) {
     const HALVINGS: i32 = 10;
     let times = |(a, a_low): (f64, f64), (b, b_low): (f64, f64)| {
-        let (high, low) = product(a, b);
-        sum(high, low + (a * b_low + a_low * b))
+        let (high, low) = two_product(a, b);
+        two_sum(high, low + (a * b_low + a_low * b))
     };
     // exp(y) = 1 + y (1 + y / 2 (1 + y / 3 (…))) with y = x / 2¹⁰, squared ten times.
     let y = (x / f64::from(1 << HALVINGS), 0.0);
@@ -117,10 +117,10 @@ fn exp(x: f64) -> (f64, f64) {
     for n in (1..=14).map(f64::from).rev() {
         let (high, low) = times(y, value);
         let quotient = high / n;
-        let (back, back_low) = product(quotient, n);
+        let (back, back_low) = two_product(quotient, n);
         let remainder = ((high - back) - back_low + low) / n;
-        let (one, rest) = sum(1.0, quotient);
-        value = sum(one, rest + remainder);
+        let (one, rest) = two_sum(1.0, quotient);
+        value = two_sum(one, rest + remainder);
     }
     (0..HALVINGS).fold(value, |root, _| times(root, root))
 }
@@ -129,7 +129,7 @@ fn exp(x: f64) -> (f64, f64) {
 fn ln(x: f64) -> f64 {
     let first = x.ln();
     let (high, low) = exp(-first);
-    let (one, rest) = product(x, high);
+    let (one, rest) = two_product(x, high);
     first + ((one - 1.0) + (rest + x * low))
 }
 

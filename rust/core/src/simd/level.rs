@@ -2,10 +2,10 @@
 
 use std::sync::atomic::{AtomicU8, Ordering};
 
-use super::{Portable, SimdCode};
+use super::{Portable, Simd};
 
 /// Set once by [`SimdLevel::restrict`].
-static LIMIT: AtomicU8 = AtomicU8::new(SimdLimit::None as u8);
+static LIMIT: AtomicU8 = AtomicU8::new(SimdLimit::Avx512 as u8);
 
 /// Up to which vector instructions [`SimdLevel::detect`] returns: tests compare them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -16,7 +16,7 @@ pub enum SimdLimit {
     /// AVX2 and fused multiply-adds.
     Avx2,
     /// All.
-    None,
+    Avx512,
 }
 
 impl SimdLimit {
@@ -27,6 +27,17 @@ impl SimdLimit {
     pub fn from_name(name: &str) -> Option<Self> {
         Self::NAMES.into_iter().find_map(|(known, limit)| (known == name).then_some(limit))
     }
+}
+
+/// Code that is compiled for each [`SimdLevel`]. All that it calls must be inlined.
+pub(crate) trait SimdCode {
+    /// Whether registers of AVX-512 are worth a further copy of the code.
+    #[cfg_attr(not(target_arch = "x86_64"), expect(dead_code, reason = "other targets have no AVX-512"))]
+    const USES_AVX512: bool = false;
+
+    type Output;
+
+    fn run<S: Simd>(self, simd: S) -> Self::Output;
 }
 
 /// The vector instructions that SIMD code may use. Results do not depend on it.
@@ -121,7 +132,7 @@ impl SimdLevel {
 struct Dispatched<C, S>(C, S);
 
 #[cfg(target_arch = "x86_64")]
-impl<C: SimdCode, S: super::Simd> pulp::NullaryFnOnce for Dispatched<C, S> {
+impl<C: SimdCode, S: Simd> pulp::NullaryFnOnce for Dispatched<C, S> {
     type Output = C::Output;
 
     #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]

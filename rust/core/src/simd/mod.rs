@@ -8,13 +8,11 @@
 mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
-mod code;
 mod floats;
 mod instructions;
 mod integers;
 mod lane_type;
 mod level;
-mod map;
 mod mask;
 mod operations;
 mod portable;
@@ -23,12 +21,12 @@ mod registers;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use code::SimdCode;
 pub use floats::{F32s, F64s};
 pub use instructions::Simd;
 pub use integers::U64s;
+pub(crate) use lane_type::map;
+pub(crate) use level::SimdCode;
 pub use level::{SimdLevel, SimdLimit};
-pub(crate) use map::map;
 pub use mask::Mask;
 pub use portable::Portable;
 

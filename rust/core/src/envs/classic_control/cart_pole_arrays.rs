@@ -28,9 +28,9 @@ impl CartPole {
             let simd = Portable;
             let state = [&mut x.1[index], &mut x_dot.1[index], &mut theta.1[index], &mut theta_dot.1[index]];
             let mut fields = state.each_ref().map(|number| F64s::new(simd, [**number]));
-            supported &= !larger(&fields, largest).any();
+            supported &= !out_of_range(&fields, largest).any();
             [*terminated] = self.step_batch(simd, &mut fields, U64s::new(simd, [action as u64])).to_array();
-            supported &= !larger(&fields, f64::MAX).any();
+            supported &= !out_of_range(&fields, f64::MAX).any();
             for (number, field) in state.into_iter().zip(fields) {
                 [*number] = field.to_array();
             }
@@ -42,7 +42,7 @@ impl CartPole {
 /// Where the magnitude of a component is not at most the limit.
 #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 #[inline(always)]
-fn larger<S: Simd, const K: usize>(fields: &[F64s<S, K>; 4], limit: f64) -> Mask<S, K> {
+fn out_of_range<S: Simd, const K: usize>(fields: &[F64s<S, K>; 4], limit: f64) -> Mask<S, K> {
     // NaN is not in the range.
     let mut in_range = fields[0].abs().less_or_equal(limit);
     for field in &fields[1..] {
@@ -70,19 +70,19 @@ impl SimdCode for ArrayChunks<'_> {
     fn run<S: Simd>(self, simd: S) -> bool {
         let [x, x_dot, theta, theta_dot] = self.state.map(|field| field.as_chunks_mut::<LANES>().0);
         let (actions, terminated) = (self.actions.as_chunks::<LANES>().0, self.terminated.as_chunks_mut::<LANES>().0);
-        let mut any_larger = Mask::new(simd, [false; LANES]);
+        let mut any_out_of_range = Mask::new(simd, [false; LANES]);
         for (index, (actions, terminated)) in actions.iter().zip(terminated).enumerate() {
             let state = [&mut x[index], &mut x_dot[index], &mut theta[index], &mut theta_dot[index]];
             let mut fields = state.each_ref().map(|field| F64s::new(simd, **field));
-            any_larger = any_larger | larger(&fields, self.largest);
+            any_out_of_range = any_out_of_range | out_of_range(&fields, self.largest);
             let actions = U64s::new(simd, actions.map(|action| action as u64));
             *terminated = self.env.step_batch(simd, &mut fields, actions).to_array();
-            any_larger = any_larger | larger(&fields, f64::MAX);
+            any_out_of_range = any_out_of_range | out_of_range(&fields, f64::MAX);
             for (numbers, field) in state.into_iter().zip(fields) {
                 *numbers = field.to_array();
             }
         }
-        !any_larger.any()
+        !any_out_of_range.any()
     }
 }
 

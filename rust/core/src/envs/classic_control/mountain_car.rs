@@ -128,9 +128,9 @@ impl MountainCar {
         let MountainCarState { mut position, mut velocity } = state;
         let acceleration = DIRECTIONS[action] * self.force;
         velocity += acceleration + (3.0 * position).cos() * (-self.gravity);
-        velocity = clip(velocity, -self.max_speed, self.max_speed);
+        velocity = clip_by_branches(velocity, -self.max_speed, self.max_speed);
         position += velocity;
-        position = clip(position, self.min_position, self.max_position);
+        position = clip_by_branches(position, self.min_position, self.max_position);
         if position == self.min_position {
             cold_path();
             if velocity < 0.0 {
@@ -145,9 +145,9 @@ impl MountainCar {
     }
 }
 
-/// `np.clip`, for values that rarely reach a limit. NaN stays NaN.
+/// `np.clip` for values that rarely reach a limit: predicted branches. NaN stays NaN.
 #[inline]
-fn clip(value: f64, low: f64, high: f64) -> f64 {
+fn clip_by_branches(value: f64, low: f64, high: f64) -> f64 {
     let mut clipped = value;
     if clipped < low {
         cold_path();

@@ -2,7 +2,6 @@
 
 mod initial_states;
 mod interval_steps;
-mod invalid_mdp;
 mod maximization_bias;
 mod outcome;
 mod outcome_distribution;
@@ -12,9 +11,8 @@ mod tabular_mdp;
 #[cfg(test)]
 mod test_support;
 
-pub use invalid_mdp::InvalidMdp;
 pub use maximization_bias::{MaximizationBias, STATES as MAXIMIZATION_BIAS_STATES};
-pub use outcome::{Outcome, TOLERANCE};
+pub use outcome::{InvalidMdp, Outcome, TOLERANCE};
 pub use racetrack::{Ground, Racetrack};
 pub use short_corridor::ShortCorridor;
 pub use tabular_mdp::TabularMdp;

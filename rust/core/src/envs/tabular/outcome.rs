@@ -1,6 +1,7 @@
 //! One outcome of a transition table, and the check of its probabilities.
 
-use super::InvalidMdp;
+use std::error::Error;
+use std::fmt;
 
 /// The tolerance for sums of probabilities.
 pub const TOLERANCE: f64 = 1e-9;
@@ -17,6 +18,18 @@ pub struct Outcome {
     /// Whether the next state is terminal.
     pub terminated: bool,
 }
+
+/// Why a transition table is invalid, and where, in Python's notation.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct InvalidMdp(pub(in crate::envs) String);
+
+impl fmt::Display for InvalidMdp {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(&self.0)
+    }
+}
+
+impl Error for InvalidMdp {}
 
 /// Checks that these probabilities are a distribution. `location` names them in the error.
 pub(super) fn check_distribution(
