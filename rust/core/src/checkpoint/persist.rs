@@ -1,7 +1,6 @@
 //! The trait of what a checkpoint holds, for numbers and for collections of fixed length.
 
 use super::{Checkpoint, CheckpointError};
-use crate::features::{ActiveRows, MAX_TILINGS};
 
 /// A value that changes during a run, so that a checkpoint must hold it.
 pub trait Persist {
@@ -92,26 +91,4 @@ impl<T: Persist + ?Sized> Persist for &mut T {
     fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
         (**self).persist(checkpoint)
     }
-}
-
-/// Saves active rows, or returns those that were saved; `rows` may be `None` while restoring. Each is less than `num_rows`.
-///
-/// # Errors
-/// As for any value.
-pub fn persist_rows<R: ActiveRows>(
-    rows: Option<R>,
-    num_rows: usize,
-    checkpoint: &mut Checkpoint<'_>,
-) -> Result<R, CheckpointError> {
-    let mut numbers = [0; MAX_TILINGS];
-    let mut count = 0;
-    if let Some(rows) = &rows {
-        count = rows.as_ref().len();
-        numbers[..count].copy_from_slice(rows.as_ref());
-    }
-    checkpoint.index(&mut count, MAX_TILINGS + 1, "number of active rows")?;
-    for row in &mut numbers[..count] {
-        checkpoint.index_u32(row, num_rows, "row")?;
-    }
-    R::try_from(&numbers[..count]).map_err(|_| CheckpointError::Invalid("number of active rows"))
 }

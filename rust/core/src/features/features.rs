@@ -3,7 +3,8 @@
 use std::error::Error;
 use std::fmt;
 
-use super::LaneRows;
+use super::{LaneRows, MAX_TILINGS};
+use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::simd::{F32s, Simd};
 
 /// The active rows of an observation, which are stored and passed by value.
@@ -78,3 +79,25 @@ impl fmt::Display for OutOfBounds {
 }
 
 impl Error for OutOfBounds {}
+
+/// Saves active rows, or returns those that were saved; `rows` may be `None` while restoring. Each is less than `num_rows`.
+///
+/// # Errors
+/// As for any value.
+pub fn persist_rows<R: ActiveRows>(
+    rows: Option<R>,
+    num_rows: usize,
+    checkpoint: &mut Checkpoint<'_>,
+) -> Result<R, CheckpointError> {
+    let mut numbers = [0; MAX_TILINGS];
+    let mut count = 0;
+    if let Some(rows) = &rows {
+        count = rows.as_ref().len();
+        numbers[..count].copy_from_slice(rows.as_ref());
+    }
+    checkpoint.index(&mut count, MAX_TILINGS + 1, "number of active rows")?;
+    for row in &mut numbers[..count] {
+        checkpoint.index_u32(row, num_rows, "row")?;
+    }
+    R::try_from(&numbers[..count]).map_err(|_| CheckpointError::Invalid("number of active rows"))
+}

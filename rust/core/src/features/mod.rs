@@ -15,7 +15,7 @@ mod tile_coding;
 
 pub use any_grid::AnyGrid;
 pub use bins::{Bins, Edges};
-pub use features::{ActiveRows, BatchFeatures, Features, OutOfBounds};
+pub use features::{ActiveRows, BatchFeatures, Features, OutOfBounds, persist_rows};
 pub use fixed_tile_coding::{FixedTileCoding, FixedTiles};
 pub use identity::Identity;
 pub use lane_rows::LaneRows;

@@ -1,6 +1,7 @@
 //! A training run as a value, and the only training loop.
 
 mod advance_loop;
+mod checkpoint;
 mod episode_log;
 #[cfg(test)]
 mod tests;

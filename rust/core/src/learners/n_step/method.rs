@@ -2,8 +2,8 @@
 
 use std::collections::VecDeque;
 
-use crate::checkpoint::{Checkpoint, CheckpointError, Persist, persist_rows};
-use crate::features::ActiveRows;
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
+use crate::features::{ActiveRows, persist_rows};
 use crate::learners::VALUES_PER_WORK;
 use crate::learners::{Agent, StepInParts, UpdateRule};
 use crate::memory::{AllocationError, RunMemory};

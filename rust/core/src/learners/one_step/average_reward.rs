@@ -1,7 +1,7 @@
 //! The average reward of a continuing task (Sutton & Barto, section 10.3).
 
-use crate::checkpoint::{Checkpoint, CheckpointError, Persist, persist_rows};
-use crate::features::ActiveRows;
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
+use crate::features::{ActiveRows, persist_rows};
 use crate::learners::Agent;
 
 /// The estimate R̄ of the average reward, which learns from the differential errors.

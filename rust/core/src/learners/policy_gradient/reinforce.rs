@@ -1,8 +1,8 @@
 //! REINFORCE (R. Williams, 1992; Sutton & Barto, the boxes in sections 13.3 and 13.4).
 
 use super::Critic;
-use crate::checkpoint::{Checkpoint, CheckpointError, Persist, persist_rows};
-use crate::features::ActiveRows;
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
+use crate::features::{ActiveRows, persist_rows};
 use crate::learners::{Agent, StepInParts, UpdateRule};
 use crate::memory::{AllocationError, RunMemory, reserve};
 use crate::q_table::QTable;

@@ -1,11 +1,10 @@
 //! The checkpoint of a whole run.
 
-use super::{Checkpoint, CheckpointError, Persist, persist_rows};
-use crate::features::ActiveRows;
+use super::{EpisodeLog, EpisodeState, Trainer};
+use crate::checkpoint::{Checkpoint, CheckpointError, EpisodeProgress, Persist};
+use crate::features::{ActiveRows, persist_rows};
 use crate::learners::Learner;
 use crate::tasks::{Next, Task};
-use crate::trainer::EpisodeState;
-use crate::{EpisodeLog, Trainer};
 
 /// Saves or restores what followed an unfinished step.
 fn persist_next<R: ActiveRows>(
@@ -27,32 +26,6 @@ fn persist_next<R: ActiveRows>(
         3 => Some(Next::Terminal),
         _ => return Err(CheckpointError::Invalid("end of a step")),
     })
-}
-
-/// Where in an episode a checkpoint was made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum EpisodeProgress {
-    /// Between two episodes.
-    Between,
-    /// Within an episode, which is resumed.
-    Within,
-    /// Within an episode that is given up, because the task cannot restore its state, or because it failed. The run is
-    /// resumed with the next episode, and differs from an uninterrupted one from then on.
-    Abandoned,
-}
-
-impl EpisodeProgress {
-    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
-        let mut number = *self as u8;
-        number.persist(checkpoint)?;
-        *self = match number {
-            0 => Self::Between,
-            1 => Self::Within,
-            2 => Self::Abandoned,
-            _ => return Err(CheckpointError::Invalid("progress of an episode")),
-        };
-        Ok(())
-    }
 }
 
 impl<T: Task, L: Learner<T::Active>, R: Persist> Trainer<T, L, R> {

@@ -1,0 +1,29 @@
+//! Where in an episode a checkpoint was made.
+
+use super::{Checkpoint, CheckpointError, Persist};
+
+/// Where in an episode a checkpoint was made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EpisodeProgress {
+    /// Between two episodes.
+    Between,
+    /// Within an episode, which is resumed.
+    Within,
+    /// Within an episode that is given up, because the task cannot restore its state, or because it failed. The run is
+    /// resumed with the next episode, and differs from an uninterrupted one from then on.
+    Abandoned,
+}
+
+impl Persist for EpisodeProgress {
+    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        let mut number = *self as u8;
+        number.persist(checkpoint)?;
+        *self = match number {
+            0 => Self::Between,
+            1 => Self::Within,
+            2 => Self::Abandoned,
+            _ => return Err(CheckpointError::Invalid("progress of an episode")),
+        };
+        Ok(())
+    }
+}
