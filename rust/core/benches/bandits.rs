@@ -3,6 +3,7 @@
 //! `cargo bench --bench bandits`. The runs have the types of the Python package's.
 
 mod benchmarks;
+mod runs;
 
 use std::hint::black_box;
 
@@ -10,11 +11,11 @@ use benchmarks::Benchmarks;
 use qtab_core::features::OutOfBounds;
 use qtab_core::learners::{Agent, GradientBandit, QLearning, TdLearner, TruncationHandling, UpdateRule};
 use qtab_core::policies::{AnyPolicy, TieBreaking, Ucb};
-use qtab_core::q_table::TerminalUpdate;
 use qtab_core::random::{AgentRng, Pcg64, Rng, SeedSequence};
 use qtab_core::schedules::{LearningRate, Schedule};
 use qtab_core::tasks::{BoxedTask, KArmedBandit, Testbed};
-use qtab_core::{Budget, QTable, StopFlag, Trainer};
+use qtab_core::{Budget, StopFlag, Trainer};
+use runs::{agent, train};
 
 /// What the benchmarks store is small.
 const FITS: &str = "it fits into memory";
@@ -26,21 +27,13 @@ const TESTBED: Testbed = Testbed { num_actions: ACTIONS, mean: 0.0, deviation: 1
 const EPSILON: f64 = 0.1;
 const CONFIDENCE: f64 = 2.0;
 
-fn run<U: UpdateRule<[u32; 1], Agent>>(policy: AnyPolicy, learning_rate: LearningRate, rule: U, seed: u32) -> f64 {
+fn run<U: UpdateRule<[u32; 1], Agent>>(policy: AnyPolicy, learning_rate: LearningRate, rule: U, seed: u32) -> u64 {
     let seed = SeedSequence::new(&[seed]);
     let task: BoxedTask<[u32; 1], OutOfBounds> = BoxedTask::new(KArmedBandit::new(TESTBED, Pcg64::new(&seed)));
-    let agent = Agent {
-        table: QTable::new(vec![0.0; ACTIONS], ACTIONS),
-        policy,
-        learning_rate,
-        discount: 1.0,
-        terminal_update: TerminalUpdate::Target,
-        masks: None,
-    };
+    let agent = agent((1, ACTIONS), 0.0, policy, learning_rate, 1.0);
     let learner = TruncationHandling { learner: TdLearner { agent, rule }, terminate: false, bonus: None };
-    let mut trainer = Trainer::new(task, learner, AgentRng::pcg64(&seed.child(0)));
-    trainer.advance(Budget { episodes: STEPS, work: u64::MAX }).expect("a bandit has no bounds to leave");
-    trainer.episodes().returns.iter().sum()
+    let rng = AgentRng::pcg64(&seed.child(0));
+    train(Trainer::new(task, learner, rng), Budget { episodes: STEPS, work: u64::MAX })
 }
 
 /// Adds the benchmark of a learner on the problems of one seed after the other: with one problem, branches would be predicted too well.
@@ -52,8 +45,7 @@ where
     benchmarks.add(GROUP, name, || {
         seed += 1;
         let (policy, learning_rate, rule) = parts();
-        black_box(run(policy, learning_rate, rule, seed));
-        STEPS as u64
+        run(policy, learning_rate, rule, seed)
     });
 }
 

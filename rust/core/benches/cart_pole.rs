@@ -4,23 +4,21 @@
 //! `cargo bench --bench cart_pole`, or `cargo bench --bench cart_pole -- run` for the training run only.
 
 mod benchmarks;
+mod runs;
 
 use std::hint::black_box;
 
 use benchmarks::Benchmarks;
-use qtab_core::batch::{BatchedRun, LANES};
 use qtab_core::envs::classic_control::{CartPole, CartPoleState};
 use qtab_core::features::{Bins, Edges};
 use qtab_core::learners::{Agent, QLearning, TdLearner};
 use qtab_core::policies::EpsilonGreedy;
-use qtab_core::q_table::TerminalUpdate;
 use qtab_core::random::{Pcg64, Rng, SeedSequence};
 use qtab_core::schedules::Schedule;
 use qtab_core::tasks::NativeTask;
-use qtab_core::{Budget, Env, Features, QTable, Trainer};
+use qtab_core::{Budget, Env, Features, Trainer};
+use runs::{agent, train, train_batch};
 
-/// Bins have a row for every number.
-const IN_BOUNDS: &str = "no observation is NaN";
 const MAX_EPISODE_STEPS: u64 = 500;
 const EPISODES: usize = 1000;
 /// Small enough for the first-level cache, large enough that a branch predictor cannot memorize it.
@@ -72,31 +70,17 @@ fn discretizer(benchmarks: &mut Benchmarks) {
 
 fn run(seed: u32) -> Run {
     let (seed, features) = (SeedSequence::new(&[seed]), bins());
-    let agent = Agent {
-        table: QTable::new(vec![50.0; Features::<[f32; 4]>::len(&features) * 2], 2),
-        policy: EpsilonGreedy::linear(0.2, 0.0, EPISODES as u64),
-        learning_rate: Schedule::linear(0.5, 0.0, EPISODES as u64, 0),
-        discount: 0.999,
-        terminal_update: TerminalUpdate::Target,
-        masks: None,
-    };
+    let shape = (Features::<[f32; 4]>::len(&features), 2);
+    let policy = EpsilonGreedy::linear(0.2, 0.0, EPISODES as u64);
+    let agent = agent(shape, 50.0, policy, Schedule::linear(0.5, 0.0, EPISODES as u64, 0), 0.999);
     let task = NativeTask::new(CartPole::default(), features, Some(MAX_EPISODE_STEPS), Pcg64::new(&seed));
     Trainer::new(task, TdLearner { agent, rule: QLearning }, Pcg64::new(&seed.child(0)))
 }
 
 fn training(benchmarks: &mut Benchmarks) {
     let budget = Budget { episodes: EPISODES, work: u64::MAX };
-    let steps = |run: &Run| run.episodes().lengths.iter().sum::<i64>() as u64;
-    benchmarks.add("CartPole", "run", || {
-        let mut run = run(0);
-        run.advance(budget).expect(IN_BOUNDS);
-        steps(&run)
-    });
-    benchmarks.add("CartPole", "run, a batch of 8 on one core", || {
-        let mut runs: [_; LANES] = std::array::from_fn(|seed| run(seed as u32));
-        BatchedRun::advance_all(&mut runs, budget).expect(IN_BOUNDS);
-        runs.iter().map(steps).sum()
-    });
+    benchmarks.add("CartPole", "run", || train(run(0), budget));
+    benchmarks.add("CartPole", "run, a batch of 8 on one core", || train_batch(run, budget));
 }
 
 fn main() {

@@ -5,43 +5,39 @@
 
 mod benchmarks;
 mod mountain_car_task;
+mod runs;
 
 use std::fmt::Debug;
 
 use benchmarks::Benchmarks;
-use mountain_car_task::{IN_BOUNDS, MountainCarTask, rounding, task};
-use qtab_core::batch::{BatchRule, BatchedRun, LANES};
+use mountain_car_task::{MountainCarTask, rounding, task};
+use qtab_core::batch::BatchRule;
 use qtab_core::features::{Features, FixedTileCoding, FixedTiles, OutOfBounds, TileCoding};
 use qtab_core::learners::{
     Agent, DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, Model, NStepSarsa, QLearning, Sarsa, SarsaLambda,
     TdLearner, TraceKind, Traces, TrueOnlineSarsaLambda, UpdateRule, WatkinsQLambda,
 };
 use qtab_core::policies::{AnyPolicy, EpsilonGreedy, TieBreaking};
-use qtab_core::q_table::TerminalUpdate;
-use qtab_core::random::{Pcg64, Rng, SeedSequence};
+use qtab_core::random::{Pcg64, SeedSequence};
 use qtab_core::schedules::{LearningRate, Schedule};
 use qtab_core::tasks::BoxedTask;
-use qtab_core::{Budget, Learner, QTable, StopFlag, Task, Trainer};
+use qtab_core::{Budget, Learner, StopFlag, Task, Trainer};
+use runs::{agent, train, train_batch};
 
 /// What the benchmarks store is small.
 const FITS: &str = "it fits into memory";
 
 const EPISODES: usize = 100;
+const BUDGET: Budget = Budget { episodes: EPISODES, work: u64::MAX };
 const ACTIONS: usize = 3;
 const TILINGS: usize = 8;
 const TRACE_DECAY: f64 = 0.9;
 const CUTOFF: f64 = 1e-3;
 
 /// The settings of Sutton & Barto, section 10.1. Values of 0 are optimistic, so that ε can be 0.
-fn agent(rows: usize, n_active: usize) -> Agent {
-    Agent {
-        table: QTable::new(vec![0.0; rows * ACTIONS], ACTIONS),
-        policy: AnyPolicy::EpsilonGreedy { epsilon: Schedule::constant(0.0), ties: TieBreaking::First },
-        learning_rate: LearningRate::scheduled(Schedule::constant(0.3), n_active),
-        discount: 1.0,
-        terminal_update: TerminalUpdate::Target,
-        masks: None,
-    }
+fn optimistic_agent(rows: usize, n_active: usize) -> Agent {
+    let policy = AnyPolicy::EpsilonGreedy { epsilon: Schedule::constant(0.0), ties: TieBreaking::First };
+    agent((rows, ACTIONS), 0.0, policy, LearningRate::scheduled(Schedule::constant(0.3), n_active), 1.0)
 }
 
 /// The benchmarks of all learners with the same features.
@@ -61,9 +57,9 @@ where
     fn rule<U: UpdateRule<F::Active, Agent>>(&mut self, name: &str, rule: impl Fn(&Agent) -> U) {
         let (features, n_active) = (&self.features, self.n_active);
         let run = || {
-            let agent = agent(features.len(), n_active);
+            let agent = optimistic_agent(features.len(), n_active);
             let learner = TdLearner { rule: rule(&agent), agent };
-            steps(Trainer::new(task(features.clone()), learner, mountain_car_task::agent_rng()))
+            train(Trainer::new(task(features.clone()), learner, mountain_car_task::agent_rng()), BUDGET)
         };
         self.benchmarks.add(self.group, name, run);
     }
@@ -120,24 +116,15 @@ where
 {
     let run = |seed| {
         let features = tile_coding::<TILINGS>();
-        let agent = Agent {
-            table: QTable::new(vec![0.0; Features::<[f32; 2]>::len(&features) * ACTIONS], ACTIONS),
-            policy: EpsilonGreedy::linear(0.1, 0.0, EPISODES as u64),
-            learning_rate: 0.3 / TILINGS as f64,
-            discount: 1.0,
-            terminal_update: TerminalUpdate::Target,
-            masks: None,
-        };
+        let shape = (Features::<[f32; 2]>::len(&features), ACTIONS);
+        let policy = EpsilonGreedy::linear(0.1, 0.0, EPISODES as u64);
+        let agent = agent(shape, 0.0, policy, 0.3 / TILINGS as f64, 1.0);
         let rng = Pcg64::new(&SeedSequence::new(&[seed]).child(0));
         Trainer::new(task(features), TdLearner { agent, rule: rule.clone() }, rng)
     };
     let group = "8 tilings, compiled for the policy";
-    benchmarks.add(group, name, || steps(run(0)));
-    benchmarks.add(group, &format!("{name}, a batch of 8 on one core"), || {
-        let mut runs: [_; LANES] = std::array::from_fn(|seed| run(seed as u32));
-        BatchedRun::advance_all(&mut runs, Budget { episodes: EPISODES, work: u64::MAX }).expect(IN_BOUNDS);
-        runs.iter().flat_map(|run| &run.episodes().lengths).sum::<i64>() as u64
-    });
+    benchmarks.add(group, name, || train(run(0), BUDGET));
+    benchmarks.add(group, &format!("{name}, a batch of 8 on one core"), || train_batch(run, BUDGET));
 }
 
 /// Learners on a boxed task, as the Python package runs them.
@@ -146,15 +133,15 @@ fn boxed_tilings<const N: usize>(benchmarks: &mut Benchmarks, group: &'static st
     let features = tile_coding::<N>();
     let mut add = |name, cutoff: Option<f64>| {
         let run = || {
-            let agent = agent(Features::<[f32; 2]>::len(&features), N);
+            let agent = optimistic_agent(Features::<[f32; 2]>::len(&features), N);
             let boxed: Boxed<N> = BoxedTask::new(task(features.clone()));
             let rng = mountain_car_task::agent_rng();
             if let Some(cutoff) = cutoff {
                 let traces = Traces::new(agent.table.values().len(), cutoff, &StopFlag::new()).expect(FITS);
                 let rule = SarsaLambda { traces, kind: TraceKind::Replacing, trace_decay: TRACE_DECAY };
-                steps(Trainer::new(boxed, TdLearner { agent, rule }, rng))
+                train(Trainer::new(boxed, TdLearner { agent, rule }, rng), BUDGET)
             } else {
-                steps(Trainer::new(boxed, TdLearner { agent, rule: QLearning }, rng))
+                train(Trainer::new(boxed, TdLearner { agent, rule: QLearning }, rng), BUDGET)
             }
         };
         benchmarks.add(group, name, run);
@@ -162,12 +149,6 @@ fn boxed_tilings<const N: usize>(benchmarks: &mut Benchmarks, group: &'static st
     add("Q-learning", None);
     add("Sarsa(0.9)", Some(0.0));
     add("Sarsa(0.9), cut off", Some(CUTOFF));
-}
-
-/// Trains, and returns the number of steps.
-fn steps<T: Task<Error: Debug>, L: Learner<T::Active>, R: Rng + Clone>(mut trainer: Trainer<T, L, R>) -> u64 {
-    trainer.advance(Budget { episodes: EPISODES, work: u64::MAX }).expect(IN_BOUNDS);
-    trainer.episodes().lengths.iter().sum::<i64>() as u64
 }
 
 fn main() {

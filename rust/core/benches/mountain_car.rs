@@ -4,12 +4,12 @@
 
 mod benchmarks;
 mod mountain_car_task;
+mod runs;
 
 use std::hint::black_box;
 
 use benchmarks::Benchmarks;
-use mountain_car_task::{IN_BOUNDS, MAX_EPISODE_STEPS, MountainCarTask, agent_rng, rounding, task};
-use qtab_core::batch::{BatchedRun, LANES};
+use mountain_car_task::{MAX_EPISODE_STEPS, MountainCarTask, agent_rng, rounding, task};
 use qtab_core::envs::classic_control::{MountainCar, MountainCarState};
 use qtab_core::learners::{Agent, QLearning, TdLearner};
 use qtab_core::policies::EpsilonGreedy;
@@ -17,8 +17,12 @@ use qtab_core::q_table::TerminalUpdate;
 use qtab_core::random::{Mt19937, Pcg64, Rng, SeedSequence};
 use qtab_core::tasks::{Next, Task, Transition};
 use qtab_core::{Budget, Env, Features, Learner, QTable, Trainer};
+use runs::{train, train_batch};
 
+/// Why a reset or a step cannot fail.
+const IN_BOUNDS: &str = "every state of the car is in bounds";
 const EPISODES: usize = 500;
+const BUDGET: Budget = Budget { episodes: EPISODES, work: u64::MAX };
 /// Small enough for the first-level cache, large enough that a branch predictor cannot memorize it.
 const BATCH: usize = 4096;
 
@@ -106,26 +110,6 @@ fn trainer<R: Rng + Clone>(mut rng: R) -> QLearningRun<R> {
     Trainer::new(task(rounding()), learner, rng)
 }
 
-/// Trains to the end and returns the number of steps.
-fn train<R: Rng + Clone>(mut trainer: QLearningRun<R>) -> u64 {
-    trainer.advance(Budget { episodes: EPISODES, work: u64::MAX }).expect(IN_BOUNDS);
-    trainer.episodes().lengths.iter().sum::<i64>() as u64
-}
-
-fn batch_of_runs() -> [QLearningRun<Pcg64>; LANES] {
-    std::array::from_fn(|seed| {
-        let mut rng = Pcg64::new(&SeedSequence::new(&[seed as u32]).child(0));
-        let learner = learner(&mut rng);
-        Trainer::new(task(rounding()), learner, rng)
-    })
-}
-
-/// Trains until the first run is finished and returns the number of steps of all.
-fn train_batch(runs: &mut [QLearningRun<Pcg64>; LANES]) -> u64 {
-    QLearningRun::advance_all(runs, Budget { episodes: EPISODES, work: u64::MAX }).expect(IN_BOUNDS);
-    runs.iter().flat_map(|run| &run.episodes().lengths).sum::<i64>() as u64
-}
-
 /// The dynamics only, with actions known in advance and no learning.
 fn physics_only(steps: u64, actions: &[usize], rng: &mut Pcg64) -> f64 {
     let car = black_box(MountainCar::default());
@@ -159,11 +143,11 @@ fn table_only(walk: &[WalkStep], agent: &mut Agent<3, EpsilonGreedy, f64>) {
 
 /// The article's training run, and its lower bounds: each of its parts alone.
 fn run(benchmarks: &mut Benchmarks) {
-    let steps = train(trainer(agent_rng()));
+    let steps = train(trainer(agent_rng()), BUDGET);
     let mut rng = agent_rng();
     let mut agent = learner(&mut rng).agent;
     let actions: Vec<_> = (0..BATCH).map(|_| rng.integers(3) as usize).collect();
-    benchmarks.add("run", "article, PCG64", || train(trainer(agent_rng())));
+    benchmarks.add("run", "article, PCG64", || train(trainer(agent_rng()), BUDGET));
     benchmarks.add("run", "lower bound: physics", || {
         black_box(physics_only(steps, &actions, &mut rng));
         steps
@@ -177,8 +161,9 @@ fn run(benchmarks: &mut Benchmarks) {
         table_only(&walk, &mut agent);
         BATCH as u64
     });
-    benchmarks.add("run", "article, a batch of 8 on one core", || train_batch(&mut batch_of_runs()));
-    benchmarks.add("run", "article, MT19937", || train(trainer(Mt19937::new(0))));
+    let of_seed = |seed| trainer(Pcg64::new(&SeedSequence::new(&[seed]).child(0)));
+    benchmarks.add("run", "article, a batch of 8 on one core", || train_batch(of_seed, BUDGET));
+    benchmarks.add("run", "article, MT19937", || train(trainer(Mt19937::new(0)), BUDGET));
 }
 
 fn main() {

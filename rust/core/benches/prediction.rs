@@ -3,6 +3,7 @@
 //! `cargo bench --bench prediction`. "boxed" is a run whose task and method are chosen at run time.
 
 mod benchmarks;
+mod runs;
 
 use std::fmt::Debug;
 
@@ -14,11 +15,11 @@ use qtab_core::policies::{AnyPolicy, TieBreaking};
 use qtab_core::prediction::{
     FixedPolicy, LinearValues, MonteCarloPrediction, PredictionRule, Predictor, StateRows, TdLambda, TdZero,
 };
-use qtab_core::q_table::TerminalUpdate;
 use qtab_core::random::{AgentRng, Pcg64, Rng, SeedSequence};
 use qtab_core::schedules::{LearningRate, Schedule};
 use qtab_core::tasks::{BoxedTask, NativeTask};
-use qtab_core::{Budget, Env, Learner, QTable, Task, Trainer};
+use qtab_core::{Budget, Env, Learner, Task, Trainer};
+use runs::{agent, train};
 
 const EPISODES: usize = 100;
 const MAX_EPISODE_STEPS: u64 = 10_000;
@@ -91,14 +92,8 @@ impl Problem {
     /// Random actions, so that the episodes are those of the random policy.
     fn q_learning<const N: usize, A>(&self, learning_rate: A) -> TdLearner<QLearning, Agent<N, AnyPolicy, A>> {
         let actions = self.env.num_actions();
-        let agent = Agent {
-            table: QTable::new(vec![0.0; self.env.num_states() * actions], actions),
-            policy: AnyPolicy::EpsilonGreedy { epsilon: Schedule::constant(1.0), ties: TieBreaking::First },
-            learning_rate,
-            discount: 1.0,
-            terminal_update: TerminalUpdate::Target,
-            masks: None,
-        };
+        let policy = AnyPolicy::EpsilonGreedy { epsilon: Schedule::constant(1.0), ties: TieBreaking::First };
+        let agent = agent((self.env.num_states(), actions), 0.0, policy, learning_rate, 1.0);
         TdLearner { agent, rule: QLearning }
     }
 }
@@ -112,9 +107,7 @@ where
 {
     let run = || {
         let (task, learner, rng) = parts();
-        let mut trainer = Trainer::new(task, learner, rng);
-        trainer.advance(Budget { episodes: EPISODES, work: MOST_STEPS }).expect("a table has no bounds to leave");
-        trainer.episodes().lengths.iter().sum::<i64>() as u64
+        train(Trainer::new(task, learner, rng), Budget { episodes: EPISODES, work: MOST_STEPS })
     };
     benchmarks.add(group, name, run);
 }

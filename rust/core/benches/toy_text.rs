@@ -3,6 +3,7 @@
 //! `cargo bench --bench toy_text`, or `cargo bench --bench toy_text -- FrozenLake` for one table only.
 
 mod benchmarks;
+mod runs;
 
 use benchmarks::Benchmarks;
 use qtab_core::envs::tabular::TabularMdp;
@@ -10,13 +11,11 @@ use qtab_core::envs::toy_text::{LakeRewards, TaxiMap, cliff_walking, frozen_lake
 use qtab_core::features::Identity;
 use qtab_core::learners::{Agent, QLearning, TdLearner};
 use qtab_core::policies::EpsilonGreedy;
-use qtab_core::q_table::TerminalUpdate;
 use qtab_core::random::{Pcg64, SeedSequence};
 use qtab_core::tasks::NativeTask;
-use qtab_core::{Budget, QTable, Trainer};
+use qtab_core::{Budget, Trainer};
+use runs::{agent, train};
 
-/// No state of a table is without a row.
-const IN_BOUNDS: &str = "each state has a row";
 const LAKE_MAP: [&[u8]; 4] = [b"SFFF", b"FHFH", b"FFFH", b"HFFG"];
 const TAXI_MAP: TaxiMap = [
     *b"+---------+",
@@ -46,14 +45,8 @@ impl<const N: usize> Table<N> {
     fn run(&self) -> Run<N> {
         let seed = SeedSequence::new(&[0]);
         let states = self.mdp.num_states();
-        let agent = Agent {
-            table: QTable::new(vec![0.0; states * N], N),
-            policy: EpsilonGreedy::linear(self.epsilon, 0.0, self.episodes as u64),
-            learning_rate: self.learning_rate,
-            discount: self.discount,
-            terminal_update: TerminalUpdate::Target,
-            masks: None,
-        };
+        let policy = EpsilonGreedy::linear(self.epsilon, 0.0, self.episodes as u64);
+        let agent = agent((states, N), 0.0, policy, self.learning_rate, self.discount);
         let features = Identity(states as u32);
         let task = NativeTask::new(self.mdp.clone(), features, Some(self.max_episode_steps), Pcg64::new(&seed));
         Trainer::new(task, TdLearner { agent, rule: QLearning }, Pcg64::new(&seed.child(0)))
@@ -61,11 +54,7 @@ impl<const N: usize> Table<N> {
 
     fn add(&self, benchmarks: &mut Benchmarks) {
         let budget = Budget { episodes: self.episodes, work: u64::MAX };
-        benchmarks.add(self.name, "Q-learning", || {
-            let mut run = self.run();
-            run.advance(budget).expect(IN_BOUNDS);
-            run.episodes().lengths.iter().sum::<i64>() as u64
-        });
+        benchmarks.add(self.name, "Q-learning", || train(self.run(), budget));
     }
 }
 

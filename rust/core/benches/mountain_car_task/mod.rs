@@ -7,8 +7,6 @@ use qtab_core::tasks::NativeTask;
 
 /// Gymnasium's time limit.
 pub(crate) const MAX_EPISODE_STEPS: u64 = 200;
-/// Why a reset or a step cannot fail.
-pub(crate) const IN_BOUNDS: &str = "every state of the car is in bounds";
 
 pub(crate) type AnyGrid = Rounding<f32, [Axis<f32>; 2]>;
 pub(crate) type MountainCarTask<F = AnyGrid> = NativeTask<MountainCar, F>;
