@@ -22,6 +22,8 @@ LAKE = "FrozenLake-v1"
 GRID: dict[str, Any] = {"learning_rate": [0.1, 0.2], "algorithm": ["sarsa", "q_learning"]}
 SMALL: dict[str, Any] = {"seeds": 3, "episodes": 20, "block": 5}
 SAVED = Path(__file__).parents[1] / "results" / "saved"
+GRID_2: dict[str, Any] = {"learning_rate": [0.1, 0.2]}
+"""The grid of the saved store of version 2."""
 
 
 class Stores:
@@ -95,13 +97,13 @@ def test_a_damaged_store_is_refused_or_gives_the_same_results(stores: Stores, na
 @pytest.mark.slow
 @settings(max_examples=settings().max_examples // 10, suppress_health_check=[HealthCheck.too_slow])
 @given(damage=DAMAGE)
-def test_a_damaged_store_without_digests_raises_no_other_error(damage: Damage) -> None:
+def test_a_damaged_store_of_an_earlier_version_raises_no_other_error(damage: Damage) -> None:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "study.db"
-        shutil.copy(SAVED / "finished.db", path)
+        shutil.copy(SAVED / "version_2.db", path)
         damage(path)
         refused_or_result(path, lambda: qtab.load_sweep(path))
-        refused_or_result(path, lambda: qtab.sweep(LAKE, GRID, store=path, seeds=3, episodes=20))
+        refused_or_result(path, lambda: qtab.sweep(LAKE, GRID_2, store=path, seeds=3, episodes=20))
 
 
 @pytest.mark.parametrize("statement", STATEMENTS)
@@ -118,8 +120,8 @@ def test_a_store_with_other_rows_or_tables_is_refused(stores: Stores, tmp_path: 
 @pytest.mark.parametrize(
     ("statement", "message"),
     [
-        ("DELETE FROM runs WHERE run = 3", "run 3 is missing"),
-        ("INSERT INTO runs (run, seed, curve) VALUES (12, '0', x'')", "a run 12, but its study has 12 runs"),
+        ("DELETE FROM runs WHERE run = 3", "runs are missing among 2 to 5"),
+        ("INSERT INTO runs (run, seed, curve) VALUES (6, '0', x'')", "a run 6, but its study has 6 runs"),
         ("UPDATE runs SET best_return = 9e999 WHERE run = 3", "run 3: its results are not finite"),
         ("UPDATE runs SET steps = 3 WHERE run = 3", "run 3: 20 episodes of at most 100 steps cannot have 3 steps"),
         ("UPDATE runs SET episodes = 21 WHERE run = 3", "run 3: it has 20 episodes, not 21"),
@@ -128,39 +130,32 @@ def test_a_store_with_other_rows_or_tables_is_refused(stores: Stores, tmp_path: 
         ("UPDATE runs SET curve = x'00' WHERE run = 3", "run 3: its learning curve has 1 bytes"),
         ("UPDATE runs SET error = 'no' WHERE run = 3", "run 3: it failed, but has results"),
         ("UPDATE runs SET seed = '7' WHERE run = 3", "run 3: its seed is 0, not '7'"),
-        ("UPDATE pieces SET piece = 7", "the numbers of its chunks have gaps"),
-        ("UPDATE pieces SET done = 0", "it has runs of unfinished chunks"),
+        ("UPDATE chunks SET start = 1 WHERE start = 0", "runs are missing among 1 to 1"),
+        ("UPDATE chunks SET digest = NULL", "it has a run 0 that belongs to none of its finished chunks"),
     ],
 )
-def test_the_meaning_of_a_store_without_digests_is_checked(tmp_path: Path, statement: str, message: str) -> None:
+def test_the_meaning_of_a_store_of_an_earlier_version_is_checked(tmp_path: Path, statement: str, message: str) -> None:
     path = tmp_path / "study.db"
-    shutil.copy(SAVED / "finished.db", path)
+    shutil.copy(SAVED / "version_2.db", path)
     execute(path, statement)
     with pytest.raises(qtab.StoreError, match=message):
         qtab.load_sweep(path)
     with pytest.raises(qtab.StoreError, match=message):
-        qtab.sweep(LAKE, GRID, store=path, seeds=3, episodes=20)
+        qtab.sweep(LAKE, GRID_2, store=path, seeds=3, episodes=20)
 
 
-def test_results_of_an_earlier_version_are_said_to_be_unchecked(
-    tmp_path: Path, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_a_store_of_version_1_is_refused_and_left_alone(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "study.db"
-    shutil.copy(SAVED / "finished.db", path)
-    assert qtab.load_sweep(path).unchecked_runs == 12
-    # The sweep writes digests, but they cannot tell what happened before.
-    assert qtab.sweep(LAKE, GRID, store=path, seeds=3, episodes=20).unchecked_runs == 12
-    assert qtab.load_sweep(path).unchecked_runs == 12
-    unchecked = [text for text in caplog.messages if "12 runs from an earlier version of qtab without digests" in text]
-    versions = [text for text in caplog.messages if "stored 12 runs without the versions that trained them" in text]
-    others = [text for text in caplog.messages if text not in (*unchecked, *versions)]
-    assert len(unchecked) == 3
-    assert len(versions) == 2  # when it is loaded
-    assert len(others) == 1
-    assert "stores only the id and the arguments of its environment" in others[0]
-    execute(path, "UPDATE runs SET steps = steps + 1 WHERE run = 3")
-    with pytest.raises(qtab.StoreError, match="its runs 0 to 11 differ from their digest"):
+    shutil.copy(SAVED / "version_1.db", path)
+    content = path.read_bytes()
+    message = "study.db' has format version '1', but this qtab reads 2 and 3"
+    with pytest.raises(qtab.StoreError, match=message):
         qtab.load_sweep(path)
+    with pytest.raises(qtab.StoreError, match=message):
+        qtab.sweep(LAKE, GRID, store=path, seeds=3, episodes=20)
+    assert main(["report", str(path), "--out", str(tmp_path / "report")]) == 2
+    assert message in capsys.readouterr().err
+    assert path.read_bytes() == content
 
 
 def test_a_study_in_a_store_cannot_nest_without_end(stores: Stores, tmp_path: Path) -> None:

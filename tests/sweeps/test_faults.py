@@ -17,7 +17,7 @@ from support.sweeps import CAR, GRID, SMALL, assert_equal
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ("UPDATE meta SET value = '99' WHERE name = 'version'", "format version '99', but this qtab reads 1 to 3"),
+        ("UPDATE meta SET value = '99' WHERE name = 'version'", "format version '99', but this qtab reads 2 and 3"),
         ("UPDATE meta SET value = '{}' WHERE name = 'study'", "damaged.* no configs, settings, seeds and block"),
         ("UPDATE meta SET value = 'x' WHERE name = 'format'", "is not a sweep store"),
         ("DROP TABLE meta", "is not a sweep store"),

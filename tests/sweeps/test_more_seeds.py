@@ -55,10 +55,10 @@ def test_seeds_may_be_added_anywhere_and_to_an_unfinished_store(tmp_path_factory
 
 def test_a_store_of_an_earlier_version_is_given_more_seeds(tmp_path):
     path = tmp_path / "study.db"
-    shutil.copy(SAVED / "finished.db", path)
-    grid: dict[str, Any] = {"learning_rate": [0.1, 0.2], "algorithm": ["sarsa", "q_learning"]}
+    shutil.copy(SAVED / "version_2.db", path)
+    grid: dict[str, Any] = {"learning_rate": [0.1, 0.2]}
     table = qtab.sweep("FrozenLake-v1", grid, seeds=5, episodes=20, store=path)
-    assert (len(table), table.unchecked_runs) == (20, 12)
+    assert len(table) == 10
     assert_equal(table, qtab.sweep("FrozenLake-v1", grid, seeds=5, episodes=20))
 
 

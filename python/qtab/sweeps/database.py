@@ -15,8 +15,8 @@ from qtab.sweeps.run_versions import UNKNOWN, check_places, named_versions
 
 FORMAT = "qtab sweep"
 FORMAT_VERSION = 3
-"""The version that is written. Version 1, without digests, and version 2, without the versions of single runs, are also
-read, and upgraded when their sweep resumes."""
+"""The version that is written. Version 2, which lacks the versions of single runs, is also read, and upgraded when its
+sweep resumes."""
 
 _META = "CREATE TABLE meta (name TEXT PRIMARY KEY, value TEXT NOT NULL)"
 _RUNS = (
@@ -36,11 +36,7 @@ _CHUNKS_2 = (
     "CREATE TABLE chunks (start INTEGER PRIMARY KEY, stop INTEGER NOT NULL, owner TEXT, heartbeat REAL, seconds REAL, "
     "digest TEXT)"
 )
-_PIECES = (
-    "CREATE TABLE pieces ( piece INTEGER PRIMARY KEY, owner TEXT, heartbeat REAL, done INTEGER NOT NULL DEFAULT 0 )"
-)
-"""What version 1 calls a chunk."""
-_TABLES = {"1": {_META, _PIECES, _RUNS}, "2": {_META, _CHUNKS_2, _RUNS}, "3": {_META, _CHUNKS, _RUNS}}
+_TABLES = {"2": {_META, _CHUNKS_2, _RUNS}, "3": {_META, _CHUNKS, _RUNS}}
 _RUN_COLUMNS = f"run, seed, {', '.join(SUMMARY_COLUMNS)}, curve, error"
 
 
@@ -67,14 +63,11 @@ class RunRecord:
 class Contents:
     """What a store holds, after it was checked."""
 
-    version: str
     meta: dict[str, str]
     description: Description
     runs: list[StoredRun]
     seconds: float
     """The time that the chunks took, in seconds of their workers."""
-    unchecked_runs: int
-    """The number of runs that a version without digests wrote: damage to them before an upgrade is not found."""
     places: Sequence[int]
     """For each run, the place of the versions that trained it in :func:`qtab.sweeps.run_versions.named_versions`;
     ``UNKNOWN`` where an earlier version did not store it."""
@@ -126,7 +119,7 @@ def read_meta(connection: sqlite3.Connection, path: Path | None) -> dict[str, st
         raise StoreError(f"{name_of(path)} is not a sweep store")
     version = meta.get("version", "")
     if version not in _TABLES:
-        raise StoreError(f"{name_of(path)} has format version {version!r:.40}, but this qtab reads 1 to 3")
+        raise StoreError(f"{name_of(path)} has format version {version!r:.40}, but this qtab reads 2 and 3")
     if set(statements) - {"index"} != _TABLES[version] or len(statements) != len(_TABLES[version]) + 1:
         raise damaged(path, "it has other tables, views or triggers than a store")
     return meta
@@ -153,11 +146,8 @@ def read_contents(connection: sqlite3.Connection, path: Path | None) -> Contents
                 description.check_run(run, seed, summary, curve, error)
             except ValueError as reason:
                 raise ValueError(f"run {run}: {reason}") from None
-        if meta["version"] == "1":
-            return Contents("1", meta, description, runs, 0.0, len(runs), [UNKNOWN] * len(runs))
         seconds, places = _check_chunks(connection, meta, description, runs)
-        unchecked = int(meta.get("unchecked_runs", "0"))
-        return Contents(meta["version"], meta, description, runs, seconds, unchecked, places)
+        return Contents(meta, description, runs, seconds, places)
     except (ValueError, TypeError) as error:
         raise damaged(path, error) from error
 
@@ -263,11 +253,9 @@ def place_of(connection: sqlite3.Connection, versions: Mapping[str, str]) -> int
 
 def upgrade(connection: sqlite3.Connection, contents: Contents) -> None:
     """Turns a store of an earlier version into one of the present, inside a transaction; claims are withdrawn."""
-    connection.execute("DROP TABLE IF EXISTS pieces")
-    connection.execute("DROP TABLE IF EXISTS chunks")
+    connection.execute("DROP TABLE chunks")
     connection.execute(_CHUNKS)
-    about = {**about_itself(contents), "unchecked_runs": str(contents.unchecked_runs)}
-    replace_runs(connection, contents.runs, contents.places, contents.seconds, about)
+    replace_runs(connection, contents.runs, contents.places, contents.seconds, about_itself(contents))
 
 
 def about_itself(contents: Contents) -> dict[str, str]:

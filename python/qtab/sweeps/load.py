@@ -10,8 +10,8 @@ from qtab.sweeps.stored import read_store, store_path
 def load_sweep(path: "str | os.PathLike[str]") -> Sweep:
     """Returns the finished runs of a store, which may belong to a sweep that is still running.
 
-    The digests of the store are checked. A store from an earlier version of this package has none, or does not hold the
-    versions that trained each run, which is logged; it is also logged if runs were trained with different versions.
+    The digests of the store are checked. It is logged if the runs were trained with different versions, or if the store
+    is from an earlier version of this package and does not hold the versions that trained each run.
 
     Raises:
         OSError: if the file does not exist or cannot be read.

@@ -55,11 +55,6 @@ def _notes(sweep: Sweep, ranked: int) -> list[str]:
         )
     if ranked > MAX_SETTINGS:
         notes.append(f"The pictures show the best {MAX_SETTINGS} of {ranked} settings; the table has all of them.")
-    if sweep.unchecked_runs:
-        notes.append(
-            f"{sweep.unchecked_runs:,} runs are from an earlier version of qtab without digests: damage to them cannot "
-            "be found."
-        )
     if note := versions_note(sweep.run_versions):
         notes.append(note)
     return notes

@@ -56,9 +56,6 @@ class Sweep:
     """The time that the training took, in seconds, summed over the processes that took part."""
     versions: str = "{}"
     """The versions of the software that started the sweep, as JSON text; :attr:`run_versions` has those of each run."""
-    unchecked_runs: int = 0
-    """The number of runs that an earlier version of this package stored without digests, so that damage to them cannot
-    be found."""
     _source: Any = field(default=None)
     """The environment and the overrides of each setting, if the sweep was trained in this process."""
     run_versions: Sequence[Versions] = ()
@@ -285,7 +282,6 @@ def build_sweep(
         configs=description.configs,
         seconds=contents.seconds,
         versions=contents.meta.get("versions", "{}"),
-        unchecked_runs=contents.unchecked_runs,
         _source=study and (study.env, study.overrides),
         run_versions=versions_of_runs(contents.meta, contents.places),
         _environments=study.environments if study else environments or {},

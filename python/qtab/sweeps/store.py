@@ -15,7 +15,6 @@ from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 
 from qtab._utils.versions import versions as versions_here
-from qtab.sweeps import version_1
 from qtab.sweeps.connection import (
     StoreError,
     bounded,
@@ -41,7 +40,7 @@ from qtab.sweeps.database import (
 )
 from qtab.sweeps.description import Description
 from qtab.sweeps.more_seeds import add_seeds, numbering
-from qtab.sweeps.stored import check_study, store_path, warn_unchecked, warn_unknown
+from qtab.sweeps.stored import check_study, store_path, warn_unknown
 
 _LOGGER = logging.getLogger("qtab")
 
@@ -175,14 +174,11 @@ class Store:
             if read_meta(self._connection, path)["version"] != str(FORMAT_VERSION):
                 contents = read_contents(self._connection, path)
                 check_study(contents, self._description, path)
-                if contents.version == "1":
-                    version_1.check_chunks(self._connection, path, contents)
                 upgrade(self._connection, contents)
         with bounded(self._connection, path), self._reading():  # another process may change both
             number = numbering(self._connection)
             contents = read_contents(self._connection, path)  # finds damage now instead of after the training
         check_study(contents, self._description, path)
-        warn_unchecked(contents, path)
         if self._description.environments is not None:
             warn_unknown(contents, path)
         if self._description.has_more_seeds(contents.description):

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 from qtab._utils.versions import versions
-from qtab.sweeps import version_1
 from qtab.sweeps.connection import StoreError, is_writable, name_of, reading
 from qtab.sweeps.database import Contents, is_empty, read_contents
 from qtab.sweeps.description import Description
@@ -71,9 +70,6 @@ def read_store(path: Path) -> Contents:
         if is_empty(connection):
             raise StoreError(f"{name_of(path)} is empty: its sweep ended before it stored anything; start it again")
         contents = read_contents(connection, path)
-        if contents.version == "1":
-            version_1.check_chunks(connection, path, contents)
-        warn_unchecked(contents, path)
         warn_versions(contents, path)
         return contents
 
@@ -134,13 +130,3 @@ def warn_versions(contents: Contents, path: Path | None) -> None:
     """Logs if runs were trained with different versions, or with unknown ones."""
     if note := versions_note(versions_of_runs(contents.meta, contents.places)):
         _LOGGER.warning("%s: %s", name_of(path), note)
-
-
-def warn_unchecked(contents: Contents, path: Path | None) -> None:
-    """Logs if results have no digests."""
-    if contents.unchecked_runs:
-        _LOGGER.warning(
-            "%s has %s runs from an earlier version of qtab without digests: damage to them cannot be found",
-            name_of(path),
-            f"{contents.unchecked_runs:,}",
-        )
