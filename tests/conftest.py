@@ -81,6 +81,6 @@ def closed_figures() -> Iterator[None]:
 @pytest.fixture
 def small_chunks(monkeypatch: pytest.MonkeyPatch) -> None:
     """Chunks of at most three runs, so that a small sweep has many."""
-    from qtab.sweeps import pace
+    from qtab.sweeps import worker
 
-    monkeypatch.setattr(pace, "MAX_CHUNK_RUNS", 3)
+    monkeypatch.setattr(worker, "MAX_CHUNK_RUNS", 3)

@@ -35,7 +35,7 @@ _MODULES = {
     "Snapshots": "qtab.results.snapshots",
     "StoreError": "qtab.sweeps.connection",
     "Sweep": "qtab.sweeps.results",
-    "SweepProgress": "qtab.sweeps.progress",
+    "SweepProgress": "qtab.sweeps.training",
     "TabularEnv": "qtab.envs.tabular",
     "ValueEstimates": "qtab.prediction.estimates",
     "Verification": "qtab.training.verify",
@@ -49,7 +49,7 @@ _MODULES = {
     "explain": "qtab.explanation.explain",
     "load": "qtab.results.storage",
     "load_runs": "qtab.results.storage",
-    "load_sweep": "qtab.sweeps.load",
+    "load_sweep": "qtab.sweeps.sweep",
     "optimum": "qtab.planning.solve",
     "planning": "qtab.planning",
     "play": "qtab.rendering.play",
@@ -109,10 +109,10 @@ if TYPE_CHECKING:
     from qtab.sweeps import designs as designs
     from qtab.sweeps.confirm import Confirmation as Confirmation
     from qtab.sweeps.connection import StoreError as StoreError
-    from qtab.sweeps.load import load_sweep as load_sweep
-    from qtab.sweeps.progress import SweepProgress as SweepProgress
     from qtab.sweeps.results import Sweep as Sweep
+    from qtab.sweeps.sweep import load_sweep as load_sweep
     from qtab.sweeps.sweep import sweep as sweep
+    from qtab.sweeps.training import SweepProgress as SweepProgress
     from qtab.training.callbacks import Progress as Progress
     from qtab.training.evaluate import Evaluation as Evaluation
     from qtab.training.evaluate import evaluate as evaluate

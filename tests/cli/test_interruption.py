@@ -226,8 +226,8 @@ def test_verify_takes_the_environment_that_a_package_registers(tmp_path: Path, m
 def test_sigterm_keeps_the_finished_runs_of_a_sweep(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     study = 'env = "FrozenLake-v1"\nseeds = 4\n[grid]\nlearning_rate = [0.1, 0.5]\n[config]\nepisodes = 20\n'
     (tmp_path / "s.toml").write_text(study)
-    monkeypatch.setattr("qtab.sweeps.pace.MAX_CHUNK_RUNS", 3)
-    monkeypatch.setattr("qtab.sweeps.progress.ProgressBar.move_to", lambda *_: os.kill(os.getpid(), signal.SIGTERM))
+    monkeypatch.setattr("qtab.sweeps.worker.MAX_CHUNK_RUNS", 3)
+    monkeypatch.setattr("qtab.sweeps.training.ProgressBar.move_to", lambda *_: os.kill(os.getpid(), signal.SIGTERM))
     done = qtab_here("sweep", "s.toml", cwd=tmp_path)
     kept = len(qtab.load_sweep(tmp_path / "s.db"))
     assert 0 < kept < 8

@@ -11,8 +11,7 @@ import pytest
 import qtab
 from qtab._utils.progress import ProgressBar
 from qtab.cli import main
-from qtab.sweeps.report import settings_table
-from qtab.sweeps.report_page import page
+from qtab.rendering.sweep_report import page, settings_table
 
 ENV = 'env = "MountainCar-v0"\n'
 GRID = "[grid]\nepsilon = [0.3]\n"

@@ -13,8 +13,8 @@ from matplotlib.figure import Figure
 import qtab
 from qtab import plots
 from qtab.envs.stored import StoredId, stored_id
-from qtab.sweeps.digests import study_digest, to_text
-from qtab.sweeps.report import report
+from qtab.rendering.sweep_report import report
+from qtab.sweeps.run_records import study_digest, to_text
 from support.environments import Walk
 from support.run_files import members_of, with_header, with_right_digest, write_members
 

@@ -17,8 +17,8 @@ import pytest
 
 import qtab
 from qtab.config.config import replace_checked
-from qtab.sweeps.description import Description, read_description
-from qtab.sweeps.digests import combined, study_digest, to_text
+from qtab.sweeps.run_records import combined, study_digest, to_text
+from qtab.sweeps.study import StoredStudy, study_from_json
 
 SAVED = Path(__file__).with_name("saved")
 RUNS = sorted(path.stem for path in SAVED.glob("*.npz"))
@@ -105,11 +105,11 @@ def test_settings_that_earlier_versions_ignored_become_those_in_effect(
 
 def test_a_store_with_such_settings_is_that_of_the_same_sweep() -> None:
     table = qtab.sweep("CliffWalking-v1", {"algorithm": ["reinforce", "q_learning"]}, seeds=1, episodes=3)
-    now = Description([dict(config) for config in table.configs], list(table.settings), (0,), 1)
+    now = StoredStudy([dict(config) for config in table.configs], list(table.settings), (0,), 1)
     before = json.loads(now.text)
     assert [config["on_truncation"] for config in before["configs"]] == ["terminate", "bootstrap"]
     before["configs"][0]["on_truncation"] = "bootstrap"
-    assert read_description(json.dumps(before)).text == now.text
+    assert study_from_json(json.dumps(before)).text == now.text
 
 
 def test_a_batch_of_which_an_earlier_file_does_not_tell_the_layout_is_refused() -> None:

@@ -9,7 +9,7 @@ from typing import Any
 
 from hypothesis import strategies as st
 
-from qtab.sweeps.description import SUMMARY_COLUMNS
+from qtab.sweeps.run_records import SUMMARY_COLUMNS
 
 Damage = Callable[[Path], None]
 

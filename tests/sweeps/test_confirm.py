@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import qtab
-from qtab.sweeps.description import SUMMARY_COLUMNS
+from qtab.sweeps.run_records import SUMMARY_COLUMNS
 from support.environments import make_brittle
 from support.sweeps import CAR, GRID, SMALL
 

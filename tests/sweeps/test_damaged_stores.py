@@ -14,7 +14,7 @@ from hypothesis import HealthCheck, given, settings
 
 import qtab
 from qtab.cli import main
-from qtab.sweeps import pace
+from qtab.sweeps import worker
 from support.damage import DAMAGE, NESTED, STATEMENTS, Damage, execute
 from support.sweeps import assert_equal
 
@@ -33,7 +33,7 @@ class Stores:
         self.folder = folder
         self.table = qtab.sweep(LAKE, GRID, **SMALL)
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(pace, "MAX_CHUNK_RUNS", 4)
+            patch.setattr(worker, "MAX_CHUNK_RUNS", 4)
             qtab.sweep(LAKE, GRID, store=folder / "finished.db", **SMALL)
             with pytest.raises(KeyboardInterrupt):
                 qtab.sweep(LAKE, GRID, store=folder / "unfinished.db", callback=self._interrupt, **SMALL)

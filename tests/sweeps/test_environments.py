@@ -13,8 +13,8 @@ from gymnasium.wrappers import RescaleObservation
 
 import qtab
 from qtab._utils.versions import versions
-from qtab.sweeps import stored as stored_module
-from qtab.sweeps.digests import combined, study_digest, to_text
+from qtab.sweeps import run_versions
+from qtab.sweeps.run_records import combined, study_digest, to_text
 
 GRID = {"learning_rate": [0.1, 0.5]}
 SHORT: dict[str, Any] = {"seeds": 2, "episodes": 3, "max_episode_steps": 10, "threads": 1, "progress": False}
@@ -114,7 +114,7 @@ def test_a_store_says_that_its_results_come_from_other_versions(
     tmp_path: Path, by_id: str, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     swept(tmp_path / "a", by_id)
-    monkeypatch.setattr(stored_module, "versions", lambda: {**versions(), "numpy": "9.9.9"})
+    monkeypatch.setattr(run_versions, "versions", lambda: {**versions(), "numpy": "9.9.9"})
     with caplog.at_level(logging.WARNING, "qtab"):
         swept(tmp_path / "a", by_id)
     assert f"has results made with numpy {np.__version__}" in caplog.text

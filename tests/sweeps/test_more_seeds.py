@@ -48,7 +48,7 @@ def test_seeds_may_be_added_anywhere_and_to_an_unfinished_store(tmp_path_factory
             raise KeyboardInterrupt
 
     with pytest.MonkeyPatch.context() as patch, contextlib.suppress(KeyboardInterrupt):
-        patch.setattr("qtab.sweeps.pace.MAX_CHUNK_RUNS", 3)
+        patch.setattr("qtab.sweeps.worker.MAX_CHUNK_RUNS", 3)
         qtab.sweep(CAR, GRID, old, store=path, callback=interrupt, **SHORT)
     assert_equal(qtab.sweep(CAR, GRID, new, store=path, **SHORT), qtab.sweep(CAR, GRID, new, **SHORT))
 
@@ -83,7 +83,7 @@ def test_a_process_that_uses_the_old_seeds_stops_instead_of_storing_runs_under_o
     def add_seeds(progress):
         seen.append(progress.runs)
         if len(seen) == 2:
-            Store(path, plan_study(CAR, GRID, 4, 5, {"episodes": 20}).description).close()
+            Store(path, plan_study(CAR, GRID, 4, 5, {"episodes": 20}).stored).close()
 
     with pytest.raises(
         qtab.StoreError, match="was given more seeds by another process; give this sweep the same seeds"
@@ -96,8 +96,8 @@ def test_a_process_that_uses_the_old_seeds_stops_instead_of_storing_runs_under_o
 def test_two_processes_may_add_the_same_seeds(tmp_path):
     path = tmp_path / "study.db"
     qtab.sweep(CAR, GRID, 1, store=path, **SHORT)
-    description = plan_study(CAR, GRID, 2, 5, {"episodes": 20}).description
-    with contextlib.closing(Store(path, description)), contextlib.closing(Store(path, description)) as second:
+    stored = plan_study(CAR, GRID, 2, 5, {"episodes": 20}).stored
+    with contextlib.closing(Store(path, stored)), contextlib.closing(Store(path, stored)) as second:
         assert second.finished() == 6
         assert second.claim(lambda start: 100) == range(1, 2)
 

@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import qtab
-from qtab.sweeps import pace, worker
 from qtab.sweeps import study as studies
+from qtab.sweeps import worker
 from qtab.sweeps.study import plan_study
 from support.parity import run_of
 from support.sweeps import CAR, GRID, SMALL, assert_equal
@@ -67,21 +67,21 @@ def test_an_interrupted_sweep_of_slow_runs_keeps_those_before(monkeypatch):
 @given(seconds=st.floats(1e-12, 1e12), left=st.floats(-10, 10), at_least=st.integers(1, 5000))
 def test_a_prediction_is_a_possible_number_of_runs(seconds, left, at_least):
     study = plan_study(CAR, {"learning_rate": [0.1, 0.2]}, 3, 100, {"episodes": 40})
-    measured = pace.Pace()
+    measured = worker.Pace()
     measured.record(0, study.resolved[0], 2, seconds)
     for setting in (0, 1):
         runs = measured.runs(setting, study.resolved[setting], left, at_least)
-        assert min(at_least, pace.MAX_CHUNK_RUNS) <= runs <= pace.MAX_CHUNK_RUNS
+        assert min(at_least, worker.MAX_CHUNK_RUNS) <= runs <= worker.MAX_CHUNK_RUNS
 
 
 @given(start=st.integers(0, 29), seconds=st.floats(1e-9, 10), seeds=st.integers(1, 9))
 def test_a_claim_lies_within_the_study(start, seconds, seeds):
     study = plan_study(CAR, GRID, seeds, 100, {"episodes": 40})
-    measured = pace.Pace()
+    measured = worker.Pace()
     measured.record(0, study.resolved[0], 1, seconds)
     start %= study.runs
-    assert pace.claim_size(study, measured, 1, start) >= 1
-    chunk = range(start, min(start + pace.claim_size(study, measured, 1, start), study.runs))
+    assert worker.claim_size(study, measured, 1, start) >= 1
+    chunk = range(start, min(start + worker.claim_size(study, measured, 1, start), study.runs))
     split = [(setting, seed) for setting, seeds in study.split(chunk) for seed in seeds]
     assert split == [divmod(run, seeds) for run in chunk]
 

@@ -14,9 +14,9 @@ import pytest
 import qtab
 from qtab._utils.versions import versions
 from qtab.cli import main
+from qtab.rendering.sweep_report import page
 from qtab.sweeps import store as store_module
 from qtab.sweeps import worker
-from qtab.sweeps.report_page import page
 from support.damage import execute
 from support.sweeps import assert_equal
 

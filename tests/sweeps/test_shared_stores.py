@@ -21,7 +21,7 @@ from hypothesis import strategies as st
 import qtab
 from qtab.sweeps import connection
 from qtab.sweeps import store as stores
-from qtab.sweeps.database import RunRecord
+from qtab.sweeps.run_records import RunRecord
 from qtab.sweeps.store import Store
 from qtab.sweeps.study import plan_study
 from support.sweeps import CAR, GRID, SMALL, assert_equal
@@ -33,7 +33,7 @@ PLANNED = plan_study(CAR, GRID, SMALL["seeds"], 100, {"episodes": SMALL["episode
 def opened(path: Path | None, workers: int) -> Iterator[list[Store]]:
     """The same store in several workers, all of which have this process's number and host name."""
     with contextlib.ExitStack() as on_exit:
-        yield [on_exit.enter_context(contextlib.closing(Store(path, PLANNED.description))) for _ in range(workers)]
+        yield [on_exit.enter_context(contextlib.closing(Store(path, PLANNED.stored))) for _ in range(workers)]
 
 
 def results(runs: range) -> list[RunRecord]:
@@ -64,7 +64,7 @@ def test_claims_that_others_left_behind_are_trained_without_waiting(
     tmp_path, monkeypatch, owner, heartbeat, with_executor
 ):
     path = tmp_path / "study.db"
-    Store(path, PLANNED.description).close()
+    Store(path, PLANNED.stored).close()
     with contextlib.closing(sqlite3.connect(path)) as other:
         values = (PLANNED.runs, owner, time.time() if heartbeat == "now" else heartbeat)
         other.execute("INSERT INTO chunks (start, stop, owner, heartbeat) VALUES (0, ?, ?, ?)", values)
@@ -172,7 +172,7 @@ def test_every_result_is_stored_once_whatever_the_order_the_clocks_and_the_death
 
 def test_a_late_worker_finds_nothing_to_do(tmp_path, small_chunks):
     path = tmp_path / "study.db"
-    slow = Store(path, PLANNED.description)
+    slow = Store(path, PLANNED.stored)
     claim = slow.claim(lambda start: 3)
     assert claim == range(3)
     study = qtab.sweep(CAR, GRID, store=path, **SMALL)
@@ -190,7 +190,7 @@ def test_the_survivor_of_two_processes_does_not_wait(tmp_path, monkeypatch, sent
     path = tmp_path / "study.db"
     script = (
         "import sys, time; from qtab.sweeps.store import Store; from qtab.sweeps.study import plan_study\n"
-        f"store = Store(sys.argv[1], plan_study('{CAR}', {GRID}, 5, 100, {{'episodes': 40}}).description)\n"
+        f"store = Store(sys.argv[1], plan_study('{CAR}', {GRID}, 5, 100, {{'episodes': 40}}).stored)\n"
         "print(store.claim(lambda start: 7), flush=True); time.sleep(600)\n"
     )
     holder = subprocess.Popen([sys.executable, "-c", script, str(path)], stdout=subprocess.PIPE, text=True)

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, precondition, rule
 
 import qtab
-from qtab.sweeps import pace
+from qtab.sweeps import worker
 from support.damage import DAMAGE, STATEMENTS, Damage, execute
 from support.sweeps import assert_equal
 
@@ -34,7 +34,7 @@ class StoreMachine(RuleBasedStateMachine):
         self.path = Path(self.folder.name) / "study.db"
         self.is_damaged = False
         self.patch = pytest.MonkeyPatch()
-        self.patch.setattr(pace, "MAX_CHUNK_RUNS", 4)
+        self.patch.setattr(worker, "MAX_CHUNK_RUNS", 4)
 
     def teardown(self) -> None:
         self.patch.undo()

@@ -11,8 +11,8 @@ from gymnasium.wrappers import RescaleObservation, TransformReward
 
 import qtab
 from qtab.plots.inputs import entries
-from qtab.sweeps.report_plots import _optimum
-from qtab.sweeps.thresholds import sweep_threshold
+from qtab.rendering.sweep_report import _optimum
+from qtab.sweeps.environments import sweep_threshold
 from support.parity import assert_same_run
 
 CAR = "MountainCar-v0"

@@ -82,8 +82,8 @@ def test_a_finished_store_is_read_without_training(tmp_path, small_chunks):
 
 SCRIPT = """
 import sys, qtab
-from qtab.sweeps import pace
-pace.MAX_CHUNK_RUNS = 3
+from qtab.sweeps import worker
+worker.MAX_CHUNK_RUNS = 3
 qtab.sweep("MountainCar-v0", {grid}, seeds={seeds}, episodes=40, store=sys.argv[1],
            callback=lambda progress: print(progress.runs, progress.new, flush=True))
 """

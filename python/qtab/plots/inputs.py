@@ -11,8 +11,8 @@ from qtab._utils import arrays, checks
 from qtab.envs.goals import threshold_of
 from qtab.results.run import Run
 from qtab.results.runs import Runs
+from qtab.sweeps.environments import sweep_threshold
 from qtab.sweeps.results import Sweep
-from qtab.sweeps.thresholds import sweep_threshold
 
 BEST_SETTINGS = 8
 """Of a sweep with more settings than this, plots show those with the best mean final return, and report it."""

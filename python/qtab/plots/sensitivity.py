@@ -12,8 +12,8 @@ from qtab.plots.inputs import short
 from qtab.plots.labels import category_ticks, finish, joined
 from qtab.plots.marks import check_optimum, check_threshold, mark_optimum, mark_threshold
 from qtab.plots.slices import Point, slice_of
+from qtab.sweeps.environments import sweep_threshold
 from qtab.sweeps.results import Sweep
-from qtab.sweeps.thresholds import sweep_threshold
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

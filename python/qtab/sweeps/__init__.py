@@ -2,9 +2,8 @@
 
 from qtab.sweeps.confirm import Confirmation
 from qtab.sweeps.connection import StoreError
-from qtab.sweeps.load import load_sweep
-from qtab.sweeps.progress import SweepProgress
 from qtab.sweeps.results import Sweep
-from qtab.sweeps.sweep import sweep
+from qtab.sweeps.sweep import load_sweep, sweep
+from qtab.sweeps.training import SweepProgress
 
 __all__ = ["Confirmation", "StoreError", "Sweep", "SweepProgress", "load_sweep", "sweep"]

@@ -1,26 +1,18 @@
 """Settings of a sweep, trained again with other seeds."""
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import gymnasium as gym
 import numpy as np
 
 from qtab._utils import checks, html
 from qtab._utils.shown import shown
-from qtab.config import Config
-from qtab.config.layers import over
-from qtab.config.origin import Origin, copied
-from qtab.envs.origin import differences
-from qtab.envs.origin.values import with_types
 from qtab.sweeps.run_versions import versions_note
-from qtab.sweeps.study import Study, to_cell
-from qtab.training.resolved_run import ResolvedRun
-from qtab.training.run_env import as_in_training, environment_of
-from qtab.training.train_many import resolve_template, seed_numbers
+from qtab.sweeps.study import to_cell
+from qtab.training.train_many import seed_numbers
 
 if TYPE_CHECKING:
     from qtab.stats import Interval
@@ -139,53 +131,13 @@ def _given(settings: Any, count: int) -> list[int]:
     return indices
 
 
-def plan_again(sweep: "Sweep", chosen: Sequence[int], numbers: tuple[int, ...], env: Any) -> Study:
-    """Returns the study that trains settings of a sweep again.
-
-    Args:
-        sweep: The sweep.
-        chosen: The indices of the settings.
-        numbers: The seeds.
-        env: The environment; None takes that of the sweep.
-
-    Raises:
-        TypeError: if ``env`` is an environment, which several runs cannot share.
-        ValueError: if the settings cannot be restored here, or their environment is another one, or cannot be made
-            again.
-    """
-    if sweep._source is not None:
-        made = sweep._source[0] if env is None else env
-        overrides = [sweep._source[1][index] for index in chosen]
-    else:
-        configs = [_restored(sweep, index) for index in chosen]
-        made = _made_again(configs[0]) if env is None else env
-        # A function passes the arguments to the environment itself.
-        own: dict[str, Any] = {"env_kwargs": {}} if callable(made) else {}
-        overrides = [{**over(config, {}), **own} for config in configs]
-    resolved = [resolve_template(made, {**given, "seed": max(numbers)}) for given in overrides]
-    for index, run in zip(chosen, resolved, strict=True):
-        _check_environment(sweep, index, run)
-    study = Study(made, [sweep.settings[index] for index in chosen], overrides, numbers, resolved, sweep.block)
-    for index, config in zip(chosen, study.description.configs, strict=True):
-        different = [
-            name for name, value in config.items() if name != "env" and value != sweep.configs[index].get(name)
-        ]
-        if different:
-            raise ValueError(f"setting {index} cannot be restored here: it would have another {different[0]}")
-    return study
-
-
-def plan_confirmation(sweep: "Sweep", seeds: Any, chosen: Sequence[int], env: Any) -> Study:
-    """Returns the study that trains settings of a sweep with other seeds.
+def other_seeds(sweep: "Sweep", seeds: Any) -> tuple[int, ...]:
+    """Returns the seeds of a confirmation.
 
     Raises:
         TypeError: for an argument of the wrong type.
-        ValueError: for seeds that the sweep used, an argument out of range, or settings that cannot be restored.
+        ValueError: for seeds that the sweep used, or an argument out of range.
     """
-    return plan_again(sweep, chosen, _other_seeds(sweep, seeds), env)
-
-
-def _other_seeds(sweep: "Sweep", seeds: Any) -> tuple[int, ...]:
     if hasattr(seeds, "__index__") and not np.ndim(seeds):
         first = max(sweep.seeds) + 1
         return seed_numbers(range(first, first + checks.integer("seeds", seeds, least=1, most=MAX_SEEDS)))
@@ -194,43 +146,3 @@ def _other_seeds(sweep: "Sweep", seeds: Any) -> tuple[int, ...]:
     if used:
         raise ValueError(f"seeds must be other seeds than those of the sweep, got {used[0]}, which it used")
     return numbers
-
-
-def _made_again(config: Config) -> Any:
-    """Returns the environment of a config from a store: the spec of its id, or a function that makes it as it was.
-
-    A store must not choose a module to import.
-    """
-    spec = gym.registry.get(config.env.rpartition(":")[2])
-    if spec is None:
-        raise ValueError(
-            f"the environment {config.env!r} of the store must be registered, or given as env=, but it is not"
-        )
-
-    def attempt(env: Any, settings: dict[str, Any]) -> ResolvedRun:
-        return resolve_template(spec if isinstance(env, str) else env, settings)
-
-    _, made, _ = as_in_training(config, over(config, {}), attempt)
-    return spec if isinstance(made, str) else made
-
-
-def _restored(sweep: "Sweep", setting: int) -> Config:
-    """Returns the config of a setting from a store, which knows its environment as far as the store describes it."""
-    stored, environment = sweep.configs[setting], sweep._environments.get(setting)
-    if isinstance(stored["initial_q"], dict):
-        raise ValueError("a store does not keep an array initial_q; use the table that qtab.sweep returned")
-    if environment is None:
-        return Config(**stored)
-    kwargs = with_types(stored["env_kwargs"], environment.kwargs)
-    return copied(Config(**{**stored, "env_kwargs": kwargs}), Origin(environment))
-
-
-def _check_environment(sweep: "Sweep", setting: int, resolved: ResolvedRun) -> None:
-    """Checks that a setting is trained again in its environment, as far as that is known.
-
-    Raises:
-        ValueError: if it is another one; the message says what differs.
-    """
-    environment = sweep._environments.get(setting)
-    if environment is not None and (found := differences(environment, environment_of(resolved))):
-        raise ValueError(f"env must be that of setting {setting} of the sweep, got another one: {'; '.join(found)}")

@@ -55,6 +55,29 @@ class StoreError(ValueError):
     """A file that is not a store, or not a store that this sweep can use; the message says why."""
 
 
+def store_path(path: Any) -> Path:
+    """Returns the argument ``store`` as a path.
+
+    Raises:
+        OSError: if it names something that is not a regular file.
+        TypeError: if it is not a path.
+        ValueError: if it names no file.
+    """
+    if not isinstance(path, str | os.PathLike):
+        raise TypeError(f"store must be a path or None, got {path!r}")
+    text = os.fspath(path)
+    if not isinstance(text, str):
+        raise TypeError(f"store must be a path or None, got {path!r}")
+    if text in ("", ":memory:") or text.startswith("file:") or "\0" in text:
+        raise ValueError(f"store must be the path of a file, got {text!r}; None keeps the results in memory")
+    found = Path(text)
+    if found.is_dir():
+        raise IsADirectoryError(f"store must be a file, got the folder {text!r}")
+    if found.exists() and not found.is_file():
+        raise OSError(f"store must be a regular file, got {text!r}")
+    return found
+
+
 def name_of(path: Path | None) -> str:
     """Returns what messages call a store."""
     return "the store in memory" if path is None else f"store {str(path)!r}"

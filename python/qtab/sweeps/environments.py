@@ -1,25 +1,33 @@
-"""The environments of a study, by which a store notices that they are no longer the same."""
+"""The environments of a sweep: as its store describes them, whether they are still the same, and their threshold."""
 
 import hashlib
 import json
 from collections.abc import Mapping, Sequence
 from contextlib import closing
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import gymnasium as gym
 
 from qtab.config import Config
 from qtab.envs.class_code import LIBRARY
+from qtab.envs.goals import reward_threshold
 from qtab.envs.origin.description import EnvironmentDescription, from_json
 from qtab.envs.origin.differences import differences
+from qtab.envs.origin.values import with_types
 from qtab.envs.registry import entry_for_id, make_env, spec_of
 from qtab.sweeps.connection import StoreError, damaged, name_of
 from qtab.training.repetition import encoded
 from qtab.training.resolved_run import ResolvedRun
 from qtab.training.run_env import environment_of
 
+if TYPE_CHECKING:
+    from qtab.sweeps.results import Sweep
+
 FINGERPRINT_STEPS = 100
+
+Environment = tuple[str, Mapping[str, Any], int, EnvironmentDescription | None]
+"""The id, the keyword arguments and the time limit of settings, and their environment in detail, if it is known."""
 
 
 def describe_environments(env: Any, resolved: Sequence[ResolvedRun]) -> str:
@@ -115,3 +123,27 @@ def _made(env: Any, config: Config) -> gym.Env:
         made: gym.Env = env()
         return made
     return make_env(spec_of(env) if isinstance(env, str) else env, config.env_kwargs)
+
+
+def sweep_threshold(sweep: "Sweep", setting: int | None = None) -> float | None:
+    """Returns the threshold of a setting; None where none holds; see :func:`qtab.envs.goals.reward_threshold`.
+
+    Args:
+        sweep: The sweep.
+        setting: The index of the setting; None means all, which must then have the same threshold.
+    """
+    found = {reward_threshold(*environment) for environment in environments_of(sweep, setting)}
+    return found.pop() if len(found) == 1 else None
+
+
+def environments_of(sweep: "Sweep", setting: int | None = None) -> list[Environment]:
+    """Returns the different environments of a setting, or of all; none for a sweep without configs."""
+    found: dict[str, Environment] = {}
+    for index, config in enumerate(sweep.configs):
+        if setting is None or index == setting:
+            description = sweep._environments.get(index)
+            given = config["env_kwargs"]
+            kwargs = given if description is None else with_types(given, description.kwargs)
+            environment = (config["env"], kwargs, config["max_episode_steps"], description)
+            found.setdefault(repr(environment), environment)
+    return list(found.values())

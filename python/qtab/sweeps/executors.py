@@ -12,10 +12,9 @@ from typing import Any
 import cloudpickle
 
 from qtab.sweeps.connection import name_of
-from qtab.sweeps.pace import Pace, claim_size
 from qtab.sweeps.store import Store
 from qtab.sweeps.study import Study
-from qtab.sweeps.worker import train_chunk, train_claim
+from qtab.sweeps.worker import Pace, claim_size, train_chunk, train_claim
 
 POLL_SECONDS = 0.5
 """The time between two looks at what the executor has returned."""
@@ -43,8 +42,12 @@ class _Submitted:
 class ExecutorTraining:
     """Gives an executor chunks, and stores what it returns."""
 
-    def __init__(self, study: Study, store: Store, executor: Executor, report: Callable[[], None]) -> None:
+    def __init__(
+        self, study: Study, store: Store, executor: Executor, report: Callable[[], None], is_own: bool = False
+    ) -> None:
         self._study, self._store, self._executor, self._report = study, store, executor, report
+        self._is_own = is_own
+        """Whether the executor is a process pool of this package, for messages."""
         self._pace = Pace()
         self._next_notice = time.monotonic() + NOTICE_SECONDS
         """When to log that the executor is being waited for, on this process's clock."""
@@ -55,24 +58,16 @@ class ExecutorTraining:
         self._slowest: float | None = None
         """The longest time after which a chunk returned, in seconds."""
 
-    def run(self, max_pending: int, is_own: bool = False) -> None:
-        """Trains the runs that the store does not have.
-
-        Args:
-            max_pending: The maximum number of chunks that the executor has at a time.
-            is_own: Whether the executor is a process pool of this package, for messages.
+    def run(self, max_pending: int) -> None:
+        """Trains the runs that the store does not have, of which the executor has so many chunks at a time at most.
 
         Raises:
             RuntimeError: if the executor fails; the message tells how to resume.
         """
         try:
             while self._store.finished() < self._study.runs:
-                try:
-                    all_claimed = self._submit(max_pending)
-                    returned = self._collect()
-                except _ExecutorError as failure:
-                    raise _lost(failure.error, self._study, self._store, is_own) from failure.error
-                if returned:
+                all_claimed = self._submit(max_pending)
+                if self._collect():
                     self._next_notice = time.monotonic() + NOTICE_SECONDS
                 elif not (all_claimed and self._train_late_chunk()):
                     self._log_wait()
@@ -89,7 +84,7 @@ class ExecutorTraining:
             try:
                 future = self._executor.submit(train_chunk, self._task(claim))
             except Exception as error:
-                raise _ExecutorError(error) from error
+                raise self._lost(error) from error
             self._pending[future] = _Submitted(claim, time.monotonic())
         return False
 
@@ -108,7 +103,7 @@ class ExecutorTraining:
             try:
                 records, seconds, self._pace, versions = future.result()
             except (BrokenExecutor, CancelledError) as error:
-                raise _ExecutorError(error) from error
+                raise self._lost(error) from error
             except Exception as error:
                 self._try_again(submitted.claim, error)
                 del self._pending[future]
@@ -127,7 +122,7 @@ class ExecutorTraining:
         """
         self._failures[claim.start] += 1
         if self._failures[claim.start] >= MAX_ATTEMPTS:
-            raise _ExecutorError(error) from error
+            raise self._lost(error) from error
         _LOGGER.warning(
             "submitting %d runs again: the executor failed with %s: %s", len(claim), type(error).__name__, error
         )
@@ -163,31 +158,23 @@ class ExecutorTraining:
             runs = sum(len(submitted.claim) for submitted in self._pending.values())
             _LOGGER.warning("waiting for %s runs that the executor has in %d tasks", f"{runs:,}", len(self._pending))
 
-
-class _ExecutorError(Exception):
-    """An error of the executor, and not of the store or of the callback."""
-
-    def __init__(self, error: BaseException) -> None:
-        super().__init__(str(error))
-        self.error = error
+    def _lost(self, error: BaseException) -> RuntimeError:
+        """Returns the error to raise where the executor fails, which tells how to resume."""
+        finished = self._store.finished()
+        if isinstance(error, CancelledError):
+            message = "the executor cancelled its work; was it, its client or its scheduler closed? "
+        else:
+            own = "a worker process ended abruptly (killed, or out of memory)"
+            reason = " ".join(str(error).split())
+            message = f"{own if self._is_own else 'the executor failed'}: {type(error).__name__}"
+            message += f": {reason}; " if reason else "; "
+        if self._is_own and not finished:
+            message += "where this is a script, it must keep its call behind if __name__ == '__main__'; "
+        kept = f"{finished:,} of {self._study.runs:,} runs are kept"
+        if self._store.path is None:
+            return RuntimeError(f"{message}{kept} as .run of this error; with a store= the same call could resume")
+        return RuntimeError(f"{message}run the same call again: {kept} in {name_of(self._store.path)}")
 
 
 def _has_failed(future: Future[Any]) -> bool:
     return future.cancelled() or future.exception() is not None
-
-
-def _lost(error: BaseException, study: Study, store: Store, is_own: bool) -> RuntimeError:
-    """Returns the error to raise where an executor fails, which tells how to resume."""
-    finished = store.finished()
-    if isinstance(error, CancelledError):
-        message = "the executor cancelled its work; was it, its client or its scheduler closed? "
-    else:
-        what = "a worker process ended abruptly (killed, or out of memory)" if is_own else "the executor failed"
-        reason = " ".join(str(error).split())
-        message = f"{what}: {type(error).__name__}{': ' if reason else ''}{reason}; "
-    if is_own and not finished:
-        message += "where this is a script, it must keep its call behind if __name__ == '__main__'; "
-    kept = f"{finished:,} of {study.runs:,} runs are kept"
-    if store.path is None:
-        return RuntimeError(f"{message}{kept} as .run of this error; with a store= the same call could resume")
-    return RuntimeError(f"{message}run the same call again: {kept} in {name_of(store.path)}")

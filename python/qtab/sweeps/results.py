@@ -10,15 +10,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab._utils import checks
+from qtab._utils import checks, html, svg
 from qtab._utils.columns import cell_column, integer_column
 from qtab._utils.frames import arrow_table, data_frame
 from qtab._utils.suggestions import did_you_mean
-from qtab.sweeps.database import Contents
-from qtab.sweeps.description import SUMMARY_COLUMNS
-from qtab.sweeps.progress import Callback
-from qtab.sweeps.run_versions import Versions, different_versions, versions_of_runs
+from qtab.sweeps.again import plan_again, trained_again
+from qtab.sweeps.confirm import Confirmation, chosen_settings, other_seeds
+from qtab.sweeps.run_records import SUMMARY_COLUMNS
+from qtab.sweeps.run_versions import Versions, different_versions, versions_note, versions_of_runs
+from qtab.sweeps.store_format import Contents
 from qtab.sweeps.study import Study, to_cell
+from qtab.sweeps.training import Callback, run_study
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -26,10 +28,11 @@ if TYPE_CHECKING:
 
     from qtab.envs.origin import EnvironmentDescription
     from qtab.results.run import Run
-    from qtab.sweeps.confirm import Confirmation
 
 INTEGER_COLUMNS = ("episodes", "steps")
 """The summary columns that hold integers, which a store keeps as floats."""
+SHOWN_SETTINGS = 6
+"""The number of settings that a notebook shows."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -70,9 +73,22 @@ class Sweep:
 
     def _repr_html_(self) -> str:
         """A table and the mean learning curves of the settings with the best mean final return, for notebooks."""
-        from qtab.sweeps.display import sweep_html
-
-        return sweep_html(self)
+        returns = {setting: self.values("final_return", setting) for setting in range(len(self.settings))}
+        means = {setting: float(values.mean()) for setting, values in returns.items() if len(values)}
+        best = sorted(means, key=means.__getitem__, reverse=True)[:SHOWN_SETTINGS]
+        names = list(self.settings[0]) if self.settings else []
+        rows = [
+            (setting, *map(self.settings[setting].get, names), len(returns[setting]), f"{means[setting]:.2f}")
+            for setting in best
+        ]
+        heading = f"Sweep of {self.env}: {len(self.settings)} settings, {len(self):,} runs, {self.failed} failed"
+        if len(best) < len(self.settings):
+            heading += f"; the best {len(best)}"
+        note = versions_note(self.run_versions)
+        curves = {f"setting {setting}": self.curves(setting).mean(axis=0) for setting in best}
+        lines = svg.lines(f"Mean learning curves in blocks of {self.block:,} episodes", curves)
+        columns, colors = ("setting", *names, "runs", "mean final return"), [svg.color(i) for i in range(len(best))]
+        return html.listing(heading, columns, rows, lines, colors, [note] if note else [])
 
     def __len__(self) -> int:
         return len(self.columns["seed"])
@@ -172,7 +188,7 @@ class Sweep:
         memory_limit: int | None = None,
         callback: Callback | None = None,
         progress: bool | None = None,
-    ) -> "Confirmation":
+    ) -> Confirmation:
         """Trains settings again with seeds that the sweep did not use, by default the best, which gives unbiased means.
 
         The mean by which a setting was chosen is too high on average, because the choice prefers lucky seeds.
@@ -201,11 +217,8 @@ class Sweep:
                 environment that cannot be made again or is another one; the message says what differs.
             KeyboardInterrupt: on Ctrl-C; its attribute ``run`` is the table of the finished runs.
         """
-        from qtab.sweeps.confirm import Confirmation, chosen_settings, plan_confirmation
-        from qtab.sweeps.training import run_study
-
         chosen = chosen_settings(self, top, per, settings)
-        study = plan_confirmation(self, seeds, chosen, env)
+        study = plan_again(self, chosen, other_seeds(self, seeds), env)
         again = run_study(
             study, partial(build_sweep, study=study), store, executor, threads, memory_limit, callback, progress
         )
@@ -224,8 +237,6 @@ class Sweep:
             ValueError: for an argument out of range, a run that failed, an environment that cannot be made again or is
                 another one, or a run that gives other results here than those of the table.
         """
-        from qtab.sweeps.again import trained_again
-
         return trained_again(self, setting, seed, env)
 
     def to_pandas(self) -> "pd.DataFrame":
@@ -260,37 +271,29 @@ def build_sweep(
         study: The study, if it was planned in this process.
         environments: The environments of the settings, as far as the store describes them, without a study.
     """
-    settings = contents.description.settings if study is None else study.settings
-    description, runs = contents.description, contents.runs
+    stored, runs = contents.study, contents.runs
+    settings = stored.settings if study is None else study.settings
     indices = np.array([run[0] for run in runs], dtype=np.int64)
-    setting, position = np.divmod(indices, len(description.seeds))
+    setting, position = np.divmod(indices, len(stored.seeds))
     columns: dict[str, Any] = {"setting": setting}
     for name in settings[0]:
         columns[name] = cell_column([to_cell(values[name]) for values in settings])[setting]
-    columns["seed"] = integer_column(description.seeds)[position]
+    columns["seed"] = integer_column(stored.seeds)[position]
     for place, name in enumerate(SUMMARY_COLUMNS, start=2):
         values = [np.nan if run[place] is None else run[place] for run in runs]
         columns[name] = np.array(values, dtype=np.float64)
     columns["error"] = np.array([run[-1] for run in runs], dtype=object)
     return Sweep(
-        env=description.configs[0]["env"],
+        env=stored.configs[0]["env"],
         settings=settings,
-        seeds=description.seeds,
+        seeds=stored.seeds,
         columns=columns,
-        block=description.block,
+        block=stored.block,
         _curves=[run[-2] for run in runs],
-        configs=description.configs,
+        configs=stored.configs,
         seconds=contents.seconds,
         versions=contents.meta.get("versions", "{}"),
         _source=study and (study.env, study.overrides),
         run_versions=versions_of_runs(contents.meta, contents.places),
         _environments=study.environments if study else environments or {},
     )
-
-
-def empty_sweep(env: Any, block: int) -> Sweep:
-    """Returns the table of a sweep that was interrupted before its settings were known."""
-    columns: dict[str, Any] = {"setting": np.empty(0, np.int64), "seed": np.empty(0, np.int64)}
-    columns |= {name: np.empty(0) for name in SUMMARY_COLUMNS}
-    columns["error"] = np.empty(0, dtype=object)
-    return Sweep(str(getattr(env, "id", env)), (), (), columns, block, ())

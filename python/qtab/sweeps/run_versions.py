@@ -3,9 +3,11 @@
 import json
 from collections import Counter
 from collections.abc import Mapping, Sequence, Set
+from contextlib import suppress
 from typing import Any
 
 from qtab._utils.shown import counted
+from qtab._utils.versions import versions
 
 Versions = Mapping[str, str] | None
 """The versions by name, as :func:`qtab._utils.versions.versions` returns them; None where they are not known."""
@@ -48,6 +50,24 @@ def versions_of_runs(meta: Mapping[str, str], places: Sequence[int]) -> list[Ver
         return [None] * len(places)
     named = [*named_versions(meta), None]  # the last one is at the place UNKNOWN
     return [named[place] for place in places]
+
+
+def other_versions(meta: Mapping[str, str], places: Sequence[int]) -> list[str]:
+    """Returns the versions that trained runs of a store and are not those here; where unknown, those that it names."""
+    here, trained = versions(), []
+    if UNKNOWN not in places:
+        trained = versions_of_runs(meta, sorted(set(places)))
+    else:
+        with suppress(ValueError):
+            trained = named_versions(meta)
+    others = [
+        f"{name} {one.get(name)}"
+        for one in trained
+        if isinstance(one, dict) and one
+        for name in here
+        if one.get(name) != here[name]
+    ]
+    return list(dict.fromkeys(others))
 
 
 def runs_by_versions(of_runs: Sequence[Versions]) -> list[tuple[Versions, int]]:

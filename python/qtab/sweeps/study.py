@@ -1,29 +1,29 @@
-"""The plan of a sweep, complete before it starts: its settings and its seeds."""
+"""The study of a sweep, complete before it starts: its settings and its seeds, also as a store holds them in JSON."""
 
 import hashlib
 import json
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from qtab._utils import checks
-from qtab._utils.memory import BYTES_PER_EPISODE, check_memory
+from qtab._utils.memory import check_memory
 from qtab._utils.memory import memory_limit as memory_limit_in_bytes
 from qtab.config import DEFAULTS
 from qtab.config.discretizer import function_name
 from qtab.config.layers import Base, over
-from qtab.config.stored import stored_settings
+from qtab.config.stored import corrected_settings, stored_settings
 from qtab.config.unknown import check_names
 from qtab.envs.origin import EnvironmentDescription
+from qtab.envs.stored import stored_id
 from qtab.sweeps import designs
-from qtab.sweeps.description import Description, read_description
 from qtab.training.resolved_run import ResolvedRun
 from qtab.training.run_env import environment_of
-from qtab.training.run_memory import bytes_in_progress
+from qtab.training.run_memory import bytes_of_run
 from qtab.training.train_many import resolve_template, seed_numbers
 
 BYTES_PER_STORED_RUN = 1000
@@ -31,10 +31,43 @@ BYTES_PER_STORED_RUN = 1000
 BYTES_PER_SETTING = 4000
 """The approximate size of a setting and its config in memory."""
 
+_STUDY_TYPES = {"configs": list, "settings": list, "seeds": list, "block": int}
+
+
+@dataclass(frozen=True)
+class StoredStudy:
+    """A study as a store holds it. Run ``i`` has setting ``i // len(seeds)`` and seed ``seeds[i % len(seeds)]``."""
+
+    configs: Sequence[Mapping[str, Any]]
+    """The config of each setting, without the seed, as JSON represents it; a text chooses no module to import."""
+    settings: Sequence[Mapping[str, Any]]
+    """The values that the grid gives to each setting."""
+    seeds: tuple[int, ...]
+    """The seeds of every setting."""
+    block: int
+    """The number of episodes that each point of a learning curve averages."""
+    environments: str | None = None
+    """JSON text: the environments in detail; None where a store does not say it."""
+
+    @property
+    def runs(self) -> int:
+        """The number of runs."""
+        return len(self.settings) * len(self.seeds)
+
+    @property
+    def text(self) -> str:
+        """JSON text that is equal for equal studies only. It is part of the store format."""
+        return json.dumps({name: getattr(self, name) for name in _STUDY_TYPES}, sort_keys=True)
+
+    def has_more_seeds(self, other: "StoredStudy") -> bool:
+        """Returns whether this is another study with further seeds."""
+        is_same = replace(self, seeds=()).text == replace(other, seeds=()).text
+        return is_same and set(self.seeds) > set(other.seeds)
+
 
 @dataclass(frozen=True)
 class Study:
-    """All runs of a sweep. Run ``i`` has setting ``i // len(seeds)`` and seed ``seeds[i % len(seeds)]``."""
+    """All runs of a sweep that is planned in this process, numbered as in :class:`StoredStudy`."""
 
     env: Any
     settings: Sequence[Mapping[str, Any]]
@@ -68,21 +101,18 @@ class Study:
         """
         limit = memory_limit_in_bytes(self.memory_limit)
         for resolved in self.resolved:
-            episodes = resolved.config.episodes
-            # The trainer's lists are copied to arrays.
-            needed = bytes_in_progress(resolved) + episodes * BYTES_PER_EPISODE
-            check_memory(f"runs of {episodes} episodes", needed, limit)
+            check_memory(f"runs of {resolved.config.episodes} episodes", bytes_of_run(resolved), limit)
 
     @cached_property
-    def description(self) -> Description:
-        """The study as a store describes it."""
+    def stored(self) -> StoredStudy:
+        """The study as a store holds it."""
         configs = [
             {name: value for name, value in stored_settings(resolved.config).items() if name != "seed"}
             for resolved in self.resolved
         ]
         settings = [dict(setting) for setting in self.settings]
         content = {"configs": configs, "settings": settings, "seeds": self.seeds, "block": self.block}
-        return read_description(json.dumps(content, default=_jsonable))
+        return study_from_json(json.dumps(content, default=_jsonable))
 
     def split(self, chunk: range) -> list[tuple[int, list[int]]]:
         """Returns the settings of consecutive runs by their index, each with its seeds."""
@@ -92,6 +122,35 @@ class Study:
             first, last = max(chunk.start - setting * count, 0), min(chunk.stop - setting * count, count)
             parts.append((setting, list(self.seeds[first:last])))
         return parts
+
+
+def study_from_json(text: str) -> StoredStudy:
+    """Returns the study that JSON text describes.
+
+    Raises:
+        ValueError: if it does not describe a study; the message says why.
+    """
+    try:
+        content = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise ValueError(f"its study is not JSON: {error}") from None
+    if not isinstance(content, dict) or not all(type(content.get(name)) is kind for name, kind in _STUDY_TYPES.items()):
+        raise ValueError("its study has no configs, settings, seeds and block")
+    configs, settings, seeds, block = (content[name] for name in _STUDY_TYPES)
+    if not settings or len(configs) != len(settings) or block < 1:
+        raise ValueError("its study must have one config for each setting and a positive block")
+    if not seeds or not all(type(seed) is int and seed >= 0 for seed in seeds) or len(set(seeds)) < len(seeds):
+        raise ValueError("its study has bad seeds")
+    for config, setting in zip(configs, settings, strict=True):
+        if not isinstance(setting, dict) or not setting or setting.keys() != settings[0].keys():
+            raise ValueError("the settings of its study do not have the same names")
+        if not isinstance(config, dict) or not isinstance(config.get("env"), str):
+            raise ValueError("a config of its study has no env")
+        for name in ("episodes", "max_episode_steps"):
+            if type(config.get(name)) is not int or config[name] < 1:
+                raise ValueError(f"a config of its study has bad {name}")
+    configs = [{**corrected_settings(config), "env": stored_id(config["env"])} for config in configs]
+    return StoredStudy(configs, settings, tuple(seeds), block)
 
 
 def plan_study(

@@ -1,4 +1,4 @@
-"""``qtab.sweep``: the training of many settings with many seeds each."""
+"""``qtab.sweep``: the training of many settings with many seeds each; ``qtab.load_sweep``: the table of a store."""
 
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -7,6 +7,7 @@ from contextlib import suppress
 from functools import partial
 from typing import Any
 
+import numpy as np
 from gymnasium.envs.registration import EnvSpec
 from typing_extensions import Unpack
 
@@ -18,11 +19,13 @@ from qtab.config.layers import collect, over
 from qtab.config.settings import SharedSettings
 from qtab.config.signature import with_settings
 from qtab.envs.registry import spec_of
-from qtab.sweeps.load import load_sweep
-from qtab.sweeps.progress import SweepProgress
-from qtab.sweeps.results import Sweep, build_sweep, empty_sweep
+from qtab.sweeps.connection import store_path
+from qtab.sweeps.environments import stored_environments
+from qtab.sweeps.results import Sweep, build_sweep
+from qtab.sweeps.run_records import SUMMARY_COLUMNS
+from qtab.sweeps.store_format import read_store
 from qtab.sweeps.study import plan_study
-from qtab.sweeps.training import run_study
+from qtab.sweeps.training import SweepProgress, run_study
 from qtab.training.resolve import log_default_limit
 from qtab.training.run_env import as_in_training
 from qtab.training.train_many import MakeEnv, resolve_template
@@ -110,8 +113,30 @@ def sweep(
 
 
 def _stored(store: Any, env: Any, block: int) -> Sweep:
-    """Returns what earlier calls have stored."""
+    """Returns what earlier calls have stored; an empty table for a sweep that was interrupted before it was planned."""
     if store is not None:
         with suppress(Exception):
             return load_sweep(store)
-    return empty_sweep(env, block)
+    columns: dict[str, Any] = {"setting": np.empty(0, np.int64), "seed": np.empty(0, np.int64)}
+    columns |= {name: np.empty(0) for name in SUMMARY_COLUMNS}
+    columns["error"] = np.empty(0, dtype=object)
+    return Sweep(str(getattr(env, "id", env)), (), (), columns, block, ())
+
+
+def load_sweep(path: "str | os.PathLike[str]") -> Sweep:
+    """Returns the finished runs of a store, which may belong to a sweep that is still running.
+
+    The digests of the store are checked. It is logged if the runs were trained with different versions, or if the store
+    is from an earlier version of this package and does not hold the versions that trained each run.
+
+    Raises:
+        OSError: if the file does not exist or cannot be read.
+        StoreError: if it is not a store, is damaged or empty, or has another format version.
+        TypeError: if ``path`` is not a path.
+    """
+    found = store_path(path)
+    if not found.exists():
+        raise FileNotFoundError(f"store not found: {str(found)!r}")
+    contents = read_store(found)
+    environments = stored_environments(contents.meta, len(contents.study.settings), found)
+    return build_sweep(contents, environments=environments)

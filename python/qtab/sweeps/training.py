@@ -1,24 +1,23 @@
-"""The training of all runs of a study that its store does not have yet."""
+"""The training of all runs of a study that its store does not have yet, and its progress."""
 
 import os
+import time
 from collections.abc import Callable
 from concurrent.futures import Executor
 from contextlib import closing, suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from qtab._utils.attach import attach
 from qtab._utils.progress import ProgressBar, check_progress
-from qtab.sweeps.database import Contents
+from qtab.sweeps.connection import store_path
 from qtab.sweeps.environments import describe_environments
 from qtab.sweeps.executors import ExecutorTraining
-from qtab.sweeps.pace import Pace, claim_size
-from qtab.sweeps.progress import Callback, ProgressReporter
-from qtab.sweeps.store import Store
-from qtab.sweeps.stored import finished_contents, store_path
+from qtab.sweeps.store import Store, finished_contents
+from qtab.sweeps.store_format import Contents
 from qtab.sweeps.study import Study
-from qtab.sweeps.worker import train_claim
+from qtab.sweeps.worker import Pace, claim_size, train_claim
 from qtab.training.process_pool import process_pool
 from qtab.training.train_many import thread_count
 
@@ -26,6 +25,41 @@ MAX_PENDING_CHUNKS = 64
 """The maximum number of chunks that an executor is given at a time."""
 
 T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class SweepProgress:
+    """The progress of a sweep, as a callback receives it."""
+
+    runs: int
+    """The number of finished runs, including those found in the store."""
+    total: int
+    """The number of runs of the sweep."""
+    new: int
+    """The number of runs finished since this call began, by any process."""
+    seconds: float
+    """The wall-clock time since this call began."""
+
+
+Callback = Callable[[SweepProgress], Any]
+
+
+class ProgressReporter:
+    """Moves the progress bar, and calls the callback with the progress since the reporter was created."""
+
+    def __init__(self, total: int, finished: Callable[[], int], callback: Callback | None, bar: ProgressBar) -> None:
+        self._total, self._finished, self._callback, self._bar = total, finished, callback, bar
+        self._started = time.perf_counter()
+        self._already_finished = finished()
+        if self._already_finished:
+            bar.move_to(self._already_finished)
+
+    def __call__(self) -> None:
+        """Reports the progress so far."""
+        runs, seconds = self._finished(), time.perf_counter() - self._started
+        self._bar.move_to(runs)
+        if self._callback is not None:
+            self._callback(SweepProgress(runs, self._total, runs - self._already_finished, seconds))
 
 
 def run_study(
@@ -62,12 +96,12 @@ def run_study(
     path = None if store is None else store_path(store)
     study = replace(study, memory_limit=memory_limit)
     study.check_memory()
-    description = study.description
+    stored = study.stored
     if path is not None:
-        description = replace(description, environments=describe_environments(study.env, study.resolved))
-        if (finished := finished_contents(path, description)) is not None:
+        stored = replace(stored, environments=describe_environments(study.env, study.resolved))
+        if (finished := finished_contents(path, stored)) is not None:
             return build(finished)
-    with closing(Store(path, description)) as opened, ProgressBar(study.runs, "run", progress, "sweep") as bar:
+    with closing(Store(path, stored)) as opened, ProgressBar(study.runs, "run", progress, "sweep") as bar:
         try:
             report = ProgressReporter(study.runs, opened.finished, callback, bar)
             if executor is not None:
@@ -76,7 +110,7 @@ def run_study(
                 _train_in_threads(study, opened, workers, report)
             elif opened.finished() < study.runs:
                 with process_pool(workers) as processes:
-                    ExecutorTraining(study, opened, processes, report).run(2 * workers, is_own=True)
+                    ExecutorTraining(study, opened, processes, report, is_own=True).run(2 * workers)
             return build(opened.contents())
         except BaseException as error:
             with suppress(Exception):

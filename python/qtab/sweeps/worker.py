@@ -1,32 +1,89 @@
-"""Training of the chunks of a sweep, in this process or in a worker, whose results the caller stores."""
+"""Training of the chunks of a sweep, in this process or in a worker: how many runs take a second, and their results."""
 
 import math
 import pickle
 import time
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from qtab import _core
-from qtab._utils.memory import BYTES_PER_EPISODE, memory_left
+from qtab._utils.memory import memory_left
 from qtab._utils.memory import memory_limit as bytes_limit
 from qtab._utils.versions import versions
 from qtab.results.summary import block_means, summarize
-from qtab.sweeps.database import RunRecord
-from qtab.sweeps.pace import CHUNK_SECONDS, Pace
+from qtab.sweeps.run_records import RunRecord
 from qtab.training.process_pool import train_unless_stopped
 from qtab.training.resolve import resolve
 from qtab.training.resolved_run import ResolvedRun
-from qtab.training.run_memory import bytes_in_progress
+from qtab.training.run_memory import bytes_of_run
 from qtab.training.train_many import allocate_results, resolve_template, train_in_threads
 
 if TYPE_CHECKING:
     from qtab.sweeps.store import Store
     from qtab.sweeps.study import Study
 
+CHUNK_SECONDS = 1.0
+"""The time between two commits: what an interruption loses at most, unless single runs take longer."""
+MAX_CHUNK_RUNS = 4096
+"""The maximum number of runs in a chunk."""
+TYPICAL_MAX_STEPS = 1000
+"""Episodes with a longer time limit are expected to end before this many steps."""
+CAUTION = 4.0
+"""The factor by which another setting may take longer than predicted from the last one."""
+
 Part = tuple[int, Mapping[str, Any], ResolvedRun | None, Sequence[int]]
 """The index of a setting, its overrides, its resolved config (None to resolve it here), and seeds."""
+
+
+@dataclass
+class Pace:
+    """Predicts the time of runs from those before.
+
+    The estimated steps of a run make the times of different settings comparable. Predictions never change results: they
+    only decide when results are stored.
+    """
+
+    seconds_per_step: float | None = None
+    """The time of an estimated step in the last runs; None before the first."""
+    setting: int | None = None
+    """The setting of the last runs."""
+
+    def record(self, setting: int, resolved: ResolvedRun, runs: int, seconds: float) -> None:
+        """Records the time that runs of a setting took together."""
+        self.setting, self.seconds_per_step = setting, max(seconds, 1e-9) / (runs * _steps(resolved))
+
+    def runs(self, setting: int, resolved: ResolvedRun, seconds: float, at_least: int = 1) -> int:
+        """Returns how many runs of a setting are expected to take so many seconds."""
+        if self.seconds_per_step is None:
+            return min(at_least, MAX_CHUNK_RUNS)
+        predicted = self.seconds_per_step * _steps(resolved) * (1.0 if setting == self.setting else CAUTION)
+        return min(max(int(min(seconds / predicted, MAX_CHUNK_RUNS)), at_least), MAX_CHUNK_RUNS)
+
+
+def _steps(resolved: ResolvedRun) -> int:
+    """Returns the estimated steps of a run."""
+    return resolved.config.episodes * min(resolved.max_episode_steps, TYPICAL_MAX_STEPS)
+
+
+def claim_size(study: "Study", pace: Pace, at_least: int, start: int) -> int:
+    """Returns how many runs of a study from an index are expected to take about a second.
+
+    A few more do not matter: the training stops after a second, and releases the rest of a claim.
+    """
+    count = len(study.seeds)
+    size, left = 0, CHUNK_SECONDS
+    while size < MAX_CHUNK_RUNS and start + size < study.runs:
+        setting = (start + size) // count
+        of_setting = (setting + 1) * count - start - size
+        predicted = pace.runs(setting, study.resolved[setting], left, at_least)
+        size += min(of_setting, predicted)
+        if predicted <= of_setting:
+            break
+        left *= 1 - of_setting / predicted
+    return min(size, MAX_CHUNK_RUNS)
 
 
 def train_chunk(task: bytes) -> tuple[list[RunRecord], float, Pace, dict[str, str]]:
@@ -93,7 +150,7 @@ def train_setting(
 
     A run fails if it alone needs more than ``memory_limit``, so that the results do not depend on ``threads``.
     """
-    memory = _memory_of_run(resolved, memory_limit)
+    memory = memory_left(bytes_of_run(resolved), bytes_limit(memory_limit))
     if not resolved.is_native:
         return [_train_in_python(env, overrides, seed, block, memory) for seed in seeds]
     results, _ = allocate_results(resolved, len(seeds), threads, keep_tables=False, limit=2**63)
@@ -104,13 +161,6 @@ def train_setting(
         if isinstance(error, MemoryError) and len(seeds) > 1:  # the runs shared the memory that one may take
             (records[index],) = train_setting(env, overrides, resolved, [seeds[index]], block, 1, memory_limit)
     return records
-
-
-def _memory_of_run(resolved: ResolvedRun, memory_limit: int | None) -> tuple[int, int]:
-    """Returns the memory limit of a run, and what it leaves for what grows while the run trains, in bytes."""
-    # The episodes are copied to arrays.
-    needed = bytes_in_progress(resolved) + resolved.config.episodes * BYTES_PER_EPISODE
-    return memory_left(needed, bytes_limit(memory_limit))
 
 
 def _train_in_python(

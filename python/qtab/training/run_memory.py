@@ -49,6 +49,11 @@ def bytes_in_progress(resolved: ResolvedRun) -> int:
     return resolved.config.episodes * BYTES_PER_EPISODE + values * per_value + masks
 
 
+def bytes_of_run(resolved: ResolvedRun) -> int:
+    """Returns how many bytes a run takes until its episodes are copied from the trainer's lists to arrays."""
+    return bytes_in_progress(resolved) + resolved.config.episodes * BYTES_PER_EPISODE
+
+
 def table_words(resolved: ResolvedRun, needed: int) -> tuple[str, str]:
     """Returns words for messages about too little memory: the table, if episodes take less, and what would help.
 

@@ -7,8 +7,8 @@ from pathlib import Path
 from qtab.cli.errors import usage_errors
 from qtab.cli.parser import Parser
 from qtab.cli.reporting import Report
+from qtab.rendering.sweep_report import report
 from qtab.sweeps import load_sweep
-from qtab.sweeps.report import report
 
 
 def add_arguments(parser: Parser) -> None:

@@ -18,8 +18,9 @@ from qtab.cli.study_file import read_study
 from qtab.cli.values import integer
 from qtab.sweeps import StoreError, Sweep, sweep
 from qtab.sweeps.confirm import MAX_SEEDS
+from qtab.sweeps.connection import store_path
 from qtab.sweeps.run_versions import runs_by_versions, versions_note
-from qtab.sweeps.stored import read_store, store_path
+from qtab.sweeps.store_format import read_store
 from qtab.sweeps.study import settings_of
 
 DEFAULT_SEEDS = 100

@@ -1,6 +1,7 @@
 """The SQLite file format of a store: its tables, the check of its version and content, and how runs are written."""
 
 import json
+import logging
 import math
 import sqlite3
 from collections.abc import Mapping, Sequence
@@ -8,10 +9,19 @@ from dataclasses import dataclass
 from itertools import groupby
 from pathlib import Path
 
-from qtab.sweeps.connection import StoreError, damaged, name_of
-from qtab.sweeps.description import SUMMARY_COLUMNS, Description, read_description
-from qtab.sweeps.digests import StoredRun, chunk_digest, combined, study_digest, to_text
-from qtab.sweeps.run_versions import UNKNOWN, check_places, named_versions
+from qtab.sweeps.connection import StoreError, damaged, name_of, reading
+from qtab.sweeps.environments import check_environments
+from qtab.sweeps.run_records import (
+    SUMMARY_COLUMNS,
+    StoredRun,
+    check_run,
+    chunk_digest,
+    combined,
+    study_digest,
+    to_text,
+)
+from qtab.sweeps.run_versions import UNKNOWN, check_places, named_versions, versions_note, versions_of_runs
+from qtab.sweeps.study import StoredStudy, study_from_json
 
 FORMAT = "qtab sweep"
 FORMAT_VERSION = 3
@@ -39,24 +49,7 @@ _CHUNKS_2 = (
 _TABLES = {"2": {_META, _CHUNKS_2, _RUNS}, "3": {_META, _CHUNKS, _RUNS}}
 _RUN_COLUMNS = f"run, seed, {', '.join(SUMMARY_COLUMNS)}, curve, error"
 
-
-@dataclass(frozen=True)
-class RunRecord:
-    """A run to be stored: its summary and learning curve, or the error with which it failed."""
-
-    seed: int
-    summary: dict[str, float | int] | None
-    """A value for each of ``SUMMARY_COLUMNS``; None if the run failed."""
-    curve: bytes
-    """(blocks,) float64: the mean return of each whole block of episodes."""
-    error: str | None = None
-
-    def as_row(self, run: int) -> StoredRun:
-        """Returns the row of the table ``runs`` for the run with this index, as SQLite returns it when it is read."""
-        # SQLite does not store the sign of zero, nor lone surrogates.
-        values = [None if self.summary is None else float(self.summary[name]) + 0.0 for name in SUMMARY_COLUMNS]
-        error = None if self.error is None else self.error.encode(errors="replace").decode()
-        return (run, str(self.seed), *values, self.curve, error)
+_LOGGER = logging.getLogger("qtab")
 
 
 @dataclass(frozen=True)
@@ -64,7 +57,7 @@ class Contents:
     """What a store holds, after it was checked."""
 
     meta: dict[str, str]
-    description: Description
+    study: StoredStudy
     runs: list[StoredRun]
     seconds: float
     """The time that the chunks took, in seconds of their workers."""
@@ -78,25 +71,19 @@ def is_empty(connection: sqlite3.Connection) -> bool:
     return not connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]
 
 
-def create_tables(connection: sqlite3.Connection, description: Description, versions: Mapping[str, str]) -> None:
-    """Creates the tables for a study.
-
-    Args:
-        connection: The connection, in a transaction.
-        description: The study.
-        versions: The versions of the process that creates the store.
-    """
+def create_tables(connection: sqlite3.Connection, study: StoredStudy, versions: Mapping[str, str]) -> None:
+    """Creates the tables for a study in a transaction, with the versions of the process that creates the store."""
     for statement in sorted(_TABLES[str(FORMAT_VERSION)]):
         connection.execute(statement)
-    content = {"study": description.text, "versions": json.dumps(versions)}
-    if description.environments is not None:
-        content["environments"] = description.environments
+    content = {"study": study.text, "versions": json.dumps(versions)}
+    if study.environments is not None:
+        content["environments"] = study.environments
     write_meta(connection, content, [])
 
 
 def write_meta(connection: sqlite3.Connection, content: dict[str, str], chunks: Sequence[int]) -> None:
     """Writes what a store says about itself, with the digest over it and the digests of its chunks."""
-    meta = {"format": FORMAT, "version": str(FORMAT_VERSION), **content}
+    meta = {**content, "format": FORMAT, "version": str(FORMAT_VERSION)}
     meta["digest"] = to_text(combined(study_digest(meta), chunks))
     connection.execute("DELETE FROM meta")
     connection.executemany("INSERT INTO meta VALUES (?, ?)", meta.items())
@@ -138,22 +125,40 @@ def read_contents(connection: sqlite3.Connection, path: Path | None) -> Contents
         raise damaged(path, problem)
     runs = connection.execute(f"SELECT {_RUN_COLUMNS} FROM runs ORDER BY run").fetchall()  # noqa: S608 - fixed names
     try:
-        description = read_description(meta["study"])
-        for run, seed, *summary, curve, error in runs:
-            if not 0 <= run < description.runs:
-                raise ValueError(f"it has a run {run}, but its study has {description.runs} runs")
+        study = study_from_json(meta["study"])
+        for run in runs:
+            if not 0 <= run[0] < study.runs:
+                raise ValueError(f"it has a run {run[0]}, but its study has {study.runs} runs")
+            setting, position = divmod(run[0], len(study.seeds))
             try:
-                description.check_run(run, seed, summary, curve, error)
+                check_run(run, study.configs[setting], study.seeds[position], study.block)
             except ValueError as reason:
-                raise ValueError(f"run {run}: {reason}") from None
-        seconds, places = _check_chunks(connection, meta, description, runs)
-        return Contents(meta, description, runs, seconds, places)
+                raise ValueError(f"run {run[0]}: {reason}") from None
+        seconds, places = _check_chunks(connection, meta, study, runs)
+        return Contents(meta, study, runs, seconds, places)
     except (ValueError, TypeError) as error:
         raise damaged(path, error) from error
 
 
+def read_store(path: Path) -> Contents:
+    """Returns what a store holds, which may belong to a sweep that is still running, without writing to it.
+
+    Raises:
+        OSError: if the file cannot be read.
+        StoreError: if it is not a store, is damaged, or is empty.
+    """
+    with reading(path) as connection:
+        connection.execute("BEGIN")
+        if is_empty(connection):
+            raise StoreError(f"{name_of(path)} is empty: its sweep ended before it stored anything; start it again")
+        contents = read_contents(connection, path)
+    if note := versions_note(versions_of_runs(contents.meta, contents.places)):
+        _LOGGER.warning("%s: %s", name_of(path), note)
+    return contents
+
+
 def _check_chunks(
-    connection: sqlite3.Connection, meta: dict[str, str], description: Description, runs: list[StoredRun]
+    connection: sqlite3.Connection, meta: dict[str, str], study: StoredStudy, runs: list[StoredRun]
 ) -> tuple[float, list[int]]:
     """Compares the runs with their digests.
 
@@ -166,7 +171,7 @@ def _check_chunks(
     place = str(UNKNOWN) if meta["version"] == "2" else "versions"
     query = f"SELECT start, stop, seconds, digest, {place} FROM chunks ORDER BY start"  # noqa: S608 - fixed names
     for start, stop, seconds, digest, versions in connection.execute(query):
-        if not (type(start) is int and type(stop) is int and after <= start < stop <= description.runs):
+        if not (type(start) is int and type(stop) is int and after <= start < stop <= study.runs):
             raise ValueError(f"its chunk of runs {start!r} to {stop!r} overlaps another or is none of its study")
         after = stop
         if digest is None:
@@ -212,30 +217,38 @@ def insert_chunk(connection: sqlite3.Connection, rows: Sequence[StoredRun], seco
     return digest
 
 
-def replace_runs(
-    connection: sqlite3.Connection,
-    runs: Sequence[StoredRun],
-    places: Sequence[int],
-    seconds: float,
-    content: dict[str, str],
-) -> None:
-    """Writes all that a store holds anew, in a transaction; claims are withdrawn.
+def is_outdated(contents: Contents, study: StoredStudy) -> bool:
+    """Returns whether a store has an earlier format, or fewer seeds than the study that it belongs to."""
+    return contents.meta["version"] != str(FORMAT_VERSION) or contents.study.seeds != study.seeds
 
-    Args:
-        connection: The connection.
-        runs: The runs in their order.
-        places: For each run, the place of its versions.
-        seconds: The time that they took.
-        content: What the store says about itself, as for :func:`write_meta`.
+
+def rewrite(connection: sqlite3.Connection, contents: Contents, study: StoredStudy) -> None:
+    """Writes all that a store holds anew, in a transaction: in the present format, with the seeds of a study.
+
+    The runs are numbered by setting and seed, so that more seeds give all of them new numbers. Claims are withdrawn.
     """
+    old, new = contents.study.seeds, study.seeds
+    positions = {seed: position for position, seed in enumerate(new)}
+    numbered = []
+    for (run, *row), versions in zip(contents.runs, contents.places, strict=True):
+        setting, position = divmod(run, len(old))
+        numbered.append((setting * len(new) + positions[old[position]], versions, row))
+    numbered.sort(key=lambda one: one[0])
     connection.execute("DELETE FROM runs")
-    connection.execute("DELETE FROM chunks")
+    connection.execute("DROP TABLE chunks")
+    connection.execute(_CHUNKS)
     digests = []
-    numbered = [(run[0] - index, place, run) for index, (run, place) in enumerate(zip(runs, places, strict=True))]
-    for (_, place), group in groupby(numbered, lambda one: one[:2]):
-        consecutive = [run for *_, run in group]
-        digests.append(insert_chunk(connection, consecutive, seconds * len(consecutive) / len(runs), place))
-    write_meta(connection, content, digests)
+    for (_, versions), chunk in groupby(enumerate(numbered), lambda one: (one[1][0] - one[0], one[1][1])):
+        rows = [(run, *row) for _, (run, _, row) in chunk]
+        digests.append(insert_chunk(connection, rows, contents.seconds * len(rows) / len(numbered), versions))
+    write_meta(connection, {**contents.meta, "study": study.text}, digests)
+    if new != old:
+        connection.execute(f"PRAGMA user_version = {(numbering(connection) + 1) % 2**31}")
+
+
+def numbering(connection: sqlite3.Connection) -> int:
+    """Returns how often the runs of a store were numbered."""
+    return int(connection.execute("PRAGMA user_version").fetchone()[0])
 
 
 def place_of(connection: sqlite3.Connection, versions: Mapping[str, str]) -> int:
@@ -251,21 +264,28 @@ def place_of(connection: sqlite3.Connection, versions: Mapping[str, str]) -> int
     return len(named)
 
 
-def upgrade(connection: sqlite3.Connection, contents: Contents) -> None:
-    """Turns a store of an earlier version into one of the present, inside a transaction; claims are withdrawn."""
-    connection.execute("DROP TABLE chunks")
-    connection.execute(_CHUNKS)
-    replace_runs(connection, contents.runs, contents.places, contents.seconds, about_itself(contents))
-
-
-def about_itself(contents: Contents) -> dict[str, str]:
-    """Returns what a store says about itself, as :func:`write_meta` takes it."""
-    kept = {name: text for name, text in contents.meta.items() if name not in ("format", "version", "digest")}
-    return {**kept, "study": contents.description.text}
-
-
 def add_digests(connection: sqlite3.Connection, chunks: Sequence[int]) -> None:
     """Adds the digests of new chunks to that of the store."""
     before = connection.execute("SELECT value FROM meta WHERE name = 'digest'").fetchone()[0]
     after = to_text(combined(int(before, 16), chunks))
     connection.execute("UPDATE meta SET value = ? WHERE name = 'digest'", (after,))
+
+
+def check_study(contents: Contents, study: StoredStudy, path: Path | None) -> None:
+    """Checks that a store belongs to a study, or to the same one with fewer seeds.
+
+    Raises:
+        StoreError: if it does not.
+    """
+    if contents.study.text == study.text or study.has_more_seeds(contents.study):
+        if study.environments is not None:
+            check_environments(contents.meta.get("environments"), study.environments, path)
+        return
+    if contents.study.has_more_seeds(study):
+        raise StoreError(
+            f"{name_of(path)} has runs of {len(contents.study.seeds)} seeds, of which this sweep has only "
+            f"{len(study.seeds)}; give it all of them, or choose another file"
+        )
+    raise StoreError(
+        f"{name_of(path)} belongs to another sweep (other settings, seeds or environment); choose another file"
+    )
