@@ -26,7 +26,7 @@ _MODULES = {
     "Optimum": "qtab.planning.optimum",
     "Playback": "qtab.rendering.play",
     "PolicyValues": "qtab.planning.policy_values",
-    "Progress": "qtab.training.callbacks",
+    "Progress": "qtab.training.progress",
     "Recording": "qtab.results.recording",
     "Run": "qtab.results.run",
     "Runs": "qtab.results.runs",
@@ -47,8 +47,8 @@ _MODULES = {
     "estimate_values": "qtab.prediction.estimate",
     "evaluate": "qtab.training.evaluate",
     "explain": "qtab.explanation.explain",
-    "load": "qtab.results.storage",
-    "load_runs": "qtab.results.storage",
+    "load": "qtab.results.loading",
+    "load_runs": "qtab.results.loading",
     "load_sweep": "qtab.sweeps.sweep",
     "optimum": "qtab.planning.solve",
     "planning": "qtab.planning",
@@ -100,12 +100,12 @@ if TYPE_CHECKING:
     from qtab.rendering.play import Playback as Playback
     from qtab.rendering.play import play as play
     from qtab.results.axes import Axis as Axis
+    from qtab.results.loading import load as load
+    from qtab.results.loading import load_runs as load_runs
     from qtab.results.recording import Recording as Recording
     from qtab.results.run import Run as Run
     from qtab.results.runs import Runs as Runs
     from qtab.results.snapshots import Snapshots as Snapshots
-    from qtab.results.storage import load as load
-    from qtab.results.storage import load_runs as load_runs
     from qtab.sweeps import designs as designs
     from qtab.sweeps.confirm import Confirmation as Confirmation
     from qtab.sweeps.connection import StoreError as StoreError
@@ -113,9 +113,9 @@ if TYPE_CHECKING:
     from qtab.sweeps.sweep import load_sweep as load_sweep
     from qtab.sweeps.sweep import sweep as sweep
     from qtab.sweeps.training import SweepProgress as SweepProgress
-    from qtab.training.callbacks import Progress as Progress
     from qtab.training.evaluate import Evaluation as Evaluation
     from qtab.training.evaluate import evaluate as evaluate
+    from qtab.training.progress import Progress as Progress
     from qtab.training.resume import resume as resume
     from qtab.training.runs_progress import RunsProgress as RunsProgress
     from qtab.training.train import train as train

@@ -10,8 +10,7 @@ import pytest
 from gymnasium import spaces
 
 import qtab
-from qtab.discretizers.actions import choose_actions
-from qtab.discretizers.composite_actions import flat
+from qtab.envs.actions import choose_actions, flat
 from qtab.rendering.replay import replay_episode
 from support.run_files import Members, members_of, with_header, without_digest, write_members
 

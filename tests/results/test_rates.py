@@ -9,7 +9,7 @@ import qtab
 from qtab.config.schedules import Exponential, Linear
 from qtab.reference.schedules import Schedule
 from qtab.results.rates import rates
-from qtab.training import callbacks
+from qtab.training import progress
 
 
 @pytest.mark.parametrize("warm_up", [0, 1, 7, 29])
@@ -38,7 +38,7 @@ def test_a_run_that_is_stopped_early_needs_no_rates_of_later_episodes(monkeypatc
         assert progress.learning_rate > 0
         return progress.episodes < 40
 
-    monkeypatch.setattr(callbacks, "rates", counted)
+    monkeypatch.setattr(progress, "rates", counted)
     qtab.train("FrozenLake-v1", episodes=100_000, epsilon_schedule="linear", callback=stop, callback_every=1, seed=0)
     assert max(counts) < 100
     assert len(counts) < 20  # their number doubles, so they are not computed at each call

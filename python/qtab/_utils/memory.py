@@ -7,7 +7,6 @@ from contextlib import suppress
 from pathlib import Path
 
 from qtab._utils import checks
-from qtab._utils.windows_memory import windows_memory
 
 DEFAULT_LIMIT = 4 * 2**30
 """The limit in bytes where the memory of the machine is unknown."""
@@ -34,7 +33,7 @@ def memory_limit(value: int | None) -> int:
     if value is not None:
         return checks.integer("memory_limit", value, least=1)
     if sys.platform == "win32":
-        return windows_memory()[0] // 2 or DEFAULT_LIMIT
+        return _windows_memory()[0] // 2 or DEFAULT_LIMIT
     try:
         return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") // 2
     except (AttributeError, OSError, ValueError):
@@ -49,7 +48,7 @@ def free_memory() -> int:
     """
     free = [sys.maxsize]
     if sys.platform == "win32":
-        free.append(windows_memory()[1] or sys.maxsize)
+        free.append(_windows_memory()[1] or sys.maxsize)
     with suppress(OSError, ValueError, StopIteration):
         lines = Path("/proc/meminfo").read_text(encoding="utf-8").splitlines()
         available = next(line for line in lines if line.startswith("MemAvailable:"))
@@ -100,3 +99,25 @@ def readable(count: int) -> str:
     """Returns a number of bytes in the unit that suits it."""
     power = min(int(math.log2(max(count, 1))) // 10, 4)
     return f"{count / 2 ** (10 * power):.3g} {('bytes', 'KiB', 'MiB', 'GiB', 'TiB')[power]}"
+
+
+def _windows_memory() -> tuple[int, int]:
+    """Returns the memory of a machine with Windows, and what of it is free, in bytes; zeros where it does not tell."""
+    import ctypes  # loaded by few programs, and in the test of this function not for Windows
+
+    class Status(ctypes.Structure):
+        """``MEMORYSTATUSEX`` of the Windows API."""
+
+        _fields_ = (
+            ("length", ctypes.c_uint32),
+            ("load", ctypes.c_uint32),
+            ("total", ctypes.c_uint64),
+            ("free", ctypes.c_uint64),
+            ("others", ctypes.c_uint64 * 5),
+        )
+
+    status = Status(length=ctypes.sizeof(Status))
+    windows = getattr(ctypes, "windll", None)
+    if windows is None or not windows.kernel32.GlobalMemoryStatusEx(ctypes.byref(status)):
+        return 0, 0
+    return min(status.total, sys.maxsize), min(status.free, sys.maxsize)

@@ -14,7 +14,7 @@ from qtab._utils.files import check_writable
 from qtab.config import Config
 from qtab.config.config import replace_checked
 from qtab.training.base_callback import BaseCallback
-from qtab.training.callbacks import Progress
+from qtab.training.progress import Progress
 
 if TYPE_CHECKING:
     from qtab.results.run import Run
@@ -104,7 +104,7 @@ class Checkpoint(BaseCallback):
 
 def first_part(path: Path, run: "Run") -> "Run | None":
     """Returns the run in a file if it holds the first episodes of a run; None for any other file."""
-    from qtab.results.storage import load
+    from qtab.results.loading import load
 
     # A file does not hold the functions of its run.
     functions: dict[str, Any] = {

@@ -10,7 +10,7 @@ from qtab.callbacks.checkpoint import file_path
 from qtab.callbacks.evaluate_every import EvaluateEvery
 from qtab.callbacks.metrics import EVALUATION, MetricsLogger
 from qtab.config import Config
-from qtab.training.callbacks import Progress
+from qtab.training.progress import Progress
 
 
 class CSVLogger(MetricsLogger):

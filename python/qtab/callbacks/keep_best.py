@@ -10,7 +10,7 @@ from qtab._utils.files import check_writable
 from qtab.callbacks.checkpoint import file_path, first_part, is_first_part
 from qtab.callbacks.evaluate_every import EvaluateEvery
 from qtab.config import Config
-from qtab.training.callbacks import Progress
+from qtab.training.progress import Progress
 
 if TYPE_CHECKING:
     from qtab.results.run import Run

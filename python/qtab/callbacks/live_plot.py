@@ -11,7 +11,7 @@ from qtab._utils import checks
 from qtab._utils.notebook import in_notebook
 from qtab.config import Config
 from qtab.training.base_callback import BaseCallback
-from qtab.training.callbacks import Progress
+from qtab.training.progress import Progress
 
 DOTS_PER_INCH = 100
 

@@ -12,7 +12,7 @@ from qtab._utils.suggestions import did_you_mean
 from qtab.callbacks.evaluate_every import EvaluateEvery
 from qtab.config import Config
 from qtab.training.base_callback import BaseCallback
-from qtab.training.callbacks import Progress
+from qtab.training.progress import Progress
 
 if TYPE_CHECKING:
     from qtab.results.run import Run

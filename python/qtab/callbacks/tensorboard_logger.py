@@ -9,7 +9,7 @@ from qtab._utils.extras import missing
 from qtab.callbacks.evaluate_every import EvaluateEvery
 from qtab.callbacks.metrics import MetricsLogger
 from qtab.config import Config
-from qtab.training.callbacks import Progress
+from qtab.training.progress import Progress
 
 
 class TensorBoardLogger(MetricsLogger):

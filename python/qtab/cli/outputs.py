@@ -16,7 +16,7 @@ from qtab.rendering.replay import replay_all
 from qtab.rendering.video import VideoRecorder
 from qtab.rendering.window import display_problem, open_window
 from qtab.results.run import Run
-from qtab.training.callbacks import Callback
+from qtab.training.progress import Callback
 
 if TYPE_CHECKING:
     from qtab.planning import Optimum

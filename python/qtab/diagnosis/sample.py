@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab.discretizers.composite_actions import flat
+from qtab.envs.actions import flat
 from qtab.results.run import Run
 from qtab.results.time_steps import rows_of
 from qtab.training.run_env import make_run_env

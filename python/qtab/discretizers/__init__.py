@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from qtab.config import Config
 from qtab.discretizers import named
+from qtab.discretizers.assigned_rows import AssignedRows
 from qtab.discretizers.base import Discretizer
 from qtab.discretizers.bins import Bins
 from qtab.discretizers.composite import Composite
@@ -15,7 +16,6 @@ from qtab.discretizers.function import Function
 from qtab.discretizers.identity import Identity
 from qtab.discretizers.named import DISCRETIZERS, is_plain
 from qtab.discretizers.rounding import Rounding
-from qtab.discretizers.sparse import Sparse
 from qtab.discretizers.tile_coding import TileCoding
 from qtab.discretizers.time_aware import TimeAware
 
@@ -30,8 +30,12 @@ def restore(config: Config, arrays: Mapping[str, NDArray[Any]], n_rows: int) -> 
     return (TimeAware.restore if config.time_aware else named.restore)(config, arrays, n_rows)
 
 
+Sparse = AssignedRows
+"""An alias of :class:`AssignedRows`, its name in earlier versions."""
+
 __all__ = [
     "DISCRETIZERS",
+    "AssignedRows",
     "Bins",
     "Composite",
     "Discretizer",

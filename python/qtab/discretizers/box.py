@@ -8,8 +8,8 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from qtab._utils.shown import counted, shown
-from qtab.discretizers.actions import FLOATS
 from qtab.discretizers.base import Discretizer
+from qtab.envs.actions import FLOATS
 
 Span = tuple[NDArray[np.float64], NDArray[np.float64]]
 """The lower and the upper limit of each component, two arrays of (d,)."""

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from qtab.config import Config
 from qtab.config.choices import DiscretizerName
 from qtab.config.discretizer import FUNCTION, MAPPING, kind
-from qtab.discretizers.actions import FLOATS
+from qtab.discretizers.assigned_rows import AssignedRows
 from qtab.discretizers.base import Discretizer
 from qtab.discretizers.bins import Bins
 from qtab.discretizers.composite import Composite
@@ -17,8 +17,8 @@ from qtab.discretizers.edges import Edges
 from qtab.discretizers.function import Function
 from qtab.discretizers.identity import Identity, integer_bounds
 from qtab.discretizers.rounding import Rounding
-from qtab.discretizers.sparse import Sparse
 from qtab.discretizers.tile_coding import TileCoding
+from qtab.envs.actions import FLOATS
 
 DISCRETIZERS: Mapping[DiscretizerName, type[Discretizer]] = {
     "round": Rounding,
@@ -60,7 +60,7 @@ def is_plain(space: Any) -> bool:
 def _class_of(config: Config, *, plain: bool) -> type[Discretizer]:
     chosen = kind(config.discretizer)
     if config.max_rows is not None:
-        return Sparse
+        return AssignedRows
     if chosen == FUNCTION:
         return Function
     if chosen == MAPPING or not plain:

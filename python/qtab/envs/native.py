@@ -6,7 +6,7 @@ import numpy as np
 from gymnasium.envs.toy_text.blackjack import BlackjackEnv
 
 from qtab import _core
-from qtab.discretizers.actions import Actions
+from qtab.envs.actions import Actions
 from qtab.envs.registry import TABULAR
 
 

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from qtab._utils.shown import shown
 from qtab._utils.suggestions import did_you_mean
 from qtab.discretizers import Discretizer
-from qtab.discretizers.actions import Actions
+from qtab.envs.actions import Actions
 from qtab.planning.optimum import Optimum
 from qtab.results.run import Run
 

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from qtab import _core
 from qtab.discretizers import Identity, TimeAware
-from qtab.discretizers.actions import Actions
+from qtab.envs.actions import Actions
 from qtab.planning.stationary import StationaryPolicy, stationary_policy
 from qtab.planning.time_dependent import time_dependent_return
 from qtab.results.run import Run

@@ -13,8 +13,8 @@ from qtab.config import Config
 from qtab.config.choices import ALGORITHM_NAMES
 from qtab.config.options import PREFERENCES, WITH_STATE_VALUES
 from qtab.discretizers import Discretizer
-from qtab.discretizers.actions import Actions
 from qtab.discretizers.edges import Edges
+from qtab.envs.actions import Actions
 from qtab.envs.descriptions import Description, describe
 from qtab.planning.optimum import Optimum
 from qtab.results.action_values import read_by_policy

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from qtab._spec import ObservationPolicySpec
 from qtab._utils.shown import shown
 from qtab.discretizers import Discretizer
-from qtab.discretizers.actions import Actions
 from qtab.discretizers.box import BoxDiscretizer
+from qtab.envs.actions import Actions
 from qtab.planning.optimum import Optimum
 from qtab.planning.policies import SUM_TOLERANCE, GivenPolicy, equal_probabilities, probabilities, refuse_time_aware
 from qtab.results.action_values import read_by_policy

@@ -31,7 +31,7 @@ def discretizer(env: gym.Env, config: Config) -> Discretizer:
             if isinstance(space, gym.spaces.Discrete):
                 return Identity(space)
         cells = Components(space, config)
-    return cells if config.max_rows is None else Sparse(cells, config.max_rows)
+    return cells if config.max_rows is None else AssignedRows(cells, config.max_rows)
 
 
 def of_box(box: gym.spaces.Box, config: Config) -> Rounding | Bins | TileCoding:
@@ -119,7 +119,7 @@ class Function:
         return [int(np.ravel_multi_index(self.cells(observation), self.shape))]
 
 
-class Sparse:
+class AssignedRows:
     """Rows in the order in which their cells are seen, and one more."""
 
     n_active = 1

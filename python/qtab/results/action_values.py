@@ -1,4 +1,4 @@
-"""The action values of a run, with -inf for the actions that an observation does not have."""
+"""The action values of a run, with -inf for the actions that an observation does not have, also before it began."""
 
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
@@ -139,3 +139,20 @@ def mask_of_step(config: Config, env: gym.Env, observation: Any, info: Mapping[s
     else:
         raise ValueError("info must have an 'action_mask', as in the run's training")
     return checked_mask(name, given, np.size(given))
+
+
+def initial_tables(run: "Run") -> NDArray[np.float64]:
+    """Returns (k, rows, actions): the tables before the first episode."""
+    initial, shape = run.config.initial_q, run.tables.shape
+    if isinstance(initial, tuple):
+        from qtab.reference.streams import agent_stream
+
+        stream = agent_stream(run.config.seed or 0, run.config.bit_generator)
+        return np.stack([stream.uniform(*initial, size=shape[1:]) for _ in range(shape[0])])
+    return np.broadcast_to(np.asarray(initial, dtype=np.float64).reshape(-1), (int(np.prod(shape)),)).reshape(shape)
+
+
+def are_finite(run: "Run") -> bool:
+    """Returns whether all values are finite; those of missing actions are -inf from the start."""
+    finite = np.isfinite(run.tables)
+    return bool(finite.all() or (finite | np.isneginf(initial_tables(run))).all())

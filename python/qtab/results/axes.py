@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from qtab.config import Config
 from qtab.config.origin import trained_on
-from qtab.discretizers.actions import Actions
 from qtab.discretizers.time_aware import TimeAware
+from qtab.envs.actions import Actions
 from qtab.envs.descriptions import (
     UNKNOWN,
     Description,

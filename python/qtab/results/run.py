@@ -15,7 +15,7 @@ from qtab._utils.frames import episode_frame
 from qtab.config import Config
 from qtab.config.origin import trained_on
 from qtab.discretizers import Discretizer
-from qtab.discretizers.actions import Actions
+from qtab.envs.actions import Actions
 from qtab.envs.origin.description import EnvironmentDescription
 from qtab.results import action_values, behaviour, plain_data, run_file, saving, time_steps
 from qtab.results.axes import Axis, action_names, axes_of, description_of

@@ -1,5 +1,6 @@
 """The format of saved runs: one uncompressed ``.npz`` file of arrays and a JSON header, never a pickle."""
 
+import hashlib
 import json
 import math
 import os
@@ -14,7 +15,6 @@ from numpy.lib import format as npy
 from numpy.typing import NDArray
 
 from qtab._utils.files import replacing
-from qtab.results.digest import ALGORITHM, digest
 
 RUN, RUNS = "qtab run", "qtab runs"
 """The formats: of one run, and of many runs of one config."""
@@ -30,6 +30,7 @@ ARRAYS: Mapping[str, tuple["np.dtype[Any]", int]] = {
 """The dtype and the number of axes of the arrays that every run has; those of many runs have one axis more."""
 
 _HEADER, _DIGEST = "header", "digest"
+_ALGORITHM = "sha256"
 
 
 @dataclass(frozen=True)
@@ -42,6 +43,28 @@ class Content:
     """Whether the file had a digest, which is then the right one. Those of earlier versions have none."""
 
 
+def digest(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> str:
+    """Returns the digest of a saved run as hexadecimal digits: equal only for the same header and the same arrays.
+
+    It is the SHA-256 of a JSON text, with sorted keys and no spaces, of the header and of each array's dtype and shape,
+    followed by the bytes of the arrays in C order, sorted by name. The text determines how many bytes follow.
+
+    Args:
+        header: What ``json.loads`` returns for the header, so that a header that was read has the digest of the one
+            that was written.
+        arrays: The arrays by name, without the header.
+
+    Raises:
+        ValueError: if the header holds a number that JSON cannot.
+    """
+    layouts = {name: [array.dtype.str, list(array.shape)] for name, array in arrays.items()}
+    text = json.dumps({"header": header, "arrays": layouts}, sort_keys=True, separators=(",", ":"), allow_nan=False)
+    computed = hashlib.new(_ALGORITHM, text.encode())
+    for name in sorted(arrays):
+        computed.update(np.ascontiguousarray(arrays[name]).reshape(-1).view(np.uint8).data)
+    return computed.hexdigest()
+
+
 def encode(header: Mapping[str, Any], kind: str = RUN) -> str:
     """Returns a header as JSON, with the name and the version of the format, and that there is a digest.
 
@@ -49,7 +72,7 @@ def encode(header: Mapping[str, Any], kind: str = RUN) -> str:
         TypeError: if it holds what JSON cannot.
         ValueError: if it holds a number that JSON cannot.
     """
-    content = {"format": kind, "version": FORMAT_VERSION, _DIGEST: ALGORITHM, **header}
+    content = {"format": kind, "version": FORMAT_VERSION, _DIGEST: _ALGORITHM, **header}
     return json.dumps(content, allow_nan=False)
 
 
@@ -87,7 +110,7 @@ def read(file: BinaryIO, kind: str = RUN) -> Content:
     stored = arrays.pop(_DIGEST, None)
     if (stored is None) != (_DIGEST not in header):
         raise ValueError("its digest is missing")
-    if stored is not None and (header[_DIGEST] != ALGORITHM or str(stored) != digest(header, arrays)):
+    if stored is not None and (header[_DIGEST] != _ALGORITHM or str(stored) != digest(header, arrays)):
         raise ValueError("its digest is not that of its content, which was changed after it was saved")
     return Content(header, arrays, has_digest=stored is not None)
 

@@ -17,7 +17,7 @@ from qtab.config import Config
 from qtab.config.config import replace_checked
 from qtab.config.origin import trained_on
 from qtab.discretizers import Discretizer
-from qtab.discretizers.actions import Actions
+from qtab.envs.actions import Actions
 from qtab.envs.origin.description import EnvironmentDescription
 from qtab.results import run_file, saving
 from qtab.results.consistency import check_consistent_runs

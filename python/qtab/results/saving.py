@@ -12,7 +12,7 @@ from qtab.config.config import replace_checked
 from qtab.config.discretizer import stored_function
 from qtab.config.stored import stored_settings
 from qtab.results import run_file
-from qtab.results.stored_actions import describe_parts
+from qtab.results.saved_actions import describe_parts
 
 if TYPE_CHECKING:
     from qtab.results.run import Run

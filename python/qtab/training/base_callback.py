@@ -10,7 +10,7 @@ import gymnasium as gym
 from qtab._utils import checks
 from qtab._utils.shown import shown
 from qtab.config import Config
-from qtab.training.callbacks import Progress
+from qtab.training.progress import Progress
 
 if TYPE_CHECKING:
     from qtab.results.run import Run

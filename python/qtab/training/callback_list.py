@@ -5,7 +5,7 @@ from contextlib import ExitStack
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from qtab.training.base_callback import BaseCallback
-from qtab.training.callbacks import Callback, Progress
+from qtab.training.progress import Callback, Progress
 from qtab.training.resolved_run import PythonEnvironment, ResolvedRun
 
 if TYPE_CHECKING:

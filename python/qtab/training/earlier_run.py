@@ -20,13 +20,13 @@ from qtab.config.discretizer import MissingFunction
 from qtab.config.layers import over
 from qtab.config.options import is_set
 from qtab.config.origin import copied, trained_on
-from qtab.discretizers import Sparse
+from qtab.discretizers import AssignedRows
 from qtab.envs.origin.differences import differences
 from qtab.envs.registry import versioned
+from qtab.results.loading import load, with_action_mask
 from qtab.results.rates import extensions, falling_rates
 from qtab.results.run import Run
 from qtab.results.snapshots import resumed_snapshot_episodes, snapshot_episodes
-from qtab.results.storage import load, with_action_mask
 from qtab.training.options import TrainingOptions
 from qtab.training.resolve import resolve
 from qtab.training.resolved_run import ResolvedRun
@@ -89,7 +89,7 @@ def resolve_again(name: str, run: Run, episodes: Any, env: gym.Env | None) -> Re
     origin = config.origin or resolved.config.origin
     same = replace_checked(resolved.config, env_kwargs=config.env_kwargs)
     resolved = replace(resolved, config=copied(same, origin))
-    if isinstance(run.discretizer, Sparse):  # rows are assigned where the earlier part stopped
+    if isinstance(run.discretizer, AssignedRows):  # rows are assigned where the earlier part stopped
         resolved = replace(resolved, discretizer=run.discretizer.as_learned())
     return replace(resolved, extensions=extensions(run, config))
 

@@ -20,7 +20,7 @@ from qtab.config import Config
 from qtab.config.config import replace_checked
 from qtab.config.layers import over
 from qtab.config.unknown import suggesting
-from qtab.discretizers import Sparse
+from qtab.discretizers import AssignedRows
 from qtab.envs.goals import threshold_of
 from qtab.envs.matching import time_limit
 from qtab.envs.registry import make_env, spec_of
@@ -190,7 +190,7 @@ def evaluate(
             **GREEDY,
             "episodes": episodes,
             "seed": seed,
-            "initial_q": 0.0 if isinstance(run.discretizer, Sparse) else greedy_table(run),
+            "initial_q": 0.0 if isinstance(run.discretizer, AssignedRows) else greedy_table(run),
             "env_kwargs": _env_kwargs(config, env, env_kwargs),
             "preset": config.preset if env is None else None,
             "max_episode_steps": config.max_episode_steps if max_episode_steps is None else max_episode_steps,
@@ -198,7 +198,7 @@ def evaluate(
         },
     )
     resolved = resolve_run(config, settings) if env is None else resolve(env, settings)
-    if isinstance(run.discretizer, Sparse):
+    if isinstance(run.discretizer, AssignedRows):
         played_on = replace_checked(resolved.config, initial_q=greedy_table(run))
         resolved = replace(resolved, discretizer=run.discretizer.as_played(), config=played_on)
     if env is not None:

@@ -8,7 +8,7 @@ from gymnasium.envs.registration import EnvSpec
 from qtab import discretizers
 from qtab._utils.shown import shown
 from qtab.config.origin import trained_on
-from qtab.discretizers.actions import choose_actions
+from qtab.envs.actions import choose_actions
 from qtab.envs.origin.describe import describe
 from qtab.envs.origin.differences import differences
 from qtab.results.run import Run

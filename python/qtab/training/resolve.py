@@ -21,8 +21,8 @@ from qtab.config.origin import Origin, copied
 from qtab.config.policies import policy
 from qtab.config.presets import preset
 from qtab.config.schedules import learning_rate
-from qtab.discretizers import Discretizer, Sparse
-from qtab.discretizers.actions import Actions, choose_actions
+from qtab.discretizers import AssignedRows, Discretizer
+from qtab.envs.actions import Actions, choose_actions
 from qtab.envs.class_code import LIBRARY, is_of_library
 from qtab.envs.goals import UNLIMITED_MAX_EPISODE_STEPS
 from qtab.envs.known_tables import KnownTable, known_table
@@ -32,9 +32,8 @@ from qtab.envs.origin.describe import describe, describe_known
 from qtab.envs.origin.description import EnvironmentDescription
 from qtab.envs.registry import EnvEntry, entry_for_spec, make_env, spec_of, versioned
 from qtab.training.action_masks import NO_MASKS, asks_for_masks, known_masks, observed_masks
-from qtab.training.derived import derived_settings
 from qtab.training.preset_fit import infer_discretizer, set_aside
-from qtab.training.resolved_run import Environment, NativeEnvironment, PythonEnvironment, ResolvedRun
+from qtab.training.resolved_run import Environment, NativeEnvironment, PythonEnvironment, ResolvedRun, derived_settings
 
 _LOGGER = logging.getLogger("qtab")
 _logged: set[str] = set()
@@ -251,7 +250,7 @@ def _fit_initial_q(config: Config, discretizer: Discretizer, n_actions: int) -> 
     initial_q, count = config.initial_q, n_tables(config.algorithm)
     if not isinstance(initial_q, np.ndarray):
         return initial_q
-    if isinstance(discretizer, Sparse):
+    if isinstance(discretizer, AssignedRows):
         raise ValueError(
             "initial_q must be a number or a range with max_rows, which assigns the rows anew, got a table"
         )

@@ -14,10 +14,11 @@ from qtab.config import Config
 from qtab.config.algorithms import AlgorithmSettings
 from qtab.config.config import replace_checked
 from qtab.config.initial_q import initial_q_spec
+from qtab.config.options import is_set
 from qtab.config.policies import Policy
 from qtab.config.schedules import LearningRate
 from qtab.discretizers import Discretizer
-from qtab.discretizers.actions import Actions
+from qtab.envs.actions import Actions
 from qtab.envs.registry import EnvEntry
 from qtab.training.action_masks import NO_MASKS, ActionMasks
 from qtab.training.exclusive import exclusively
@@ -147,3 +148,20 @@ def masks_of(trainer: _core.Trainer, resolved: ResolvedRun) -> NDArray[np.bool_]
     """Returns (*cells, actions): which actions each cell has, as last seen; None without masks, or without cells."""
     masks = trainer.action_masks() if resolved.discretizer.has_cells else None
     return None if masks is None else masks.reshape(*resolved.discretizer.shape, len(resolved.actions))
+
+
+def derived_settings(asked: Config, config: Config, discretizer: Discretizer) -> frozenset[str]:
+    """Returns the settings that were not given, and that follow from the environment or from other settings.
+
+    Args:
+        asked: The settings that were given, and those of the preset.
+        config: All settings of the run.
+        discretizer: That of the run.
+    """
+    names = {"max_episode_steps", *discretizer.settings()}
+    derived = {name for name in names if not is_set(getattr(asked, name)) and is_set(getattr(config, name))}
+    if asked.backend == "auto":
+        derived.add("backend")
+    if asked.discretizer == "round" and config.discretizer == "identity":
+        derived.add("discretizer")
+    return frozenset(derived)

@@ -23,7 +23,6 @@ from qtab.results.recording import Recording, generator_states
 from qtab.results.run import Run
 from qtab.results.snapshots import SnapshotCollector
 from qtab.training.callback_list import Callbacks
-from qtab.training.callbacks import EpisodeReader
 from qtab.training.earlier_run import (
     check_agrees,
     counts_visits,
@@ -35,6 +34,7 @@ from qtab.training.earlier_run import (
     with_function,
 )
 from qtab.training.options import CALLBACK_EVERY, TrainingOptions
+from qtab.training.progress import EpisodeReader
 from qtab.training.resolve import log_default_limit, log_python_stepping
 from qtab.training.resolved_run import ResolvedRun, masks_of
 from qtab.training.restore import restore, state_of

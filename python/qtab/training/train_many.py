@@ -25,7 +25,7 @@ from qtab.config import Config
 from qtab.config.layers import collect
 from qtab.config.settings import SharedSettings
 from qtab.config.signature import with_settings
-from qtab.discretizers import Sparse
+from qtab.discretizers import AssignedRows
 from qtab.envs.matching import equal_environments
 from qtab.results.runs import Runs
 from qtab.training.action_masks import mask_bytes
@@ -97,7 +97,7 @@ def train_many(
     resolved = template.with_seed(numbers[0])
     log_default_limit(resolved)
     log_python_stepping(resolved)
-    if tables and isinstance(resolved.discretizer, Sparse):
+    if tables and isinstance(resolved.discretizer, AssignedRows):
         raise ValueError("tables must be left out with max_rows: each run assigns the rows of its table by itself")
     began = time.perf_counter()
 

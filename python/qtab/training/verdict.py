@@ -15,7 +15,7 @@ from qtab.envs.goals import (
     threshold_of,
     why_no_threshold,
 )
-from qtab.results.initial_tables import are_finite
+from qtab.results.action_values import are_finite
 from qtab.results.known_optimum import KnownOptimum
 from qtab.results.run import Run
 from qtab.results.summary import SOLVED_EPISODES

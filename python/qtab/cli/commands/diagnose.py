@@ -13,7 +13,7 @@ from qtab.cli.values import integer
 from qtab.diagnosis.diagnose import diagnose
 from qtab.diagnosis.diagnosis import SEEDS
 from qtab.diagnosis.what_if import WhatIf
-from qtab.results.storage import load
+from qtab.results.loading import load
 
 
 def add_arguments(parser: Parser) -> None:

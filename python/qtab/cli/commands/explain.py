@@ -7,7 +7,7 @@ from qtab.cli.parser import Parser
 from qtab.cli.reporting import Report
 from qtab.cli.values import integer
 from qtab.explanation.explain import explain
-from qtab.results.storage import load
+from qtab.results.loading import load
 
 
 def add_arguments(parser: Parser) -> None:

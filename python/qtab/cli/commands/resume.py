@@ -11,8 +11,8 @@ from qtab.cli.reporting import Report
 from qtab.cli.training_report import OPTIMUM, Training, backend_words, optimum_of
 from qtab.cli.values import integer
 from qtab.config.layers import over
+from qtab.results.loading import load
 from qtab.results.run import Run
-from qtab.results.storage import load
 from qtab.training.earlier_run import check_agrees, counts_visits, has_finished, resolve_again, snapshots_of
 from qtab.training.options import TrainingOptions
 from qtab.training.resolve import resolve

@@ -11,8 +11,8 @@ from qtab.cli.parser import ENV_OF_RUN, Parser
 from qtab.cli.reporting import Report
 from qtab.cli.values import integer
 from qtab.envs.registry import spec_of
+from qtab.results.loading import load
 from qtab.results.run import Run
-from qtab.results.storage import load
 from qtab.training.verify import verify
 
 SILENT_SECONDS = 2.0

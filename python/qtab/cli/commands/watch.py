@@ -8,8 +8,8 @@ from qtab.cli.parser import Parser
 from qtab.cli.values import integer, number
 from qtab.rendering.play import Playback, play
 from qtab.rendering.window import display_problem
+from qtab.results.loading import load
 from qtab.results.run import Run
-from qtab.results.storage import load
 
 
 def add_arguments(parser: Parser) -> None:

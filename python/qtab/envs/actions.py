@@ -2,6 +2,7 @@
 
 import itertools
 import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,12 +13,25 @@ from numpy.typing import NDArray
 from qtab._utils.shown import counted, shown
 from qtab.config import Config
 from qtab.config.validation import MAX_ACTIONS
-from qtab.discretizers.composite_actions import Composite
 
 FLOATS = (np.dtype(np.float32), np.dtype(np.float64))
 """The dtypes of the Box spaces that qtab supports."""
 _KINDS = "fiub"
 """The kinds of dtypes that the actions of a Box may have."""
+
+
+@dataclass(frozen=True)
+class ActionParts:
+    """Of which actions those of a Tuple or a Dict space are made."""
+
+    parts: "tuple[Actions, ...]"
+    """The actions of each part."""
+    keys: tuple[str, ...] | None = None
+    """The keys of a Dict space, in its order; None for a Tuple space."""
+
+    def combine(self, values: Iterable[Any]) -> Any:
+        """Returns one value for each part as a tuple or a dict."""
+        return tuple(values) if self.keys is None else dict(zip(self.keys, values, strict=True))
 
 
 @dataclass(frozen=True, repr=False)
@@ -32,8 +46,8 @@ class Actions:
     """The number of the first action, where the action space is Discrete."""
     values: NDArray[Any] | None = None
     """(count, *shape) in the dtype of the space: the actions themselves, where they are arrays."""
-    composite: "Composite[Actions] | None" = None
-    """Of which actions they are made, where the action space is a Tuple or a Dict."""
+    composite: ActionParts | None = None
+    """Their parts, where the action space is a Tuple or a Dict."""
 
     def __repr__(self) -> str:
         if self.values is None:
@@ -122,6 +136,15 @@ def choose_actions(space: Any, wanted: Any) -> Actions:
     )
 
 
+def flat(action: Any) -> Sequence[Any]:
+    """Returns the numbers of an action, whatever its structure, in order."""
+    if isinstance(action, dict):
+        return [number for part in action.values() for number in flat(part)]
+    if isinstance(action, tuple):
+        return [number for part in action for number in flat(part)]
+    return action.ravel().tolist() if hasattr(action, "ravel") else [action]
+
+
 def _of_parts(space: Any) -> Actions:
     keys = tuple(space.spaces) if isinstance(space, spaces.Dict) else None
     parts = []
@@ -136,7 +159,7 @@ def _of_parts(space: Any) -> Actions:
         raise ValueError(f"the action space must have at least one component, got {space}")
     count = math.prod(map(len, parts))
     _check_count(space, count)
-    return Actions(count, composite=Composite(tuple(parts), keys))
+    return Actions(count, composite=ActionParts(tuple(parts), keys))
 
 
 def _of_box(space: spaces.Box, wanted: Any) -> Actions:

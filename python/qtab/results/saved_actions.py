@@ -7,8 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab.config.validation import MAX_ACTIONS
-from qtab.discretizers.actions import Actions
-from qtab.discretizers.composite_actions import Composite
+from qtab.envs.actions import ActionParts, Actions
 
 _KINDS = "biu"
 
@@ -50,7 +49,7 @@ def _restore(stored: Any) -> Actions:
                 raise ValueError("the keys of its actions do not fit")
         count = math.prod(map(len, parts))
         _check_count(count)
-        return Actions(count, composite=Composite(parts, keys))
+        return Actions(count, composite=ActionParts(parts, keys))
     if "values" in stored:
         dtype = np.dtype(stored["dtype"])
         values = np.array(stored["values"])

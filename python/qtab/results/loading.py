@@ -28,7 +28,7 @@ from qtab.results.optional_arrays import checked_masks, restore_optional
 from qtab.results.run import Run
 from qtab.results.run_state import RunState
 from qtab.results.runs import Runs
-from qtab.results.stored_actions import restore_actions
+from qtab.results.saved_actions import restore_actions
 
 _LOGGER = logging.getLogger("qtab")
 Result = TypeVar("Result", Run, Runs)

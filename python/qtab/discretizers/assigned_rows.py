@@ -19,7 +19,7 @@ _STORED = "met"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Sparse(Discretizer):
+class AssignedRows(Discretizer):
     """A table of ``max_rows`` rows, which are assigned to cells in the order in which training first sees them.
 
     One row more is never assigned: it keeps the initial values, and stands for every cell that was not seen.
@@ -38,7 +38,7 @@ class Sparse(Discretizer):
     """Whether :meth:`observe` assigns a row to a cell that was not seen before."""
 
     @classmethod
-    def build(cls, space: Any, config: Config, n_actions: int) -> "Sparse":
+    def build(cls, space: Any, config: Config, n_actions: int) -> "AssignedRows":
         """Returns a table in which nothing was seen.
 
         Raises:
@@ -51,13 +51,13 @@ class Sparse(Discretizer):
         return cls._of(cells, max_rows, {})
 
     @classmethod
-    def _of(cls, cells: Any, max_rows: int, seen: dict[bytes, int]) -> "Sparse":
+    def _of(cls, cells: Any, max_rows: int, seen: dict[bytes, int]) -> "AssignedRows":
         if isinstance(cells, Composite) and not cells.has_cells:
             raise ValueError("max_rows does not apply to discretizer 'tiles', which has no cells; hashed_rows= does")
         return cls(np.array(0), np.array(max_rows), cells, max_rows, seen)
 
     @classmethod
-    def restore(cls, config: Config, arrays: Mapping[str, NDArray[Any]], n_rows: int) -> "Sparse":
+    def restore(cls, config: Config, arrays: Mapping[str, NDArray[Any]], n_rows: int) -> "AssignedRows":
         """Returns the table of a saved run; see :meth:`Discretizer.restore`."""
         max_rows = required("max_rows", config.max_rows)
         seen = arrays[_STORED]
@@ -80,16 +80,16 @@ class Sparse(Discretizer):
         """Returns the settings that followed from the space, for the config of the run."""
         return self.cells.settings()
 
-    def as_learned(self) -> "Sparse":
+    def as_learned(self) -> "AssignedRows":
         """Returns the table with what was seen until now."""
         return replace(self, seen=dict(self.seen), assigns_rows=True)
 
-    def with_function(self, function: Callable[[Any], Any]) -> "Sparse":
+    def with_function(self, function: Callable[[Any], Any]) -> "AssignedRows":
         """Returns the table with another function, if it has one."""
         cells = self.cells
         return replace(self, cells=cells.with_function(function) if isinstance(cells, Function) else cells)
 
-    def as_played(self) -> "Sparse":
+    def as_played(self) -> "AssignedRows":
         """Returns the table for a policy that only plays: what was not seen shares the last row."""
         return replace(self, assigns_rows=False)
 
@@ -168,7 +168,7 @@ class Sparse(Discretizer):
 
     def same_space(self, other: Discretizer) -> bool:
         """Whether another discretizer has as many rows, for observations with the same components."""
-        return isinstance(other, Sparse) and self.shape == other.shape and self.cells.same_space(other.cells)
+        return isinstance(other, AssignedRows) and self.shape == other.shape and self.cells.same_space(other.cells)
 
 
 def _key(cell: Any) -> bytes:
