@@ -22,7 +22,7 @@ _KINDS = "fiub"
 
 @dataclass(frozen=True)
 class ActionParts:
-    """Of which actions those of a Tuple or a Dict space are made."""
+    """The actions of a Tuple or a Dict space, part by part."""
 
     parts: "tuple[Actions, ...]"
     """The actions of each part."""
