@@ -11,7 +11,7 @@ import pytest
 import qtab
 from qtab._utils.progress import ProgressBar
 from qtab.cli import main
-from qtab.rendering.sweep_report import page, settings_table
+from qtab.rendering.sweep_report import report_page, settings_table
 
 ENV = 'env = "MountainCar-v0"\n'
 GRID = "[grid]\nepsilon = [0.3]\n"
@@ -161,7 +161,7 @@ def test_a_report_counts_failed_runs():
     assert [(counted[setting]["runs"], counted[setting]["failed"]) for setting in (0, 1)] == [(2, 0), (1, 1)]
     assert (counted[1]["low"], counted[1]["high"]) == (None, None)  # one run has no interval
     assert counted[1]["ranked_mean"] == sweep.mean_final_returns()[1] <= counted[1]["mean"]
-    text = page(sweep, header, rows, {}, None)
+    text = report_page(sweep, header, rows, {}, None)
     assert "2 seeds each, 1 failed" in text
     assert "a failed run counts as the worst run of the sweep" in text
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import qtab
-from qtab.diagnosis.rates import epsilons
+from qtab.results.rates import epsilons
 from support.gridworld import Room
 
 LAKE = "FrozenLake-v1"

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 import qtab
 from qtab import plots
 from qtab.envs.stored import StoredId, stored_id
-from qtab.rendering.sweep_report import report
+from qtab.rendering.sweep_report import write_report
 from qtab.sweeps.run_records import study_digest, to_text
 from support.environments import Walk
 from support.run_files import members_of, with_header, with_right_digest, write_members
@@ -102,7 +102,7 @@ def test_the_store_of_a_sweep_chooses_no_module_either(named_store, tmp_path):
     assert sweep.env == sweep.configs[1]["env"] == f"{MODULE}:FrozenLake-v1"
     assert qtab.train(sweep.env, episodes=1).config.env == sweep.env
     assert len(sweep.confirm(1).confirmed) == 1
-    assert report(sweep, tmp_path / "report")
+    assert write_report(sweep, tmp_path / "report")
     assert MODULE not in sys.modules
 
 

@@ -156,7 +156,7 @@ def test_a_verification_that_fails_says_where():
 
 def test_sentences_are_escaped_and_not_cut():
     long = f"{NAME}\n" + "word " * 100
-    shown = html.report(NAME, [NAME, NAME], [[long, NAME]], [NAME])
+    shown = html.sentences(NAME, [NAME, NAME], [[long, NAME]], [NAME])
     head, row = tables(shown)
     assert head == [NAME, NAME]
     assert row == [long.replace("\n", ""), NAME]
@@ -165,7 +165,7 @@ def test_sentences_are_escaped_and_not_cut():
 
 
 def test_a_heading_is_as_wide_as_its_text_and_not_as_a_narrow_table():
-    caption = ElementTree.fromstring(html.report(NAME, ["a"], [["b"]], [])).find(".//caption")  # noqa: S314
+    caption = ElementTree.fromstring(html.sentences(NAME, ["a"], [["b"]], [])).find(".//caption")  # noqa: S314
     assert caption is not None
     assert "width:max-content;max-width:90vw" in caption.get("style", "")
 

@@ -8,7 +8,7 @@ import pytest
 
 import qtab
 from qtab._utils.columns import cell_column
-from qtab._utils.frames import arrow_table
+from qtab._utils.data_frames import arrow_table
 
 GRID: dict[str, list[Any]] = {"learning_rate": [0.1, 2.0]}
 DIVERGES: dict[str, Any] = {

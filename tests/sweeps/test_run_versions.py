@@ -14,7 +14,7 @@ import pytest
 import qtab
 from qtab._utils.versions import versions
 from qtab.cli import main
-from qtab.rendering.sweep_report import page
+from qtab.rendering.sweep_report import report_page
 from qtab.sweeps import store as store_module
 from qtab.sweeps import worker
 from support.damage import execute
@@ -53,7 +53,7 @@ def test_results_say_which_versions_differ(mixed: Path, caplog: pytest.LogCaptur
     assert NOTE in caplog.text
     assert repr(table) == "<Sweep of FrozenLake-v1: 2 settings, 6 runs, 0 failed, different versions>"
     assert NOTE in table._repr_html_()
-    written = page(table, ["setting"], [[0], [1]], {}, None)
+    written = report_page(table, ["setting"], [[0], [1]], {}, None)
     assert NOTE in written
     assert f"<td>{HERE} (4 runs), 9.9.9 (2 runs)</td>" in written
     assert f"<td>{qtab.__version__}</td>" in written
@@ -116,7 +116,7 @@ def test_a_store_of_version_2_loads_and_says_that_the_versions_of_its_runs_are_u
     assert note in caplog.text
     assert list(table.run_versions) == [None] * 6
     assert note in table._repr_html_()
-    written = page(table, ["setting"], [[0], [1]], {}, None)
+    written = report_page(table, ["setting"], [[0], [1]], {}, None)
     assert note in written
     assert "<td>unknown</td>" in written
     more = qtab.sweep(LAKE, GRID, 4, store=path, **SHORT)

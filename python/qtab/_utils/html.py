@@ -50,7 +50,7 @@ def listing(
     return _box(heading, "".join(lines), picture + _below(notes))
 
 
-def report(heading: str, columns: Sequence[str], rows: Sequence[Sequence[object]], notes: Sequence[str] = ()) -> str:
+def sentences(heading: str, columns: Sequence[str], rows: Sequence[Sequence[object]], notes: Sequence[str] = ()) -> str:
     """Returns a table of sentences, which are wrapped but not cut.
 
     Args:

@@ -75,12 +75,12 @@ def check_memory(what: str, needed: int, limit: int, instead: str = "") -> None:
     if needed > limit:
         default = ", by default half of the machine's memory" if limit == memory_limit(None) else ""
         raise MemoryError(
-            f"{what} need {readable(needed)}, more than memory_limit={limit} ({readable(limit)}{default}); "
+            f"{what} need {readable_size(needed)}, more than memory_limit={limit} ({readable_size(limit)}{default}); "
             f"request less, or increase memory_limit{instead}"
         )
     if needed > ALWAYS_FREE and limit == memory_limit(None) and needed > (free := free_memory()):
         raise MemoryError(
-            f"{what} need {readable(needed)}, more than the {readable(free)} of memory that are free; "
+            f"{what} need {readable_size(needed)}, more than the {readable_size(free)} of memory that are free; "
             f"request less{instead}"
         )
 
@@ -95,7 +95,7 @@ def memory_left(needed: int, limit: int) -> tuple[int, int]:
     return min(limit, checks.LARGEST_COUNT), min(max(limit - needed, 0), checks.LARGEST_COUNT)
 
 
-def readable(count: int) -> str:
+def readable_size(count: int) -> str:
     """Returns a number of bytes in the unit that suits it."""
     power = min(int(math.log2(max(count, 1))) // 10, 4)
     return f"{count / 2 ** (10 * power):.3g} {('bytes', 'KiB', 'MiB', 'GiB', 'TiB')[power]}"

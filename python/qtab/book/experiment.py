@@ -45,4 +45,4 @@ class Experiment(Description, ABC):
             "runs": f"{self.runs:,} of each setting",
             "axes": f"{self.y_label} by {self.x_label}",
         }
-        return html.report(self.heading, (), list(facts.items()))
+        return html.sentences(self.heading, (), list(facts.items()))

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils import html, svg
+from qtab._utils.data_frames import data_frame
 from qtab._utils.files import replacing
-from qtab._utils.frames import data_frame
 from qtab.book.description import Description
 from qtab.book.line import Line, joined
 from qtab.book.runner import FloatArray

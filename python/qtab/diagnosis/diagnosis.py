@@ -46,7 +46,7 @@ class Diagnosis:
     def _repr_html_(self) -> str:
         """The findings as a table, for notebooks."""
         rows = [finding.cells() for finding in self.findings]
-        return html.report(self.heading, COLUMNS, rows, self._footer())
+        return html.sentences(self.heading, COLUMNS, rows, self._footer())
 
     def __len__(self) -> int:
         return len(self.findings)

@@ -41,20 +41,20 @@ class Finding:
 
     def cells(self) -> tuple[str, str, str]:
         """Returns the finding in the columns of a table: see ``COLUMNS``."""
-        evidence = "\n".join(f"{name}: {shown(value)}" for name, value in self.evidence.items())
+        evidence = "\n".join(f"{name}: {number_text(value)}" for name, value in self.evidence.items())
         return f"{self.title}\n{self.meaning}", evidence, self.advice
 
     def _repr_html_(self) -> str:
         """A table of one row, for notebooks."""
-        return html.report(f"Finding {self.name!r}", COLUMNS, [self.cells()])
+        return html.sentences(f"Finding {self.name!r}", COLUMNS, [self.cells()])
 
     def __str__(self) -> str:
         """A few lines: the title, the evidence, the meaning and the advice."""
-        evidence = ", ".join(f"{name} {shown(value)}" for name, value in self.evidence.items())
+        evidence = ", ".join(f"{name} {number_text(value)}" for name, value in self.evidence.items())
         return f"{self.title}\n  evidence  {evidence}\n  meaning   {self.meaning}\n  change    {self.advice}"
 
 
-def shown(value: float) -> str:
+def number_text(value: float) -> str:
     """Returns a number with four digits, an integer in full."""
     return f"{value:,}" if isinstance(value, int) else f"{value:.4g}"
 

@@ -5,7 +5,7 @@ import numpy as np
 from qtab.diagnosis.changes import changes
 from qtab.diagnosis.facts import Facts
 from qtab.diagnosis.finding import Finding, Unchecked, percent
-from qtab.diagnosis.rates import epsilons
+from qtab.results.rates import epsilons
 
 MOST_STATES = 0.3
 """A larger share of visited states is reported."""

@@ -8,7 +8,7 @@ from qtab.config.options import PREFERENCES
 from qtab.diagnosis.changes import change, changes, given
 from qtab.diagnosis.facts import Facts
 from qtab.diagnosis.finding import Finding, Unchecked, as_keywords, percent
-from qtab.diagnosis.rates import epsilons
+from qtab.results.rates import epsilons
 
 MOST_EPSILON = 0.2
 """A larger exploration rate at the end is reported."""

@@ -6,8 +6,8 @@ from numpy.typing import NDArray
 from qtab.diagnosis.changes import changes
 from qtab.diagnosis.facts import Facts
 from qtab.diagnosis.finding import Finding, Unchecked, as_keywords, percent
-from qtab.diagnosis.rates import learning_rates
 from qtab.diagnosis.too_short import still_improving
+from qtab.results.rates import learning_rates
 from qtab.training.train import train
 
 MOST_LEFT = 0.3

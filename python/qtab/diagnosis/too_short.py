@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from qtab.diagnosis.changes import changes
 from qtab.diagnosis.facts import Facts
 from qtab.diagnosis.finding import Finding, Unchecked
-from qtab.diagnosis.rates import epsilons
+from qtab.results.rates import epsilons
 
 PARTS = 3
 """The last third of the episodes is compared with the one before."""

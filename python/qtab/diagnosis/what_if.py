@@ -13,7 +13,7 @@ from qtab._utils.progress import ProgressBar, check_progress
 from qtab.config import Config
 from qtab.config.origin import copied
 from qtab.diagnosis.facts import Facts
-from qtab.diagnosis.finding import Finding, as_keywords, shown
+from qtab.diagnosis.finding import Finding, as_keywords, number_text
 from qtab.results.runs import Runs
 from qtab.training.run_env import as_in_training, make_run_env
 from qtab.training.train_many import resolve_template, seed_numbers, train_many
@@ -43,7 +43,7 @@ class Trial:
         gained = "" if self.comparison is None else f", difference {_interval(self.comparison)}"
         solved = "" if self.solved is None else f", {self.solved} of {len(self.returns)} seeds solved"
         change = as_keywords(self.change)
-        return f"<Trial of {change}: mean return {shown(float(self.returns.mean()))}{gained}{solved}>"
+        return f"<Trial of {change}: mean return {number_text(float(self.returns.mean()))}{gained}{solved}>"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -84,7 +84,7 @@ class WhatIf:
     def _repr_html_(self) -> str:
         """The changes as a table, for notebooks."""
         columns, *rows = self._rows()
-        return html.report(self._heading(), columns, rows, self._failures())
+        return html.sentences(self._heading(), columns, rows, self._failures())
 
     def _heading(self) -> str:
         config = self.config
@@ -97,11 +97,11 @@ class WhatIf:
         rows = [["change", "return", "difference, 95 % interval", "solved"]]
         diverged = bool(np.isnan(self.returns).any())
         rows.append(
-            ["none", "diverged" if diverged else shown(float(self.returns.mean())), "", self._share(self.solved)]
+            ["none", "diverged" if diverged else number_text(float(self.returns.mean())), "", self._share(self.solved)]
         )
         for trial in self.results:
             difference = "" if trial.comparison is None else _interval(trial.comparison)
-            mean = shown(float(trial.returns.mean()))
+            mean = number_text(float(trial.returns.mean()))
             rows.append([as_keywords(trial.change), mean, difference, self._share(trial.solved)])
         return rows
 

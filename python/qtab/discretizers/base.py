@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from qtab import _core
 from qtab._discretizer_spec import DiscretizerSpec
 from qtab._utils import html
-from qtab._utils.memory import ALWAYS_FREE, free_memory, readable
+from qtab._utils.memory import ALWAYS_FREE, free_memory, readable_size
 from qtab._utils.shown import shown
 from qtab.config import Config
 
@@ -223,5 +223,5 @@ def check_table_size(name: str, given: Any, values: float, instead: str = "") ->
     if needed > free:
         raise ValueError(
             f"{name} must give a table that fits into memory{instead}, got {text}, which needs {values:.3g} "
-            f"values or {readable(needed)}, more than is free"
+            f"values or {readable_size(needed)}, more than is free"
         )

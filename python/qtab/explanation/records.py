@@ -208,7 +208,7 @@ class ExplainedStep:
             equations = zip(change.equations, change.numbers, strict=True)
             rows.append(("update", "\n".join(f"{symbols}\n{numbers}" for symbols, numbers in equations)))
             rows.append(("policy", change.policy))
-        return html.report(f"Step {self.step}", (), rows)
+        return html.sentences(f"Step {self.step}", (), rows)
 
     @property
     def first_update(self) -> Update | None:

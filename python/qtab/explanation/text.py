@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from qtab._utils.html import report
+from qtab._utils.html import sentences
 from qtab.explanation.equations import number, total
 from qtab.explanation.policy_update import PolicyUpdate
 from qtab.explanation.records import ExplainedStep, Update
@@ -26,7 +26,7 @@ def text(heading: str, steps: Sequence[ExplainedStep]) -> str:
 
 def html(heading: str, steps: Sequence[ExplainedStep]) -> str:
     """Returns a table with a row for each step."""
-    return report(heading, COLUMNS, [_cells(step) for step in steps])
+    return sentences(heading, COLUMNS, [_cells(step) for step in steps])
 
 
 def details(step: ExplainedStep) -> list[tuple[str, str]]:

@@ -74,7 +74,7 @@ def _greedy(run: Run) -> Callable[[Any, Any, Any], tuple[Any, Any]]:
     return act
 
 
-def environment_of(
+def rendered_environment(
     agent: Agent,
     env: str | EnvSpec | gym.Env | None,
     env_kwargs: Mapping[str, Any] | None,

@@ -10,7 +10,7 @@ from typing import Any
 import gymnasium as gym
 
 from qtab._utils.progress import ProgressBar
-from qtab.rendering.agent import Agent, environment_of
+from qtab.rendering.agent import Agent, rendered_environment
 from qtab.rendering.episodes import Episodes, play_episodes
 from qtab.rendering.frames import Frames, frames_per_second
 from qtab.rendering.window import is_headless
@@ -52,7 +52,7 @@ class Scene:
 
     @contextmanager
     def _environment(self, render_mode: str) -> Iterator[gym.Env]:
-        env = environment_of(self.agent, self.env, self.env_kwargs, self.max_episode_steps, render_mode)
+        env = rendered_environment(self.agent, self.env, self.env_kwargs, self.max_episode_steps, render_mode)
         try:
             yield env
         finally:

@@ -12,8 +12,7 @@ import gymnasium as gym
 import numpy as np
 
 from qtab._utils.files import replacing
-from qtab._utils.page import page as html_page
-from qtab._utils.page import paragraph, picture, section, table
+from qtab._utils.page import page, paragraph, picture, section, table
 from qtab.envs.origin.registered import what_changes_returns
 from qtab.plots.axes import not_shown
 from qtab.sweeps.environments import environments_of, sweep_threshold
@@ -35,7 +34,7 @@ class Picture:
     alternative: str
 
 
-def report(sweep: Sweep, folder: Path, command: str | None = None) -> list[Path]:
+def write_report(sweep: Sweep, folder: Path, command: str | None = None) -> list[Path]:
     """Writes ``runs.csv``, ``settings.csv``, the plots as PNG, and ``report.html``, which contains all but the runs.
 
     Args:
@@ -62,7 +61,7 @@ def report(sweep: Sweep, folder: Path, command: str | None = None) -> list[Path]
         _write(folder / "settings.csv", _csv(header, rows).encode()),
     ]
     written += [_write(folder / f"{name}.png", drawn.png) for name, drawn in pictures.items()]
-    return [*written, _write(folder / "report.html", page(sweep, header, rows, pictures, command).encode())]
+    return [*written, _write(folder / "report.html", report_page(sweep, header, rows, pictures, command).encode())]
 
 
 def settings_table(sweep: Sweep) -> tuple[list[str], list[list[Any]]]:
@@ -105,7 +104,7 @@ def _write(path: Path, content: bytes) -> Path:
     return path
 
 
-def page(
+def report_page(
     sweep: Sweep,
     header: Sequence[str],
     rows: Sequence[Sequence[Any]],
@@ -128,7 +127,7 @@ def page(
     ]
     parts.append(section("Settings that all runs share", table(("setting", "value"), _shared(sweep))))
     parts.append(section("How it was made", table((), _origin(sweep, command))))
-    return html_page(sweep.env, "\n".join(parts))
+    return page(sweep.env, "\n".join(parts))
 
 
 def _notes(sweep: Sweep, ranked: int) -> list[str]:

@@ -6,9 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab.config import Config
-from qtab.config.schedules import Constant, Linear, Schedule
+from qtab.config.schedules import ByVisits, Constant, Linear, Schedule, epsilon, learning_rate
 from qtab.results.run import Run
 
+POINTS = 1000
+"""The largest number of episodes, evenly spaced, at which a rate is computed."""
 ONLY_FIRST = "only those can be repeated, because its falling rates were then spread over more episodes"
 """Why the later episodes of a run that was extended cannot be repeated, for messages."""
 
@@ -51,6 +53,23 @@ def rates_of(run: Run, schedule: Schedule, episodes: NDArray[np.int64]) -> NDArr
         early = episodes < finished
         found[early] = rates(schedule, total, finished)[episodes[early]]
     return found
+
+
+def learning_rates(run: Run) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """Returns (n,) evenly spaced episodes, the last one included, and (n,) learning rates; by visits the first one."""
+    points, rate = _evenly_spaced(len(run.episode_returns)), learning_rate(run.config)
+    if isinstance(rate, ByVisits):
+        return points, np.full(len(points), rate.value)
+    return points, rates_of(run, rate, points)
+
+
+def epsilons(run: Run) -> NDArray[np.float64]:
+    """Returns (n,): the exploration rate of an epsilon-greedy policy in evenly spaced episodes, the last included."""
+    return rates_of(run, epsilon(run.config), _evenly_spaced(len(run.episode_returns)))
+
+
+def _evenly_spaced(episodes: int) -> NDArray[np.int64]:
+    return np.unique(np.linspace(0, episodes - 1, min(episodes, POINTS)).astype(np.int64))
 
 
 def falling_rates(config: Config) -> list[str]:

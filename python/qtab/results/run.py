@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qtab._utils import checks, html, svg
+from qtab._utils.data_frames import episode_frame
 from qtab._utils.fields import with_fields
-from qtab._utils.frames import episode_frame
 from qtab.config import Config
 from qtab.config.origin import trained_on
 from qtab.discretizers import Discretizer

@@ -1,6 +1,7 @@
 """Settings and runs of a sweep, planned and trained again."""
 
 from collections.abc import Sequence
+from contextlib import closing
 from typing import TYPE_CHECKING, Any
 
 import gymnasium as gym
@@ -42,11 +43,8 @@ def trained_again(sweep: "Sweep", setting: int, seed: int, env: Any) -> Run:
         raise ValueError(f"the run of setting {setting} with seed {seed} failed: {error}")
     study = plan_again(sweep, [int(setting)], (seed,), env)
     made = study.env() if callable(study.env) else study.env
-    resolved = resolve(made, {**study.overrides[0], "seed": seed}, owns_env=True)
-    try:
+    with closing(resolve(made, {**study.overrides[0], "seed": seed}, owns_env=True)) as resolved:
         run = train_resolved(resolved)
-    finally:
-        resolved.close()
     columns = summarize(run.episode_returns[np.newaxis], run.episode_lengths[np.newaxis], run.terminated[np.newaxis])
     for name, values in columns.items():
         here, there = float(values[0]), float(sweep.columns[name][found[0]])

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from qtab._utils import checks, html, svg
 from qtab._utils.columns import cell_column, integer_column
-from qtab._utils.frames import arrow_table, data_frame
+from qtab._utils.data_frames import arrow_table, data_frame
 from qtab._utils.suggestions import did_you_mean
 from qtab.sweeps.again import plan_again, trained_again
 from qtab.sweeps.confirm import Confirmation, chosen_settings, other_seeds

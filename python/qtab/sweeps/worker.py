@@ -9,14 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from qtab import _core
 from qtab._utils.memory import memory_left
 from qtab._utils.memory import memory_limit as bytes_limit
 from qtab._utils.versions import versions
 from qtab.results.summary import block_means, summarize
 from qtab.sweeps.run_records import RunRecord
-from qtab.training.process_pool import train_unless_stopped
-from qtab.training.resolve import resolve
+from qtab.training.process_pool import trained_in_python
 from qtab.training.resolved_run import ResolvedRun
 from qtab.training.run_memory import bytes_of_run
 from qtab.training.train_many import allocate_results, resolve_template, train_in_threads
@@ -167,14 +165,9 @@ def _train_in_python(
     env: Any, overrides: Mapping[str, Any], seed: int, block: int, memory: tuple[int, int]
 ) -> RunRecord:
     try:
-        resolved = resolve(env() if callable(env) else env, {**overrides, "seed": seed}, owns_env=True)
-        try:
-            trainer = _core.Trainer(resolved.spec(), resolved.seed, memory=memory)
-            train_unless_stopped(trainer, resolved.config.episodes)
+        with trained_in_python(env, overrides, seed, memory) as (_, trainer):
             returns, lengths, terminated = (column[np.newaxis] for column in trainer.episodes())
             return _records([seed], block, returns, lengths, terminated)[0]
-        finally:
-            resolved.close()
     except Exception as error:
         return _failure(seed, error)
 

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from qtab._utils import checks, html, svg
 from qtab._utils.checks import required
+from qtab._utils.data_frames import episode_frame
 from qtab._utils.fields import with_fields
-from qtab._utils.frames import episode_frame
 from qtab._utils.progress import check_progress
 from qtab._utils.shown import shown
 from qtab.config import Config

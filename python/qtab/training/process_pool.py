@@ -10,7 +10,7 @@ import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from operator import itemgetter
 from typing import Any
 
@@ -20,7 +20,7 @@ from qtab import _core
 from qtab._spec import Results
 from qtab.envs.registry import spec_of
 from qtab.training.resolve import resolve
-from qtab.training.resolved_run import masks_of
+from qtab.training.resolved_run import ResolvedRun, masks_of
 
 POLL_SECONDS = 0.2
 """How often to look for Ctrl-C, which does not interrupt a wait on Windows, and in a worker for the pool's end."""
@@ -97,6 +97,27 @@ def train_unless_stopped(trainer: _core.Trainer, episodes: int) -> None:
         trainer.check_tables()
     finally:
         _Worker.training = False
+
+
+@contextmanager
+def trained_in_python(
+    env: Any, settings: Mapping[str, Any], seed: int, memory: tuple[int, int]
+) -> Iterator[tuple[ResolvedRun, _core.Trainer]]:
+    """Trains a run in an environment that Python steps; yields it with its trainer, and closes the environment.
+
+    Args:
+        env: The environment, or a function that makes it.
+        settings: The settings of the run.
+        seed: Its seed.
+        memory: What :func:`qtab._utils.memory.memory_left` returns.
+
+    Raises:
+        Exception: what the environment or the settings raise; see also :func:`train_unless_stopped`.
+    """
+    with closing(resolve(env() if callable(env) else env, {**settings, "seed": seed}, owns_env=True)) as resolved:
+        trainer = _core.Trainer(resolved.spec(), resolved.seed, memory=memory)
+        train_unless_stopped(trainer, resolved.config.episodes)
+        yield resolved, trainer
 
 
 def picklable(error: Exception) -> Exception:
@@ -178,15 +199,9 @@ def _interrupt(number: int, _frame: Any) -> None:
 
 def _train(seed: int, keep_tables: bool) -> Any:
     try:
-        env = _Worker.env() if callable(_Worker.env) else _Worker.env
-        resolved = resolve(env, {**_Worker.settings, "seed": seed}, owns_env=True)
-        try:
-            trainer = _core.Trainer(resolved.spec(), resolved.seed, memory=_Worker.memory)
-            train_unless_stopped(trainer, resolved.config.episodes)
+        with trained_in_python(_Worker.env, _Worker.settings, seed, _Worker.memory) as (resolved, trainer):
             tables = trainer.tables() if keep_tables else None
             masks = masks_of(trainer, resolved) if keep_tables else None
             return *trainer.take_episodes(), tables, masks
-        finally:
-            resolved.close()
     except Exception as error:
         return picklable(error)

@@ -71,7 +71,7 @@ def table_words(resolved: ResolvedRun, needed: int) -> tuple[str, str]:
     return f" with a table of {rows:,} rows of {actions} actions{space}", instead
 
 
-def check_run(
+def check_run_memory(
     resolved: ResolvedRun, options: TrainingOptions, snapshots: int, earlier: Run | None = None
 ) -> tuple[int, int]:
     """Checks that one run fits into the memory limit.

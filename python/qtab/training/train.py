@@ -39,7 +39,7 @@ from qtab.training.resolve import log_default_limit, log_python_stepping
 from qtab.training.resolved_run import ResolvedRun, masks_of
 from qtab.training.restore import restore, state_of
 from qtab.training.run_env import collect_for, resolve_made, resolve_over
-from qtab.training.run_memory import check_run, tables_shape
+from qtab.training.run_memory import check_run_memory, tables_shape
 
 
 @with_settings
@@ -132,7 +132,7 @@ def train_resolved(resolved: ResolvedRun, options: TrainingOptions | None = None
     options = TrainingOptions() if options is None else options
     total, record = resolved.config.episodes, int(options.record)
     copied_at = snapshots_of(options, total, earlier)
-    memory = check_run(resolved, options, len(copied_at), earlier)
+    memory = check_run_memory(resolved, options, len(copied_at), earlier)
     if earlier is not None:
         log_what_differs(earlier, resolved.config)
     began = time.perf_counter()

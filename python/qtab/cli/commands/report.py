@@ -7,7 +7,7 @@ from pathlib import Path
 from qtab.cli.errors import usage_errors
 from qtab.cli.parser import Parser
 from qtab.cli.reporting import Report
-from qtab.rendering.sweep_report import report
+from qtab.rendering.sweep_report import write_report
 from qtab.sweeps import load_sweep
 
 
@@ -25,7 +25,7 @@ def run(options: Namespace) -> int:
             sweep = load_sweep(options.store)
             folder = options.out or options.store.with_name(f"{options.store.stem}-report")
             command = shlex.join([*options.command.split(), *options.words])
-            files = report(sweep, folder, command)
+            files = write_report(sweep, folder, command)
         output.text(f"{len(files)} files in {folder}; open {files[-1]}")
         output.add(folder=folder, files=files)
     return 0
