@@ -35,6 +35,19 @@ pub(crate) fn run_resumable<E: Send>(
     run_interruptible(py, |stop| work(&|| stop.is_set()).map(drop))
 }
 
+/// Does the same work on so many threads, of which this one is the first. Threads may run out: those that there are then do
+/// all of it.
+pub(crate) fn on_threads(threads: usize, work: impl Fn() + Sync) {
+    thread::scope(|scope| {
+        for _ in 1..threads {
+            if thread::Builder::new().spawn_scoped(scope, &work).is_err() {
+                break;
+            }
+        }
+        work();
+    });
+}
+
 /// Runs `work` on a thread of its own, while this thread handles signals and other Python threads run. `work` must look
 /// at the flag at least every few milliseconds and return early when it is set; the signal's exception is then raised.
 ///

@@ -4,28 +4,20 @@ use std::sync::Arc;
 
 use pyo3::intern;
 use pyo3::prelude::*;
-use qtab_core::Env;
 use qtab_core::envs::tabular::{
     Ground, MAXIMIZATION_BIAS_STATES, MaximizationBias, Racetrack, ShortCorridor, TabularMdp,
 };
 use qtab_core::features::Identity;
 use qtab_core::tasks::{ChangingTask, KArmedBandit, Testbed};
+use qtab_core::{Env, StopFlag};
 
 use super::native_env::NativeEnv;
 use super::toy_text::table_of;
 use crate::convert::Seed;
-use crate::error::invalid;
+use crate::error::{allocation, invalid};
 use crate::rng::environment_rng;
-use crate::runs::{AnyRecordings, RunFactory, boxed_factory, generic, testbed_runs};
+use crate::runs::{AnyRecordings, BoxedFactory, RunFactory, boxed_factory, boxed_run, check_actions, generic};
 use crate::spec::RunSpec;
-
-/// Refuses a spec for another number of actions.
-fn check_actions(num_actions: usize, spec: &RunSpec) -> PyResult<()> {
-    if spec.num_actions == num_actions {
-        return Ok(());
-    }
-    Err(invalid("num_actions", format!("{num_actions}, the environment's"), spec.num_actions))
-}
 
 /// `qtab/KArmedBandit-v0`, the k-armed bandit testbed.
 pub(super) struct KArmedBanditEnv(Testbed);
@@ -54,7 +46,14 @@ impl NativeEnv for KArmedBanditEnv {
     fn testbed_runs(&self, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>> {
         spec.discretizer.check_identity(1)?;
         check_actions(self.0.num_actions, spec)?;
-        Ok(testbed_runs(self.0, spec))
+        let (testbed, spec) = (self.0, Arc::clone(spec));
+        let build = move |seed: &Seed, stop: &StopFlag<'_>| {
+            let mut task = KArmedBandit::new(testbed, environment_rng(seed));
+            let optimal = task.record(spec.episodes as usize).map_err(allocation)?;
+            let (run, _) = boxed_run(task, (1, 1), seed, &spec, stop, AnyRecordings::Native)?;
+            Ok((run, AnyRecordings::OptimalActions(optimal)))
+        };
+        Ok(Box::new(BoxedFactory(build)))
     }
 }
 

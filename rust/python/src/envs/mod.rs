@@ -8,14 +8,12 @@ mod classic_control;
 mod gymnasium;
 mod native_env;
 mod py_classic_control;
-mod py_native_env;
 mod py_vector_env;
 mod registry;
 mod toy_text;
 
 pub(crate) use classic_control::{numpy_uses_libm, step_cart_poles};
-pub(crate) use native_env::NativeEnv;
+pub(crate) use native_env::{NativeEnv, PyNativeEnv};
 pub(crate) use py_classic_control::{PyClassicControl, matches_numpy, parameter_names};
-pub(crate) use py_native_env::PyNativeEnv;
 pub(crate) use py_vector_env::PyVectorEnv;
 pub(crate) use toy_text::{PyBlackjack, PyTaxi, PyToyText, PyTransitionTable};

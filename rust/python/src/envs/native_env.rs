@@ -1,10 +1,11 @@
-//! What the binding needs of an environment that Rust steps.
+//! An environment that Rust steps, as Python passes it to training, planning and vector environments.
 
 use std::sync::Arc;
 
 use pyo3::prelude::*;
 use qtab_core::planning::Mdp;
 
+use super::registry::{Entry, entry};
 use crate::error::invalid;
 use crate::runs::RunFactory;
 use crate::spec::RunSpec;
@@ -28,5 +29,30 @@ pub(crate) trait NativeEnv: Send + Sync {
     /// The Markov decision process; None where it is not known.
     fn mdp(&self) -> PyResult<Option<Mdp>> {
         Ok(None)
+    }
+}
+
+/// An environment with the parameters, the table or the rules of Gymnasium's environment.
+#[pyclass(frozen, name = "NativeEnv", module = "qtab._core")]
+pub(crate) struct PyNativeEnv(Arc<dyn NativeEnv>);
+
+#[pymethods]
+impl PyNativeEnv {
+    /// `name` is a name of the registry, `env` the unwrapped Gymnasium environment, whose attributes are read now.
+    /// `actions` are what a learner chooses from where the action space is continuous.
+    #[new]
+    #[pyo3(signature = (name, env, actions = Vec::new()))]
+    fn new(name: &str, env: &Bound<'_, PyAny>, actions: Vec<f32>) -> PyResult<Self> {
+        let env = match entry(name)? {
+            Entry::ClassicControl(new) => new().native_env(env, actions)?,
+            Entry::FromGymnasium(read) => read(env)?,
+        };
+        Ok(Self(env))
+    }
+}
+
+impl PyNativeEnv {
+    pub(crate) fn shared(&self) -> Arc<dyn NativeEnv> {
+        Arc::clone(&self.0)
     }
 }

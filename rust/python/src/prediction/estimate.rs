@@ -2,7 +2,6 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::thread;
 
 use numpy::{PyReadonlyArray1, PyReadwriteArray3, PyUntypedArrayMethods};
 use pyo3::exceptions::PyOverflowError;
@@ -13,7 +12,7 @@ use qtab_core::{Budget, StopFlag};
 use super::PredictionSpec;
 use crate::convert::{Seed, Seeds};
 use crate::error::{RunError, invalid};
-use crate::interrupt::run_polled;
+use crate::interrupt::{on_threads, run_polled};
 use crate::runs::{Run, RunFactory, python_task};
 use crate::spec::{Fields, RunSpec};
 use crate::training::{EnvironmentSpec, Memory, WORK_BETWEEN_CHECKS, room_of};
@@ -71,22 +70,8 @@ pub(crate) fn estimate_values(
                 return Ok(run_attached(py, &shared, rows, check));
             }
             let work = PredictionQueue { shared, rows: Mutex::new(rows), failed: Mutex::default() };
-            run_polled(
-                py,
-                |_| report(),
-                |stop| {
-                    thread::scope(|scope| {
-                        // This thread is one of the workers.
-                        for _ in 1..threads.min(seeds.len()) {
-                            // Threads may run out. Those that there are then do all the work.
-                            if thread::Builder::new().spawn_scoped(scope, || work.run_worker(stop)).is_err() {
-                                break;
-                            }
-                        }
-                        work.run_worker(stop);
-                    });
-                },
-            )?;
+            let threads = threads.min(seeds.len());
+            run_polled(py, |_| report(), |stop| on_threads(threads, || work.run_worker(stop)))?;
             let mut failed = work.failed.into_inner().unwrap_or_else(PoisonError::into_inner);
             failed.sort_by_key(|&(index, _)| index);
             Ok(failed)

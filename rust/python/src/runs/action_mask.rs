@@ -6,7 +6,7 @@ use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use super::answers::shortened;
+use super::answers::{named, shortened};
 use crate::spec::{Fields, Variant};
 
 /// Where the masks come from.
@@ -146,8 +146,4 @@ fn wrong_shape(given: &Bound<'_, PyAny>, num_actions: usize, name: &impl Fn() ->
         )),
         Err(error) => error,
     }
-}
-
-fn named(env: &Bound<'_, PyAny>) -> String {
-    env.str().map_or_else(|_| "the environment".into(), |name| name.to_string())
 }

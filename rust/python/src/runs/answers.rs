@@ -100,8 +100,13 @@ fn wrong_type(env: &Bound<'_, PyAny>, method: &str, expected: &str, got: &Bound<
 }
 
 fn message(env: &Bound<'_, PyAny>, method: &str, expected: &str, got: &str) -> String {
-    let name = env.str().map_or_else(|_| "the environment".into(), |name| name.to_string());
+    let name = named(env);
     format!("{method} of {name} must return {expected}, as Gymnasium's API says, got {got}")
+}
+
+/// The environment as messages name it.
+pub(super) fn named(env: &Bound<'_, PyAny>) -> String {
+    env.str().map_or_else(|_| "the environment".into(), |name| name.to_string())
 }
 
 /// The longest value that a message shows, in characters.

@@ -101,7 +101,7 @@ where
 }
 
 /// Builds runs of any type, boxed, by a function of the seed.
-pub(super) struct BoxedFactory<B>(pub(super) B);
+pub(crate) struct BoxedFactory<B>(pub(crate) B);
 
 impl<B> RunFactory for BoxedFactory<B>
 where

@@ -11,9 +11,9 @@ use qtab_core::{Env, Features, Learner, StopFlag, Task, Trainer, TrainingError};
 
 use super::agent::generic_agent;
 use super::factory::BoxedFactory;
-use super::fixed_tilings::{fixed_tiles, match_tilings};
-use super::observed::observed_box;
 use super::path::RunPath;
+use super::prediction::observed_box;
+use super::tilings::{fixed_tiles, match_tilings};
 use super::{AnyRecordings, Run, RunFactory};
 use crate::convert::Seed;
 use crate::error::{RunError, allocation, invalid};
@@ -34,7 +34,7 @@ where
     }
     let path = RunPath::of(spec);
     if let RunPath::ObservedPrediction(prediction) = &path {
-        check_actions(&env, spec)?;
+        check_actions(env.num_actions(), spec)?;
         return observed_box(env, spec, prediction);
     }
     match &spec.discretizer {
@@ -59,7 +59,7 @@ where
     E: Env<Action = usize, Observation = [f32; M], State: Send> + Clone + Send + Sync + 'static,
 {
     let features = fixed_tiles::<M, N>(tiles)?;
-    check_actions(&env, spec)?;
+    check_actions(env.num_actions(), spec)?;
     let (spec, shape) = (Arc::clone(spec), (features.len(), N));
     let build = move |seed: &Seed, stop: &StopFlag<'_>| {
         let task = NativeTask::new(env.clone(), features.clone(), Some(spec.max_episode_steps), environment_rng(seed));
@@ -69,12 +69,12 @@ where
     Ok(Box::new(BoxedFactory(build)))
 }
 
-/// Refuses a spec for another number of actions.
-fn check_actions(env: &impl Env, spec: &RunSpec) -> PyResult<()> {
-    if spec.num_actions == env.num_actions() {
+/// Refuses a spec for another number of actions than the environment's.
+pub(crate) fn check_actions(num_actions: usize, spec: &RunSpec) -> PyResult<()> {
+    if spec.num_actions == num_actions {
         return Ok(());
     }
-    Err(invalid("num_actions", format!("{}, the environment's", env.num_actions()), spec.num_actions))
+    Err(invalid("num_actions", format!("{num_actions}, the environment's"), spec.num_actions))
 }
 
 /// Runs in an environment with any features.
@@ -83,7 +83,7 @@ where
     E: Env<Action = usize, State: Send> + Clone + Send + Sync + 'static,
     F: Features<E::Observation, Active: Send> + Clone + Send + Sync + 'static,
 {
-    check_actions(&env, spec)?;
+    check_actions(env.num_actions(), spec)?;
     let (spec, shape) = (Arc::clone(spec), (features.len(), spec.discretizer.n_active()));
     let build = move |seed: &Seed, stop: &StopFlag<'_>| {
         let task = NativeTask::new(env.clone(), features.clone(), Some(spec.max_episode_steps), environment_rng(seed));
@@ -110,7 +110,7 @@ where
 }
 
 /// A run of any learner, with recordings if asked for. `shape` is the number of rows and of active rows.
-pub(super) fn boxed_run<W>(
+pub(crate) fn boxed_run<W>(
     task: W,
     shape: (usize, usize),
     seed: &Seed,

@@ -3,11 +3,8 @@
 mod action_mask;
 mod agent;
 mod answers;
-mod bandit;
 mod factory;
-mod fixed_tilings;
 mod generic;
-mod observed;
 mod path;
 mod prediction;
 mod python_env;
@@ -16,9 +13,8 @@ mod run;
 mod specialized;
 mod tilings;
 
-pub(crate) use bandit::testbed_runs;
-pub(crate) use factory::{RunBatch, RunFactory};
-pub(crate) use generic::{boxed_factory, generic, generic_box};
+pub(crate) use factory::{BoxedFactory, RunBatch, RunFactory};
+pub(crate) use generic::{boxed_factory, boxed_run, check_actions, generic, generic_box};
 pub(crate) use python_env::PythonEnv;
 pub(crate) use python_task::python_task;
 pub(crate) use run::{AnyRecordings, BuiltRun, Run, check_tables};

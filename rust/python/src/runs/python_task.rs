@@ -11,7 +11,7 @@ use qtab_core::{Features, StopFlag, Task};
 
 use super::answers::{self, Answer};
 use super::generic::boxed_run;
-use super::observed::observed_run;
+use super::prediction::observed_run;
 use super::python_env::PythonEnv;
 use super::{AnyRecordings, BuiltRun};
 use crate::convert::{BoxReader, ObservationReader, Seed};

@@ -1,19 +1,50 @@
-//! Runs with tile coding that are compiled for their types: the usual numbers of tilings, and learners that batches know.
+//! Tile coding that is compiled for the usual numbers of tilings, and runs with it of the learners that batches know.
 
 use std::sync::Arc;
 
 use pyo3::prelude::*;
 use qtab_core::Env;
 use qtab_core::envs::SimdEnv;
+use qtab_core::features::FixedTileCoding;
 use qtab_core::learners::{AnyAlgorithm, ExpectedSarsa, QLearning, Sarsa};
 use qtab_core::schedules::LearningRate;
 
 use super::factory::Batching;
-use super::fixed_tilings::{fixed_tiles, match_tilings};
 use super::path::{PlainSpec, RunPath};
 use super::specialized::{Builder, fits, plain_epsilon_greedy};
 use super::{RunFactory, generic_box};
+use crate::error::invalid;
 use crate::spec::{DiscretizerSpec, LearningRateSpec, RunSpec, TilesSpec};
+
+/// Evaluates an expression in which the constant `$n` is the number of tilings, or another one if the number is unusual. A
+/// usual one is a power of two that is at least four times the number of components (Sutton & Barto, section 9.5.4).
+macro_rules! match_tilings {
+    ($tilings:expr, $n:ident => $compiled:expr, _ => $other:expr $(,)?) => {
+        match $tilings {
+            8 => {
+                const $n: usize = 8;
+                $compiled
+            }
+            16 => {
+                const $n: usize = 16;
+                $compiled
+            }
+            32 => {
+                const $n: usize = 32;
+                $compiled
+            }
+            _ => $other,
+        }
+    };
+}
+
+pub(super) use match_tilings;
+
+/// Exactly `N` tilings of `M` components.
+pub(super) fn fixed_tiles<const M: usize, const N: usize>(tiles: &TilesSpec) -> PyResult<FixedTileCoding<f32, M, N>> {
+    FixedTileCoding::new(&tiles.tile_coding())
+        .ok_or_else(|| invalid("discretizer", format!("{N} tilings of {M} components"), "others"))
+}
 
 /// Runs of `N` actions that train in batches where the spec asks for Q-learning, Sarsa or Expected Sarsa on a usual number of
 /// tilings; the generic ones otherwise.

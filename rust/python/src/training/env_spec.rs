@@ -5,6 +5,7 @@ use std::sync::Arc;
 use pyo3::prelude::*;
 
 use crate::envs::{NativeEnv, PyNativeEnv};
+use crate::error::invalid;
 use crate::runs::PythonEnv;
 use crate::spec::{Fields, Variant};
 
@@ -21,5 +22,13 @@ const ENVIRONMENTS: &[Variant<EnvironmentSpec>] = &[
 impl EnvironmentSpec {
     pub(crate) fn parse(fields: &Fields<'_>) -> PyResult<Self> {
         fields.tagged(ENVIRONMENTS)
+    }
+
+    /// The environment of a spec, which must be one that Rust steps; `expected` names it in the error.
+    pub(super) fn native(spec: &Fields<'_>, expected: &str) -> PyResult<Arc<dyn NativeEnv>> {
+        match Self::parse(&spec.nested("env")?)? {
+            Self::Native(env) => Ok(env),
+            Self::Python(_) => Err(invalid("env", expected, "one that is stepped in Python")),
+        }
     }
 }

@@ -2,19 +2,16 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::thread;
 
 use pyo3::prelude::*;
 use qtab_core::memory::MemoryRoom;
 use qtab_core::{Budget, StopFlag};
 
-use super::WORK_BETWEEN_CHECKS;
 use super::env_spec::EnvironmentSpec;
-use super::memory::{Memory, room_of};
 use super::results::{Results, Row, Rows};
+use super::{Memory, WORK_BETWEEN_CHECKS, room_of};
 use crate::convert::{Seed, Seeds};
-use crate::error::invalid;
-use crate::interrupt::run_interruptible;
+use crate::interrupt::{on_threads, run_interruptible};
 use crate::runs::{RunBatch, RunFactory, check_tables};
 use crate::spec::{Fields, InitialQSpec, RunSpec};
 
@@ -38,9 +35,7 @@ pub(crate) fn train_many(
     memory: Option<Memory>,
 ) -> PyResult<Vec<FailedRun>> {
     let fields = Fields::new(spec)?;
-    let EnvironmentSpec::Native(env) = EnvironmentSpec::parse(&fields.nested("env")?)? else {
-        return Err(invalid("env", "an environment that Rust steps", "one that is stepped in Python"));
-    };
+    let env = EnvironmentSpec::native(&fields, "an environment that Rust steps")?;
     let run_spec = Arc::new(RunSpec::parse(&fields)?);
     let factory = env.runs(&run_spec)?;
     let Seeds(seeds) = seeds;
@@ -58,18 +53,7 @@ pub(crate) fn train_many(
         room: room_of(memory),
         cancelled: AtomicBool::new(false),
     };
-    run_interruptible(py, |stop| {
-        thread::scope(|scope| {
-            // This thread is one of the workers.
-            for _ in 1..threads {
-                // Threads may run out. Those that there are then do all the work.
-                if thread::Builder::new().spawn_scoped(scope, || queue.run_worker(share, stop)).is_err() {
-                    break;
-                }
-            }
-            queue.run_worker(share, stop);
-        });
-    })?;
+    run_interruptible(py, |stop| on_threads(threads, || queue.run_worker(share, stop)))?;
     let mut failed = queue.failed.into_inner().unwrap_or_else(PoisonError::into_inner);
     failed.sort_by_key(|&(index, _)| index);
     Ok(failed)

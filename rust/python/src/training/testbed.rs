@@ -2,7 +2,6 @@
 
 use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex, PoisonError};
-use std::thread;
 
 use numpy::{PyReadwriteArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -12,7 +11,7 @@ use super::WORK_BETWEEN_CHECKS;
 use super::env_spec::EnvironmentSpec;
 use crate::convert::{Seed, Seeds};
 use crate::error::invalid;
-use crate::interrupt::run_interruptible;
+use crate::interrupt::{on_threads, run_interruptible};
 use crate::runs::{AnyRecordings, RunFactory, check_tables};
 use crate::spec::{Fields, InitialQSpec, RunSpec};
 
@@ -31,9 +30,7 @@ pub(crate) fn run_testbeds(
     threads: usize,
 ) -> PyResult<()> {
     let fields = Fields::new(spec)?;
-    let EnvironmentSpec::Native(env) = EnvironmentSpec::parse(&fields.nested("env")?)? else {
-        return Err(invalid("env", "a k-armed bandit that Rust steps", "one that is stepped in Python"));
-    };
+    let env = EnvironmentSpec::native(&fields, "a k-armed bandit that Rust steps")?;
     let spec = Arc::new(RunSpec::parse(&fields)?);
     let factory = env.testbed_runs(&spec)?;
     let (Seeds(seeds), steps) = (seeds, spec.episodes as usize);
@@ -58,17 +55,7 @@ pub(crate) fn run_testbeds(
             }
         }
     };
-    run_interruptible(py, |stop| {
-        thread::scope(|scope| {
-            for _ in 1..threads.min(seeds.len()) {
-                // Threads may run out. Those that there are then do all the work.
-                if thread::Builder::new().spawn_scoped(scope, || work(stop)).is_err() {
-                    break;
-                }
-            }
-            work(stop);
-        });
-    })?;
+    run_interruptible(py, |stop| on_threads(threads.min(seeds.len()), || work(stop)))?;
     failure.into_inner().unwrap_or_else(PoisonError::into_inner).map_or(Ok(()), Err)
 }
 

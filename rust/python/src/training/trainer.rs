@@ -13,9 +13,8 @@ use qtab_core::memory::with_capacity;
 use qtab_core::tasks::{Recording, Recordings};
 use qtab_core::{Budget, EpisodeLog};
 
-use super::WORK_BETWEEN_CHECKS;
 use super::env_spec::EnvironmentSpec;
-use super::memory::{Memory, room_of};
+use super::{Memory, WORK_BETWEEN_CHECKS, room_of};
 use crate::convert::{Seed, array_of};
 use crate::error::{RunError, allocation, invalid, unusable_checkpoint};
 use crate::interrupt::{run_detached, run_polling, run_resumable};
