@@ -42,23 +42,10 @@ pub(crate) trait RunBatch {
 type AdvanceRuns<R> = fn(&mut [R], Budget) -> Result<(), (usize, RunError)>;
 
 /// How several runs of type `R` advance: together, or `None` for one after the other.
-pub(super) struct Batching<R>(Option<AdvanceRuns<R>>);
+pub(super) type Batching<R> = Option<AdvanceRuns<R>>;
 
-impl<R> Batching<R> {
-    /// One run at a time.
-    pub(super) fn one_by_one() -> Self {
-        Self(None)
-    }
-}
-
-impl<R: Run + BatchedRun> Batching<R> {
-    /// As many runs in the processor's vector registers as there are lanes.
-    pub(super) fn in_lanes() -> Self {
-        Self(Some(advance_lanes))
-    }
-}
-
-fn advance_lanes<R: Run + BatchedRun>(runs: &mut [R], budget: Budget) -> Result<(), (usize, RunError)> {
+/// Advances as many runs in the processor's vector registers as there are lanes.
+pub(super) fn advance_lanes<R: Run + BatchedRun>(runs: &mut [R], budget: Budget) -> Result<(), (usize, RunError)> {
     let advanced = if let Some(runs) = runs.first_chunk_mut::<LANES>() {
         R::advance_all(runs, budget)
     } else if let Some(runs) = runs.first_chunk_mut::<HALF>() {
@@ -74,12 +61,26 @@ fn advance_lanes<R: Run + BatchedRun>(runs: &mut [R], budget: Budget) -> Result<
 }
 
 /// Builds runs of type `R` by a function of the seed.
-pub(super) struct Factory<R, B> {
-    pub(super) build: B,
-    pub(super) batching: Batching<R>,
+pub(super) fn factory<R, B>(build: B, batching: Batching<R>) -> Box<dyn RunFactory>
+where
+    R: Run + 'static,
+    B: Fn(&Seed, &StopFlag<'_>) -> PyResult<R> + Send + Sync + 'static,
+{
+    match batching {
+        Some(advance) => Box::new(LaneFactory { build, advance }),
+        None => Box::new(BoxedFactory(move |seed: &Seed, stop: &StopFlag<'_>| {
+            Ok((Box::new(build(seed, stop)?) as Box<dyn Run>, AnyRecordings::None))
+        })),
+    }
 }
 
-impl<R, B> RunFactory for Factory<R, B>
+/// Builds runs that advance in the lanes of vector registers.
+struct LaneFactory<R, B> {
+    build: B,
+    advance: AdvanceRuns<R>,
+}
+
+impl<R, B> RunFactory for LaneFactory<R, B>
 where
     R: Run + 'static,
     B: Fn(&Seed, &StopFlag<'_>) -> PyResult<R> + Send + Sync,
@@ -90,13 +91,8 @@ where
     }
 
     fn batch(&self, room: &MemoryRoom) -> Box<dyn RunBatch + '_> {
-        match self.batching {
-            Batching(None) => Box::new(SingleRun { factory: self, run: None, room: room.clone() }),
-            Batching(Some(advance)) => {
-                let runs = Vec::with_capacity(LANES);
-                Box::new(LaneBatch { build: &self.build, advance, runs, room: room.clone() })
-            }
-        }
+        let runs = Vec::with_capacity(LANES);
+        Box::new(LaneBatch { build: &self.build, advance: self.advance, runs, room: room.clone() })
     }
 }
 

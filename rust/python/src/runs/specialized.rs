@@ -12,7 +12,7 @@ use qtab_core::tasks::{NativeTask, VisitCounter};
 use qtab_core::{Env, Features, StopFlag, Trainer};
 
 use super::agent::policy;
-use super::factory::{Batching, Factory};
+use super::factory::{Batching, advance_lanes, factory};
 use super::path::{PlainSpec, RunPath};
 use super::prediction::predicting;
 use super::{Run, RunFactory, generic};
@@ -41,19 +41,10 @@ impl<E, F, P, const N: usize> OneStepBatching<E, F, P, N>
 where
     E: Env<Action = usize>,
     F: Features<E::Observation>,
-    OneStepRun<E, F, QLearning, P, f64, N>: Run,
-    OneStepRun<E, F, QLearning, P, Schedule, N>: Run,
-    OneStepRun<E, F, Sarsa, P, Schedule, N>: Run,
-    OneStepRun<E, F, ExpectedSarsa, P, Schedule, N>: Run,
 {
     /// Each run by itself.
     pub(crate) fn one_by_one() -> Self {
-        Self {
-            q_learning: Batching::one_by_one(),
-            scheduled_q_learning: Batching::one_by_one(),
-            sarsa: Batching::one_by_one(),
-            expected_sarsa: Batching::one_by_one(),
-        }
+        Self { q_learning: None, scheduled_q_learning: None, sarsa: None, expected_sarsa: None }
     }
 }
 
@@ -69,10 +60,10 @@ where
     /// Several runs in the processor's vector registers.
     pub(crate) fn in_lanes() -> Self {
         Self {
-            q_learning: Batching::in_lanes(),
-            scheduled_q_learning: Batching::in_lanes(),
-            sarsa: Batching::in_lanes(),
-            expected_sarsa: Batching::in_lanes(),
+            q_learning: Some(advance_lanes),
+            scheduled_q_learning: Some(advance_lanes),
+            sarsa: Some(advance_lanes),
+            expected_sarsa: Some(advance_lanes),
         }
     }
 }
@@ -214,12 +205,12 @@ where
                     VisitCounter::new(task, learner.agent.table.values().len() / N, N, stop).map_err(allocation)?;
                 Ok(Trainer::new(task, learner, rng))
             };
-            return Box::new(Factory { build, batching: Batching::one_by_one() });
+            return factory(build, None);
         }
         let build = move |seed: &Seed, stop: &StopFlag<'_>| {
             let (task, learner, rng) = parts(seed, stop)?;
             Ok(Trainer::new(task, learner, rng))
         };
-        Box::new(Factory { build, batching })
+        factory(build, batching)
     }
 }

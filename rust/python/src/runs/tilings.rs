@@ -9,7 +9,7 @@ use qtab_core::features::FixedTileCoding;
 use qtab_core::learners::{AnyAlgorithm, ExpectedSarsa, QLearning, Sarsa};
 use qtab_core::schedules::LearningRate;
 
-use super::factory::Batching;
+use super::factory::advance_lanes;
 use super::path::{PlainSpec, RunPath};
 use super::specialized::{Builder, fits, plain_epsilon_greedy};
 use super::{RunFactory, generic_box};
@@ -80,10 +80,10 @@ where
     let algorithm = spec.algorithm;
     let builder = Builder::<E, _, N> { env: *env, features, spec };
     match algorithm {
-        AnyAlgorithm::QLearning => Some(builder.with_rule(QLearning, policy, learning_rate, Batching::in_lanes())),
-        AnyAlgorithm::Sarsa => Some(builder.with_rule(Sarsa, policy, learning_rate, Batching::in_lanes())),
+        AnyAlgorithm::QLearning => Some(builder.with_rule(QLearning, policy, learning_rate, Some(advance_lanes))),
+        AnyAlgorithm::Sarsa => Some(builder.with_rule(Sarsa, policy, learning_rate, Some(advance_lanes))),
         AnyAlgorithm::ExpectedSarsa => {
-            Some(builder.with_rule(ExpectedSarsa, policy, learning_rate, Batching::in_lanes()))
+            Some(builder.with_rule(ExpectedSarsa, policy, learning_rate, Some(advance_lanes)))
         }
         _ => None,
     }
