@@ -8,7 +8,6 @@ mod envs;
 mod error;
 mod interrupt;
 mod planning;
-mod prediction;
 mod rng;
 mod runs;
 mod spec;
@@ -37,11 +36,9 @@ mod _core {
     #[pymodule_export]
     use super::planning::{PyExpectedUpdates, PyGridSearch, PyMdpSolver};
     #[pymodule_export]
-    use super::prediction::estimate_values;
-    #[pymodule_export]
     use super::rng::PyAgentRng;
     #[pymodule_export]
-    use super::training::{PyTrainer, run_testbeds, train_many};
+    use super::training::{PyTrainer, estimate_values, run_testbeds, train_many};
 
     /// The version of the package, which Python's metadata takes ten times as long to tell.
     #[pymodule_export]

@@ -5,9 +5,8 @@ use std::sync::Arc;
 use qtab_core::learners::AnyAlgorithm;
 use qtab_core::q_table::TerminalUpdate;
 
-use crate::prediction::PredictionSpec;
 use crate::rng::BitGenerator;
-use crate::spec::{ActionMasksSpec, InitialQSpec, LearningRateSpec, PolicySpec, RunSpec};
+use crate::spec::{ActionMasksSpec, InitialQSpec, LearningRateSpec, PolicySpec, PredictionSpec, RunSpec};
 
 /// The paths that a run may take.
 pub(super) enum RunPath {

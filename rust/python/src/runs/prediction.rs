@@ -17,9 +17,8 @@ use super::tilings::{fixed_tiles, match_tilings};
 use super::{AnyRecordings, Run, RunFactory};
 use crate::convert::Seed;
 use crate::error::RunError;
-use crate::prediction::{BoxFeatures, ObservedVisitor, PredictionSpec};
 use crate::rng::{agent_pcg64, environment_rng};
-use crate::spec::{DiscretizerSpec, RunSpec};
+use crate::spec::{BoxFeatures, DiscretizerSpec, ObservedVisitor, PredictionSpec, RunSpec};
 
 /// Runs of any method over numbered states, compiled for their environment; those of TD(0) are compiled for the method, too.
 pub(super) fn predicting<E, F>(

@@ -16,8 +16,7 @@ use super::python_env::PythonEnv;
 use super::{AnyRecordings, BuiltRun};
 use crate::convert::{BoxReader, ObservationReader, Seed};
 use crate::error::RunError;
-use crate::prediction::{BoxFeatures, PredictionSpec};
-use crate::spec::{DiscretizerSpec, FloatType, RunSpec};
+use crate::spec::{BoxFeatures, DiscretizerSpec, FloatType, PredictionSpec, RunSpec};
 
 /// How many steps of Q-learning on a grid a step in Python counts as. It may take a millisecond.
 const STEP_WORK: u64 = 127;

@@ -7,6 +7,7 @@ mod discretizer;
 mod fields;
 mod initial_q;
 mod policy;
+mod prediction;
 mod product;
 mod schedule;
 
@@ -23,10 +24,10 @@ pub(crate) use discretizer::{DISCRETIZERS, DiscretizerSpec, FloatType, TilesSpec
 pub(crate) use fields::{Fields, Variant};
 pub(crate) use initial_q::InitialQSpec;
 pub(crate) use policy::PolicySpec;
+pub(crate) use prediction::{BoxFeatures, ObservedVisitor, PredictionSpec};
 pub(crate) use schedule::{LearningRateSpec, SCHEDULES, ScheduleSpec};
 
 use crate::error::invalid;
-use crate::prediction::PredictionSpec;
 use crate::rng::BitGenerator;
 
 /// The agent and its training: all of a run's description but the environment and the seed.

@@ -1,11 +1,9 @@
-//! Prediction: the values of a given policy, estimated with many seeds at once.
+//! What a run estimates instead of learning to act: the values of given policies, by a method.
 
 mod box_features;
-mod estimate;
 mod function_policy;
 mod observation_policy;
 mod spec;
 
 pub(crate) use box_features::BoxFeatures;
-pub(crate) use estimate::estimate_values;
 pub(crate) use spec::{ObservedVisitor, PredictionSpec};

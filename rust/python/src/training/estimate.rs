@@ -9,13 +9,12 @@ use pyo3::prelude::*;
 use qtab_core::memory::MemoryRoom;
 use qtab_core::{Budget, StopFlag};
 
-use super::PredictionSpec;
+use super::{EnvironmentSpec, Memory, WORK_BETWEEN_CHECKS, room_of};
 use crate::convert::{Seed, Seeds};
 use crate::error::{RunError, invalid};
 use crate::interrupt::{on_threads, run_polled};
 use crate::runs::{Run, RunFactory, python_task};
-use crate::spec::{Fields, RunSpec};
-use crate::training::{EnvironmentSpec, Memory, WORK_BETWEEN_CHECKS, room_of};
+use crate::spec::{Fields, PredictionSpec, RunSpec};
 
 /// How many episodes are logged at once. Their returns are of no further use.
 const EPISODES_AT_ONCE: u64 = 1 << 16;
