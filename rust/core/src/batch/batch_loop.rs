@@ -28,12 +28,12 @@ where
     A: StepSize,
     U: BatchRule + UpdateRule<F::Active, Agent<N, EpsilonGreedy, A>>,
 {
-    /// Several rows are read and written one by one, and it depends on the processor whether the rest gains from AVX-512 or
-    /// loses.
+    /// Several rows are read and written one by one; whether the other operations gain or lose from AVX-512 depends on
+    /// the processor.
     const USES_AVX512: bool = F::ActiveInLane::IS_SINGLE;
 
-    /// How many steps the runs must take one by one, because the next step leads one of them to an observation without
-    /// a row; usually 0. A step is one unit of work.
+    /// The number of steps that the runs must take one by one because the next step leads one of them to an observation
+    /// without a row; usually 0. A step is one unit of work.
     type Output = Result<u64, (usize, OutOfBounds)>;
 
     #[inline(always)]

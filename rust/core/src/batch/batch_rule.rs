@@ -1,17 +1,17 @@
-//! The update rules that batches know.
+//! The update rules that batches support.
 
 use crate::learners::{ExpectedSarsa, QLearning, Sarsa};
 
 /// An update rule whose target is a reward and the discounted value of the next state.
 pub trait BatchRule {
-    /// What that value is.
+    /// The kind of that value.
     const NEXT_VALUE: NextValue;
 }
 
 /// The value of the next state in a target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NextValue {
-    /// Q(S′, A′). A′ is chosen before the update; with the other values after it.
+    /// Q(S′, A′). A′ is chosen before the update; for the other kinds, the next action is chosen after it.
     OfNextAction,
     /// maxₐ Q(S′, a).
     Largest,

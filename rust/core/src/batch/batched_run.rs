@@ -13,8 +13,8 @@ use crate::tasks::NativeTask;
 use crate::trainer::{Budget, Trainer};
 use crate::training_error::TrainingError;
 
-/// With rewards of at most 1 per step, the values of single rows below this bound cannot reach infinity. Sums over several
-/// rows can: of these a batch checks the errors.
+/// With rewards of at most 1 per step, the values of single rows below this bound cannot reach infinity. Sums over
+/// several rows can, so a batch checks the errors of those.
 const FAR_FROM_OVERFLOW: f64 = 1e300;
 
 /// An ε-greedy one-step learner with `N` actions. It can be trained in a batch if its update rule `U` is a
@@ -26,8 +26,8 @@ pub type SimdTrainer<E, F, const N: usize, A, U> =
 /// A run that can be trained together with others of its type.
 pub trait BatchedRun: Sized {
     /// Advances every run by up to `budget.work` steps, until one of them has finished `budget.episodes` episodes.
-    /// Afterwards each run is in the state that it would have after as many steps alone. It can be continued alone or in
-    /// any batch.
+    /// Afterwards each run is in the state that it would have reached in as many steps alone, and it can be continued
+    /// alone or in any batch.
     ///
     /// Runs that differ in more than their seeds, tables and learning rates advance one after the other. So do those whose
     /// learning rates depend on visits, and all runs once one of them has diverged or reaches an observation without a row.
@@ -56,7 +56,7 @@ where
     }
 }
 
-/// [`BatchedRun::advance_all`] with these vector instructions.
+/// [`BatchedRun::advance_all`] at one SIMD level.
 pub(super) fn advance_all_at<E, F, A, U, const N: usize, const M: usize, const K: usize>(
     level: SimdLevel,
     runs: &mut [SimdTrainer<E, F, N, A, U>; K],
@@ -83,7 +83,8 @@ where
     lanes.try_for_each(|(lane, run)| run.advance(Budget { work, ..budget }).map_err(|error| (lane, error)))
 }
 
-/// Whether two runs share all that a batch reads once, and the first has neither diverged nor values near an overflow.
+/// Whether two runs share everything that a batch reads only once, and the first has neither diverged nor come near an
+/// overflow.
 fn compatible<E, F, A, U, const N: usize>(one: &SimdTrainer<E, F, N, A, U>, other: &SimdTrainer<E, F, N, A, U>) -> bool
 where
     E: Env<Action = usize> + PartialEq,

@@ -32,7 +32,7 @@ pub(super) struct EpisodeLanes<S: Simd, R, const N: usize, const M: usize, const
     /// Whether `action` is the action to take next, rather than the one taken last.
     pub(super) actions_chosen: bool,
     pub(super) episode_return: F64s<S, K>,
-    /// What [`explore_from`] returns for `1 - epsilon`.
+    /// The result of [`explore_from`] for `1 - epsilon`.
     pub(super) explore_from: U64s<S, K>,
     /// 0, or NaN after an error that was infinite or NaN.
     pub(super) divergence: F64s<S, K>,
@@ -81,7 +81,7 @@ impl<S: Simd, R: LaneRows, const N: usize, const M: usize, const K: usize> Episo
         Ok(lanes)
     }
 
-    /// Begins an episode in a lane, whose first action is to be chosen.
+    /// Begins an episode in a lane. Its first action is not chosen yet.
     pub(super) fn reset<E, F, A, U>(
         &mut self,
         lane: usize,
@@ -158,7 +158,7 @@ impl<S: Simd, R: LaneRows, const N: usize, const M: usize, const K: usize> Episo
         self.action.set(lane, action as u64);
     }
 
-    /// Chooses the next actions of the active lanes, unless they are chosen.
+    /// Chooses the next actions of the active lanes, unless they are already chosen.
     pub(super) fn choose_if_missing(&mut self, rngs: &mut Pcg64Lanes<S, K>) {
         if self.actions_chosen {
             return;

@@ -1,4 +1,4 @@
-//! What the lanes of a batch read from the values of their states.
+//! Functions of the action values in the lanes of a batch.
 
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
@@ -49,7 +49,7 @@ pub(super) fn largest<S: Simd, const N: usize, const K: usize>(values: &[F64s<S,
     largest
 }
 
-/// The index of the largest value in each lane, the first one of several: `np.argmax`.
+/// The index of the largest value in each lane, the first one if there are several: `np.argmax`.
 #[inline(always)]
 pub(super) fn argmax_in_lanes<S: Simd, const N: usize, const K: usize>(
     simd: S,
@@ -63,8 +63,8 @@ pub(super) fn argmax_in_lanes<S: Simd, const N: usize, const K: usize>(
     best
 }
 
-/// The expected value in each lane, under a policy with these probabilities of the greedy action and of each other one:
-/// [`EpsilonGreedy::expected_value`](crate::policies::Policy::expected_value).
+/// The expected value in each lane, under a policy with these probabilities of the greedy action and of each other
+/// action: [`EpsilonGreedy::expected_value`](crate::policies::Policy::expected_value).
 #[inline(always)]
 pub(super) fn expected_values<S: Simd, const N: usize, const K: usize>(
     simd: S,

@@ -14,7 +14,7 @@ use crate::random::Pcg64Lanes;
 use crate::schedules::StepSize;
 use crate::simd::{F64s, Simd, map};
 
-/// What all runs of a batch share.
+/// The data that all runs of a batch share.
 pub(super) struct Shared<E, F> {
     pub(super) env: E,
     pub(super) features: F,
@@ -22,19 +22,20 @@ pub(super) struct Shared<E, F> {
     pub(super) terminal_update: TerminalUpdate,
 }
 
-/// Where the steps stopped.
+/// When and why the steps stopped.
 pub(super) struct Stop<const K: usize> {
     /// The number of steps that each lane took.
     pub(super) steps: u64,
-    /// Which lanes reached a terminal state in the last step.
+    /// Whether each lane reached a terminal state in the last step; `None` if no lane did.
     pub(super) terminal: Option<[bool; K]>,
     /// Whether a further step would lead to an observation without a row.
     pub(super) out_of_bounds: bool,
 }
 
 impl<E, F> Shared<E, F> {
-    /// Chooses an action, takes a step and learns from it, in every lane, up to `most` times. Stops early after a terminal
-    /// state, or before an observation without a row. All is computed in lanes but for reading and writing the tables.
+    /// Chooses an action, takes a step and learns from it, in every lane, up to `most` times. Stops early after a
+    /// terminal state, or before an observation without a row. Everything except reading and writing the tables is
+    /// computed in lanes.
     #[inline(always)]
     pub(super) fn learning_steps<S, A, U, const N: usize, const M: usize, const K: usize>(
         &self,
@@ -101,7 +102,7 @@ impl<E, F> Shared<E, F> {
                 }
                 update_single_rows(simd, &mut tables, both_rows, actions, updated, next_values)
             } else {
-                // As `QTable::check_finite`.
+                // Makes the divergence NaN, as in `QTable::check_finite`.
                 lanes.divergence = lanes.divergence + errors * 0.0;
                 update_rows(&mut tables, both_rows, actions, changes, next_values)
             };

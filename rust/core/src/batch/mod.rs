@@ -1,8 +1,9 @@
 //! Several runs trained together on one core, one per SIMD lane.
 //!
-//! A single run is bound by latency (the cosine's above all) and by mispredicted branches. A batch computes the physics
-//! of several runs in SIMD registers, draws their random numbers there and selects explored actions without a branch, and
-//! the chains of operations of the runs overlap. Each run's results equal those of the same run trained alone, to the bit.
+//! A single run is bound by latency (above all that of the cosine) and by mispredicted branches. A batch computes the
+//! physics of several runs in SIMD registers, draws their random numbers there and selects explored actions without a
+//! branch. The dependency chains of the runs overlap. Each run's results equal those of the same run trained alone, to
+//! the bit.
 
 mod batch_loop;
 mod batch_rule;

@@ -2,8 +2,8 @@
 
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
-/// The active rows of the current states, and those of the next ones, which take their place without being copied: numbers
-/// that are copied in vector registers right after they were written in smaller parts stall the processor.
+/// The active rows of the current states and of the next ones. The two buffers swap roles instead of being copied,
+/// because a processor stalls if it copies numbers in vector registers right after they were written in smaller parts.
 pub(super) struct RowBuffers<R, const K: usize> {
     buffers: [[R; K]; 2],
     /// Whether the current rows are in the second buffer.
@@ -21,7 +21,7 @@ impl<R: Copy + Default, const K: usize> RowBuffers<R, K> {
         &self.buffers[usize::from(self.second)]
     }
 
-    /// The same, to be changed.
+    /// The rows of the current states, mutable.
     #[inline(always)]
     pub(super) fn current_mut(&mut self) -> &mut [R; K] {
         &mut self.buffers[usize::from(self.second)]
@@ -33,7 +33,7 @@ impl<R: Copy + Default, const K: usize> RowBuffers<R, K> {
         &self.buffers[usize::from(!self.second)]
     }
 
-    /// The same, to be changed.
+    /// The rows of the next states, mutable.
     #[inline(always)]
     pub(super) fn next_mut(&mut self) -> &mut [R; K] {
         &mut self.buffers[usize::from(!self.second)]

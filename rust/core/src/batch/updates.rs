@@ -1,4 +1,4 @@
-//! The updates of the tables of a batch, and of the values of the rows that come next.
+//! The updates of the tables of a batch, and of the values of the next rows.
 
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
@@ -6,7 +6,7 @@ use crate::features::LaneRows;
 use crate::q_table::sum_values;
 use crate::simd::{F64s, Simd, U64s, map};
 
-/// Writes the value of an action in a row of each lane. Returns the values of the next rows after that.
+/// Writes the value of an action in a row of each lane. Returns the values of the next rows after the write.
 #[inline(always)]
 pub(super) fn update_single_rows<S: Simd, R: LaneRows, const N: usize, const K: usize>(
     simd: S,
@@ -30,7 +30,8 @@ pub(super) fn update_single_rows<S: Simd, R: LaneRows, const N: usize, const K: 
     map(next_values, F64s::to_array)
 }
 
-/// Adds a number to the values of an action in the rows of each lane. Returns the values of the next rows after that.
+/// Adds a number to the values of an action in the rows of each lane. Returns the values of the next rows after the
+/// addition.
 #[inline(always)]
 pub(super) fn update_rows<S: Simd, R: LaneRows, const N: usize, const K: usize>(
     tables: &mut [&mut [[f64; N]]; K],
@@ -46,7 +47,7 @@ pub(super) fn update_rows<S: Simd, R: LaneRows, const N: usize, const K: usize>(
         for row in rows[lane].indices() {
             table[row][action] += changes[lane];
         }
-        // Most rows stay active, so that the next value of the same action has nearly always changed.
+        // Most rows stay active, so the next value of the same action has nearly always changed.
         values[action][lane] = sum_values(next_rows[lane].indices().map(|row| table[row][action]));
     }
     values

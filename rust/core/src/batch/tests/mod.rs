@@ -35,7 +35,7 @@ fn check<E, F, A, U, const N: usize, const M: usize, const K: usize>(
     }
 }
 
-/// The same with these vector instructions.
+/// [`check`] at one SIMD level.
 fn check_at<E, F, A, U, const N: usize, const M: usize, const K: usize>(
     level: SimdLevel,
     seeds: [u32; K],
@@ -165,7 +165,7 @@ proptest! {
     fn tilings_with_any_settings_and_chunks(
         hashed in prop_oneof![Just(None), Just(Some(60))],
         by_visit_count in prop_oneof![4 => Just(false), 1 => Just(true)],
-        // Diverges with the larger ones.
+        // The larger factors make the run diverge.
         scale in prop_oneof![3 => Just(1.0), 1 => 3.0..100.0],
         settings in any_settings(),
         chunks in chunks(),

@@ -85,8 +85,8 @@ pub(super) fn cart_pole<U: UpdateRule<[u32; 1], Agent<2, EpsilonGreedy, Schedule
     run(env, Bins::new(bins), learning_rate, rule, settings, seed)
 }
 
-/// Runs with tile coding, which may share rows by hashing, and a learning rate chosen at run time. The update at a terminal
-/// state is the usual one, because several rows cannot be assigned to.
+/// Runs with tile coding, which may share rows by hashing, and a learning rate chosen at run time. Terminal updates are
+/// the usual ones, because a value that is a sum over rows cannot be assigned.
 pub(super) fn tiled_mountain_car<U: UpdateRule<FixedTiles<8>, Agent<3, EpsilonGreedy, LearningRate>>>(
     hashed: Option<u32>,
     by_visit_count: bool,
