@@ -17,7 +17,7 @@ pub struct Step<S> {
 /// The dynamics of an environment: frozen parameters in `self`, the state passed by value, the random generator passed
 /// in.
 pub trait Env {
-    /// All that changes from step to step.
+    /// The part that changes from step to step.
     type State: Copy + Persist;
     /// An action: an index if the actions are discrete.
     type Action: Copy;
@@ -30,8 +30,8 @@ pub trait Env {
     /// The initial state of an episode.
     fn reset(&self, rng: &mut impl Rng) -> Self::State;
 
-    /// The default bounds of the initial state, with the names of Gymnasium's reset options. `None` if the environment has
-    /// no such options.
+    /// The default bounds of the initial state, named as Gymnasium's reset options. `None` if the environment has no
+    /// such options.
     const RESET_BOUNDS: Option<[(&'static str, f64); 2]> = None;
 
     /// The initial state of an episode within other bounds. Without reset options, the same as `reset`.
@@ -51,7 +51,7 @@ pub trait Env {
 
 /// An environment that knows the probability of each step, as Gymnasium's toy text environments report it in `info`.
 pub trait TransitionProbability: Env {
-    /// One step, and the probability of what was sampled.
+    /// One step, and the probability of the sampled outcome.
     fn step_with_probability(
         &self,
         state: Self::State,

@@ -5,7 +5,7 @@
 pub struct Flag {
     /// The name of Gymnasium's attribute.
     pub name: &'static str,
-    /// The string that stands for true; `None` if the attribute is a bool.
+    /// The string that means true; `None` if the attribute is a bool.
     pub true_value: Option<&'static str>,
 }
 

@@ -8,7 +8,7 @@ use crate::simd::{F64s, Mask, Simd, U64s};
 pub trait SimdEnv<const M: usize>:
     Copy + PartialEq + Env<Action = usize, State: From<[f64; M]> + Into<[f64; M]>, Observation = [f32; M]>
 {
-    /// Whether `step_batch` has the results of `step` with these parameters on this platform.
+    /// Whether `step_batch` gives the results of `step` with these parameters on this platform.
     fn is_exact(&self) -> bool;
 
     /// One step in `K` lanes, in place. Returns whether each next state is terminal.

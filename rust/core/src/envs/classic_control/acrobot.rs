@@ -10,7 +10,8 @@ use crate::random::Rng;
 /// The bounds of each component of the initial state, which is uniform.
 const RESET_BOUNDS: [(&str, f64); 2] = [("low", -0.1), ("high", 0.1)];
 const GRAVITY: f64 = 9.8;
-/// The largest angle that is wrapped. Gymnasium subtracts full turns one by one; the dynamics never reach such an angle.
+/// The largest angle that is wrapped. Gymnasium subtracts full turns one by one, which would take too long; the
+/// dynamics never reach such an angle.
 const MAX_ANGLE: f64 = 1e6;
 
 /// The parameters, with Gymnasium's names in lower case.
@@ -36,7 +37,7 @@ pub struct Acrobot {
     pub max_vel_2: f64,
     /// If positive, each torque has uniform noise between this and its negative.
     pub torque_noise_max: f64,
-    /// Whether to use the equations of the NIPS paper instead of the book's.
+    /// Whether to use the equations of the NIPS paper instead of those of the book.
     pub nips: bool,
     /// The torque of each action.
     pub torques: [f64; 3],
@@ -225,7 +226,8 @@ fn runge_kutta(derivative: impl Fn([f64; 4]) -> [f64; 4], start: [f64; 4], dt: f
     std::array::from_fn(|i| start[i] + dt / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]))
 }
 
-/// An angle wrapped to [-π, π] by subtracting full turns, as Gymnasium does. NaN if there are too many.
+/// An angle wrapped to [-π, π] by subtracting full turns, as Gymnasium does. NaN if its magnitude exceeds
+/// [`MAX_ANGLE`].
 #[inline]
 fn wrap(mut angle: f64) -> f64 {
     if angle.abs() > MAX_ANGLE {

@@ -32,8 +32,8 @@ pub struct CartPole {
     pub theta_threshold_radians: f64,
     /// An episode ends when the position exceeds this in either direction.
     pub x_threshold: f64,
-    /// Explicit Euler integration (Gymnasium's "euler"): positions move with the old velocities. Otherwise semi-implicit
-    /// Euler: they move with the new ones.
+    /// Explicit Euler integration (Gymnasium's "euler"): positions move with the old velocities. If false,
+    /// semi-implicit Euler: positions move with the new velocities.
     pub euler: bool,
     /// The reward is -1 in the last step and 0 before it, as in the book, instead of 1 per step.
     pub sutton_barto_reward: bool,
@@ -129,8 +129,8 @@ impl CartPole {
         if action == 1 { self.force_mag } else { -self.force_mag }
     }
 
-    /// One step of `K` cart-poles, in place, given cosine and sine of their angles. Returns whether each next state is
-    /// terminal.
+    /// One step of `K` cart-poles, in place, given the cosine and sine of their angles. Returns whether each next state
+    /// is terminal.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
     fn transition<S: Simd, const K: usize>(
@@ -141,7 +141,7 @@ impl CartPole {
         [costheta, sintheta]: [F64s<S, K>; 2],
     ) -> Mask<S, K> {
         let (old_x_dot, old_theta_dot) = (*x_dot, *theta_dot);
-        // Before the divisions, for which the next angle then need not wait.
+        // Done before the divisions, so that the next angle need not wait for them.
         if self.euler {
             *x = *x + self.tau * old_x_dot;
             *theta = *theta + self.tau * old_theta_dot;

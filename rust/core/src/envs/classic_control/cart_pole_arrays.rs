@@ -1,12 +1,13 @@
-//! Many cart-poles whose state is a structure of arrays, as Gymnasium's `CartPoleVectorEnv` holds it.
+//! Many cart-poles whose state is a structure of arrays, as Gymnasium's `CartPoleVectorEnv` stores it.
 
 use super::CartPole;
 use crate::envs::SimdEnv;
 use crate::simd::{F64s, LANES, Mask, Portable, Simd, SimdCode, SimdLevel, U64s};
 
 impl CartPole {
-    /// One step of many cart-poles, in place. `state` holds an array for each component. An action is 0 or 1. The results
-    /// are those of `step`. Returns whether no number was larger than `largest` before, and all are finite after it.
+    /// One step of many cart-poles, in place. `state` has one array per component. An action is 0 or 1. The results are
+    /// those of `step`. Returns whether every magnitude was at most `largest` before the step and every number is
+    /// finite after it.
     ///
     /// # Panics
     /// If the arrays differ in length.
@@ -39,7 +40,7 @@ impl CartPole {
     }
 }
 
-/// Where the magnitude of a component is not at most the limit.
+/// The lanes in which the magnitude of a component exceeds the limit or is NaN.
 #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 #[inline(always)]
 fn out_of_range<S: Simd, const K: usize>(fields: &[F64s<S, K>; 4], limit: f64) -> Mask<S, K> {

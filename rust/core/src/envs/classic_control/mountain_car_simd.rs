@@ -37,7 +37,7 @@ impl SimdEnv<2> for MountainCar {
     }
 }
 
-/// `DIRECTIONS[action]` without a memory access: 2⁵² + `action` has the action in its low bits.
+/// `DIRECTIONS[action]` without a memory access: 2⁵² + `action` holds the action in its low bits.
 #[inline(always)]
 fn direction<S: Simd, const K: usize>(actions: U64s<S, K>) -> F64s<S, K> {
     const TWO_POW_52: f64 = 4_503_599_627_370_496.0;

@@ -6,16 +6,16 @@ use super::outcome_distribution::{ABOVE_ALL, thresholds};
 
 /// The distribution of the initial state.
 ///
-/// A guide table tells near which state a draw is found: the draws are divided into as many equal parts as there are
-/// states, or a few more, and the search begins at the first state of the draw's part. It then takes one more step on
-/// average, at most (L. Devroye, "Non-Uniform Random Variate Generation", 1986, section III.2.4).
+/// A guide table shortens the search: the range of draws is divided into equal parts, as many as there are states or a
+/// few more, and the search begins at the first state of the draw's part. On average it then takes at most one more
+/// step (L. Devroye, "Non-Uniform Random Variate Generation", 1986, section III.2.4).
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct InitialStates {
     probabilities: Arc<[f64]>,
     thresholds: Arc<[u64]>,
-    /// The state of the first draw of each part; their number is a power of two.
+    /// The state of the first draw of each part; the number of parts is a power of two.
     first_states: Arc<[u32]>,
-    /// By how many bits a draw is shifted for its part.
+    /// The right shift, in bits, that turns a draw into the index of its part.
     shift: u32,
 }
 
@@ -43,7 +43,8 @@ impl InitialStates {
         &self.probabilities
     }
 
-    /// The state that a draw of 53 bits selects. A draw at or above all thresholds selects the first one, as in Gymnasium.
+    /// The state that a draw of 53 bits selects. A draw at or above all thresholds selects the first state, as in
+    /// Gymnasium.
     #[inline]
     pub(super) fn sample(&self, u53: u64) -> u32 {
         let mut state = self.first_states[(u53 >> self.shift) as usize];

@@ -7,20 +7,21 @@ use std::sync::Arc;
 use super::outcome_distribution::ABOVE_ALL;
 use crate::envs::Step;
 
-/// Gymnasium's tables need no more thresholds, as an action fails with the same probability everywhere.
+/// Gymnasium's tables need no more, because an action fails with the same probability everywhere.
 const MAX_THRESHOLDS: usize = 3;
 /// The steps of larger tables do not fit into the caches, where storing them twice would cost more than it gains.
 const MAX_STEPS: usize = 1 << 16;
 
 /// The thresholds of all state-action pairs, and each pair's step for each interval between them.
 ///
-/// The interval that a draw falls into does not depend on the pair, so that the processor finds it before it knows the
-/// action. Then the next state is one load away, where it would otherwise wait for the thresholds of the pair first.
+/// The interval that a draw falls into does not depend on the pair, so the processor can find it before it knows the
+/// action. The next state is then a single load away; otherwise that load would first wait for the thresholds of the
+/// pair.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct IntervalSteps {
     /// In ascending order, padded with [`ABOVE_ALL`].
     thresholds: [u64; MAX_THRESHOLDS],
-    /// The steps of all pairs for draws below the first threshold, then those of all pairs for the next interval, and so on.
+    /// The steps of all pairs for draws below the first threshold, then those for the next interval, and so on.
     steps: Arc<[Step<u32>]>,
     num_pairs: usize,
 }

@@ -12,7 +12,7 @@ const B: u32 = 1;
 const END: u32 = 2;
 /// The number of states.
 pub const STATES: u32 = 3;
-/// The action right in A. Every other action is left, because A has as many actions as B.
+/// The action "right" in A. Every other action is "left", because A has as many actions as B.
 const RIGHT: usize = 0;
 
 /// The parameters of the example.
@@ -28,7 +28,7 @@ pub struct MaximizationBias {
 
 impl MaximizationBias {
     /// A normally distributed reward, from two draws u, v of `random()`: √(-2 ln(1 - u)) cos 2πv (G. Box and M. Muller,
-    /// 1958). Any generator can draw it; `NumPy`'s `normal` uses another method and gives other numbers.
+    /// 1958). It works with any generator. `NumPy`'s `normal` uses another method and returns other numbers.
     fn reward(&self, rng: &mut impl Rng) -> f64 {
         let (u, v) = (rng.random(), rng.random());
         self.mean + self.standard_deviation * ((-2.0 * (1.0 - u).ln()).sqrt() * (std::f64::consts::TAU * v).cos())

@@ -1,4 +1,4 @@
-//! Finite Markov decision processes: transition tables, and examples of the book.
+//! Finite Markov decision processes: transition tables, and examples from Sutton & Barto.
 
 mod initial_states;
 mod interval_steps;

@@ -19,7 +19,7 @@ pub struct Outcome {
     pub terminated: bool,
 }
 
-/// Why a transition table is invalid, and where, in Python's notation.
+/// The error for an invalid transition table: the reason and the location, in Python's notation.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct InvalidMdp(pub(in crate::envs) String);
 

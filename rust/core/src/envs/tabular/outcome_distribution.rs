@@ -12,8 +12,8 @@ pub(super) const ABOVE_ALL: u64 = TWO_POW_53 as u64;
 /// The distribution over the outcomes of a state and an action.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct OutcomeDistribution {
-    /// The thresholds if there are few, padded with `ABOVE_ALL`. The next state waits for them, so they are stored here
-    /// rather than behind an index.
+    /// The thresholds if there are few, padded with `ABOVE_ALL`. The next state depends on them, so they are stored
+    /// here rather than behind an index.
     inline_thresholds: [u64; LINEAR_SCAN_MAX],
     /// The index of the first outcome.
     first: u32,
@@ -28,13 +28,13 @@ impl OutcomeDistribution {
         Self { inline_thresholds, first: first as u32, len: thresholds.len() as u32 }
     }
 
-    /// The indices of its outcomes among all outcomes of the table.
+    /// The indices of this distribution's outcomes among all outcomes of the table.
     pub(super) fn range(&self) -> Range<usize> {
         self.first as usize..self.first as usize + self.len as usize
     }
 
-    /// The index of the outcome that the draw `u53` selects, among all outcomes of the table, whose `thresholds` these
-    /// are. A draw at or above all thresholds selects the first outcome, as in Gymnasium.
+    /// The index, among all outcomes of the table, of the outcome that the draw `u53` selects. `thresholds` are those
+    /// of the whole table. A draw at or above all thresholds selects the first outcome, as in Gymnasium.
     #[expect(clippy::inline_always, reason = "a call per step would take a fifth of its time")]
     #[inline(always)]
     pub(super) fn sample(&self, thresholds: &[u64], u53: u64) -> usize {
@@ -50,8 +50,8 @@ impl OutcomeDistribution {
 }
 
 /// The threshold of each outcome, in units of 2⁻⁵³ like `Rng::random_u53`: a draw below it selects this outcome or an
-/// earlier one. It is the cumulative probability, summed from left to right as `np.cumsum` does. A running maximum keeps
-/// the thresholds ascending even if the sums are not.
+/// earlier one. The threshold is the cumulative probability, summed from left to right as `np.cumsum` does. A running
+/// maximum keeps the thresholds ascending even if the sums are not.
 pub(super) fn thresholds(probabilities: &[f64]) -> Vec<u64> {
     let (mut sum, mut largest) = (0.0, f64::NEG_INFINITY);
     let thresholds = probabilities.iter().map(|probability| {

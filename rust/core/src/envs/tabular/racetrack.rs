@@ -1,20 +1,20 @@
 //! The racetrack (Sutton & Barto, Exercise 5.12 and Figure 5.5).
 //!
-//! A car drives over a grid. Its velocity has two components from 0 to 4 cells per step, upwards and to the right, which an
-//! action changes by -1, 0 or +1 each. The reward is -1 per step until the car crosses the finish line. A car that leaves
-//! the track goes back to a random cell of the starting line, with a velocity of zero.
+//! A car drives over a grid. Its velocity has two components, upwards and to the right, each from 0 to 4 cells per
+//! step. An action changes each of them by -1, 0 or +1. The reward is -1 per step until the car crosses the finish
+//! line. A car that leaves the track returns to a random cell of the starting line, with a velocity of zero.
 
 use std::sync::Arc;
 
 use crate::envs::{Env, Step};
 use crate::random::Rng;
 
-/// The velocities of a component.
+/// The number of velocities per component.
 const VELOCITIES: u32 = 5;
-/// The accelerations of both components: -1, 0 or +1 each.
+/// The number of actions: an acceleration of -1, 0 or +1 for each component.
 const NUM_ACTIONS: usize = 9;
 
-/// What a cell is.
+/// The kind of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ground {
     /// Not on the track.
@@ -40,7 +40,8 @@ pub struct Racetrack {
 }
 
 impl Racetrack {
-    /// A track of these cells, row by row from the top; `None` if they are no rectangle, or without a starting line.
+    /// A track of these cells, row by row from the top; `None` if they do not form a rectangle or have no starting
+    /// line.
     pub fn new(ground: &[Ground], columns: u32, failure: f64) -> Option<Self> {
         let starts: Vec<u32> =
             (0..).zip(ground).filter(|(_, cell)| **cell == Ground::Start).map(|(at, _)| at).collect();
@@ -60,13 +61,13 @@ impl Racetrack {
         self.starts[rng.integers(self.starts.len() as u32) as usize] * VELOCITIES * VELOCITIES
     }
 
-    /// The cell that the car reaches from a cell with these velocities; `None` where it leaves the track. The path is a
-    /// straight line, looked at once for each cell of its longer side, rounded to the nearest cell.
+    /// The cell that the car reaches from a cell with these velocities; `None` if the car leaves the track. The path is
+    /// a straight line, sampled once per cell of its longer side and rounded to the nearest cell.
     fn cell_reached(&self, cell: u32, up: u32, right: u32) -> Option<(u32, bool)> {
         let (row, column, steps) = (cell / self.columns, cell % self.columns, up.max(right));
         let mut reached = cell;
         for step in 1..=steps {
-            // Halves are rounded up.
+            // Halves round up.
             let along = |velocity: u32| (2 * step * velocity + steps) / (2 * steps);
             let (row, column) = (row.checked_sub(along(up))?, column + along(right));
             if column >= self.columns {
@@ -99,17 +100,17 @@ impl Env for Racetrack {
         self.start(rng)
     }
 
-    /// Draws one `random()`, and one `integers` if the car leaves the track.
+    /// Draws one `random()`, then one `integers` if the car leaves the track.
     fn step(&self, state: u32, action: usize, rng: &mut impl Rng) -> Step<u32> {
         assert!(action < NUM_ACTIONS, "action must be less than {NUM_ACTIONS}, got {action}");
         let (cell, up, right) =
             (state / (VELOCITIES * VELOCITIES), state / VELOCITIES % VELOCITIES, state % VELOCITIES);
         let fails = rng.random() < self.failure;
-        // An acceleration of -1 is 0, of +1 is 2.
+        // The actions encode the accelerations -1, 0 and +1 as 0, 1 and 2.
         let changed =
             |velocity: u32, acceleration: usize| (velocity + acceleration as u32).saturating_sub(1).min(VELOCITIES - 1);
         let wanted = if fails { (up, right) } else { (changed(up, action / 3), changed(right, action % 3)) };
-        // The car stands still on the starting line only.
+        // The velocity may be zero only on the starting line.
         let stands = wanted == (0, 0) && self.ground[cell as usize] != Ground::Start;
         let (up, right) = if stands { (up, right) } else { wanted };
         let (state, terminated) = match self.cell_reached(cell, up, right) {
@@ -141,7 +142,7 @@ mod tests {
         let (track, mut rng) = (corridor(), Pcg64::new(&SeedSequence::new(&[0])));
         let start = track.reset(&mut rng);
         assert_eq!(start, 4 * 25);
-        // Upwards by 1, by 2, and by 3, of which one cell is left.
+        // Up by 1, then by 2, then by 3, where only one cell is left.
         let first = track.step(start, 7, &mut rng);
         let second = track.step(first.state, 7, &mut rng);
         assert_eq!((first.state, second.state), (3 * 25 + 5, 25 + 10));

@@ -1,7 +1,8 @@
 //! The short corridor with switched actions (Sutton & Barto, Example 13.1).
 //!
-//! Three states lie in a row, and the goal is to the right of them. Right and left lead there as they say, except in the
-//! second state, where they are switched; left in the first state does nothing. All states look alike.
+//! Three states lie in a row, and the goal is to the right of them. The actions right and left move as named, except in
+//! the second state, where they are switched; left in the first state does nothing. All states have the same
+//! observation.
 
 use crate::envs::{Env, Step};
 use crate::random::Rng;
@@ -10,10 +11,10 @@ use crate::random::Rng;
 const SWITCHED: u32 = 1;
 /// The terminal state.
 const GOAL: u32 = 3;
-/// The action right; the other one is left.
+/// The action "right"; the other is "left".
 const RIGHT: usize = 1;
 
-/// The corridor, which has no parameters. Every step costs 1.
+/// The corridor, which has no parameters. The reward of every step is -1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ShortCorridor;
 
@@ -39,7 +40,7 @@ impl Env for ShortCorridor {
         Step { state, reward: -1.0, terminated: state == GOAL }
     }
 
-    /// The same for every state.
+    /// The observation 0, for every state.
     #[inline]
     fn observe(&self, _state: &u32) -> u32 {
         0

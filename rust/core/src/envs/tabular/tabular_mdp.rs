@@ -11,22 +11,22 @@ use crate::envs::{Env, Step, TransitionProbability};
 use crate::random::Rng;
 
 /// A Markov decision process with Gymnasium's transition table `P`: `P[state][action]` lists the possible outcomes
-/// (probability, next state, reward, terminated). Each reset and each step draws exactly one `random()`, deterministic
-/// steps too, as in Gymnasium.
+/// (probability, next state, reward, terminated). Each reset and each step, even a deterministic one, draws exactly one
+/// `random()`, as in Gymnasium.
 ///
-/// A clone shares the table, so that many runs need it only once.
+/// A clone shares the table, so many runs need only one copy.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TabularMdp {
     num_actions: usize,
     initial_states: InitialStates,
-    /// The distribution of each state-action pair. Empty if every pair has a single outcome, which then has the index of
-    /// the pair.
+    /// The distribution of each state-action pair. Empty if every pair has a single outcome; the index of the outcome
+    /// is then that of the pair.
     distributions: Arc<[OutcomeDistribution]>,
     /// The threshold, step and probability of each outcome. Steps use the thresholds, planning the probabilities.
     thresholds: Arc<[u64]>,
     steps: Arc<[Step<u32>]>,
     probabilities: Arc<[f64]>,
-    /// The steps again, where there are several outcomes but few different thresholds.
+    /// The steps by interval, if there are several outcomes per pair but few different thresholds.
     interval_steps: Option<IntervalSteps>,
 }
 
@@ -35,8 +35,8 @@ impl TabularMdp {
     /// for each state-action pair, the actions of state 0 first.
     ///
     /// # Errors
-    /// A probability outside [0, 1], probabilities that do not sum to 1, a next state outside the table, a reward that is
-    /// not finite, or a number of pairs that is not `num_actions` per state. The error names the place.
+    /// A probability outside [0, 1], probabilities that do not sum to 1, a next state outside the table, a reward that
+    /// is not finite, or a number of pairs other than `num_actions` per state. The error names the location.
     pub fn new(num_actions: usize, initial_distribution: &[f64], pairs: &[Vec<Outcome>]) -> Result<Self, InvalidMdp> {
         let invalid = |message: String| Err(InvalidMdp(message));
         let (num_states, num_outcomes) = (initial_distribution.len(), pairs.iter().map(Vec::len).sum::<usize>());
@@ -284,7 +284,7 @@ mod tests {
             let rest = vec![vec![outcome(1.0, 0)]; probabilities.len() - 1];
             let table = TabularMdp::new(1, &probabilities, &[vec![outcomes], rest].concat()).expect("a valid table");
             let sum = at_a_sum.get(&sums);
-            // Draws are multiples of 2⁻⁵³. Those next to a sum matter most.
+            // Draws are multiples of 2⁻⁵³. Those next to a cumulative sum matter most.
             for random in [place, *sum, sum - 2.0 / TWO_POW_53, 1.0 - 1.0 / TWO_POW_53] {
                 let random = ((random * TWO_POW_53).round() / TWO_POW_53).clamp(0.0, 1.0 - 1.0 / TWO_POW_53);
                 let expected = sums.iter().position(|&sum| sum > random).unwrap_or(0) as u32;

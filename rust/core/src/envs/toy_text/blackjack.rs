@@ -9,10 +9,10 @@ use crate::random::Rng;
 pub const DECK: [u32; 13] = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 10, 10, 10];
 /// The dealer hits below this sum.
 pub const DEALER_STICKS: u32 = 17;
-/// The suits and face cards that the picture of the dealer's card is drawn from.
+/// The number of suits, from which the picture of the dealer's card is drawn.
 const SUITS: u32 = 4;
 const FACES: u32 = 3;
-/// Stick or hit.
+/// The number of actions: stick or hit.
 const NUM_ACTIONS: usize = 2;
 
 /// The rules, with Gymnasium's names.
@@ -20,7 +20,8 @@ const NUM_ACTIONS: usize = 2;
 pub struct Blackjack {
     /// Whether a win with a natural (an ace and a ten) pays 1.5.
     pub natural: bool,
-    /// Whether the book's rules apply: a natural wins 1 unless the dealer has one too. `natural` is then ignored.
+    /// Whether the rules of Sutton & Barto apply: a natural wins 1 unless the dealer has one too. `natural` is then
+    /// ignored.
     pub sab: bool,
 }
 
@@ -89,7 +90,7 @@ fn draw_card(rng: &mut impl Rng) -> u32 {
 impl Env for Blackjack {
     type State = BlackjackState;
     type Action = usize;
-    /// The player's sum, the dealer's face-up card, whether the player has a usable ace.
+    /// The player's sum, the dealer's face-up card, and whether the player has a usable ace.
     type Observation = [u32; 3];
 
     #[inline]

@@ -9,10 +9,11 @@ const GOAL: i64 = ROWS * COLUMNS - 1;
 /// The rows and the columns that an action moves by: up, right, down, left.
 const MOVES: [(i64, i64); 4] = [(-1, 0), (0, 1), (1, 0), (0, -1)];
 
-/// The table as Gymnasium's constructor makes it. On slippery ground an action and the two beside it are equally likely.
+/// The table as Gymnasium's constructor builds it. On slippery ground the chosen direction and the two perpendicular to
+/// it are equally likely.
 ///
 /// # Errors
-/// Never; as [`TabularMdp::new`].
+/// None in practice; the type is that of [`TabularMdp::new`].
 pub fn cliff_walking(is_slippery: bool) -> Result<TabularMdp, InvalidMdp> {
     let initial: Vec<f64> = (0..ROWS * COLUMNS).map(|state| f64::from(u8::from(state == FIRST_STATE))).collect();
     let turns: &[usize] = if is_slippery { &[3, 0, 1] } else { &[0] };

@@ -5,23 +5,25 @@ use crate::envs::tabular::{InvalidMdp, Outcome, TabularMdp};
 /// The rows and the columns that an action moves by: left, down, right, up.
 const MOVES: [(isize, isize); 4] = [(0, -1), (1, 0), (0, 1), (-1, 0)];
 
-/// The reward of a step by where it leads to.
+/// The reward of a step, by the kind of cell it leads to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LakeRewards {
-    /// To the goal.
+    /// The reward for reaching the goal.
     pub goal: f64,
-    /// Into a hole.
+    /// The reward for falling into a hole.
     pub hole: f64,
-    /// To frozen ground, the start included.
+    /// The reward for a step onto frozen ground, including the start.
     pub frozen: f64,
 }
 
-/// The table as Gymnasium's constructor makes it. The lines of the map hold `S` where an episode begins, `G` for the goal
-/// and `H` for a hole; everything else is frozen. With a `success_rate` the ice is slippery: an action has its own direction
-/// with this probability, and each of the two beside it with half of the rest.
+/// The table as Gymnasium's constructor builds it. In the lines of the map, `S` marks an initial state, `G` the goal
+/// and `H` a hole; everything else is frozen. With a `success_rate` the ice is slippery: an action moves in its own
+/// direction with this probability, and in each of the two perpendicular directions with half of the remaining
+/// probability.
 ///
 /// # Errors
-/// For lines of different lengths; as [`TabularMdp::new`], for a map without a start or a rate outside [0, 1].
+/// If the lines have different lengths; and those of [`TabularMdp::new`], for a map without a start or a rate outside
+/// [0, 1].
 pub fn frozen_lake(
     lines: &[Vec<u8>],
     success_rate: Option<f64>,

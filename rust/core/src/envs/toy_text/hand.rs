@@ -8,7 +8,7 @@ const ACE: u32 = 1;
 /// The highest sum that is not a bust.
 const MAX_SUM: u32 = 21;
 
-/// The cards of one side, reduced to what the rules depend on.
+/// The cards of one side, reduced to the quantities that matter to the rules.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Hand {
     /// The sum, with aces as 1.
@@ -59,7 +59,7 @@ impl Hand {
         if self.is_bust() { 0 } else { self.sum() }
     }
 
-    /// Whether the hand is an ace and a ten only.
+    /// Whether the hand is exactly an ace and a ten.
     #[inline]
     pub fn is_natural(&self) -> bool {
         self.cards == 2 && self.ace && self.total == ACE + TEN

@@ -1,5 +1,5 @@
-//! Of `gymnasium.envs.toy_text`: the environments that a transition table does not describe completely, and the tables
-//! that take Gymnasium long to make.
+//! The environments of `gymnasium.envs.toy_text` that a transition table does not describe completely, and the tables
+//! that Gymnasium builds slowly.
 
 mod blackjack;
 mod cliff_walking;

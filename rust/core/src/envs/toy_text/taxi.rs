@@ -12,7 +12,7 @@ const NUM_PASSENGER_LOCATIONS: u32 = 5;
 /// The passenger location "in the taxi".
 const IN_TAXI: u32 = 4;
 
-/// Gymnasium's transition table, dry or rainy, and the fickle passenger, whom the table does not describe.
+/// Gymnasium's transition table, dry or rainy, with the fickle passenger that the table does not describe.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Taxi {
     /// The transition table `P`.
@@ -31,7 +31,7 @@ pub struct TaxiState {
 }
 
 impl Taxi {
-    /// Whether a step from state `before` to state `after` moved the taxi with the passenger in it.
+    /// Whether a step from state `before` to state `after` moved the taxi while the passenger was in it.
     #[inline]
     pub fn moves_passenger(before: u32, after: u32) -> bool {
         let states_per_square = NUM_DESTINATIONS * NUM_PASSENGER_LOCATIONS;

@@ -4,15 +4,16 @@ use crate::envs::tabular::{InvalidMdp, Outcome, TabularMdp};
 
 /// The number of rows and of columns.
 const SIZE: i64 = 5;
-/// The stands, where passengers wait and are brought to: rows and columns.
+/// The stands, the possible locations of the passenger and the destination: row and column.
 const STANDS: [(i64, i64); 4] = [(0, 0), (0, 4), (4, 0), (4, 3)];
 /// The passenger's location once they are in the taxi.
 const IN_TAXI: usize = STANDS.len();
-/// Gymnasium's `MAP`: a border around the squares, and between those of a row `:` for a passage or `|` for a wall.
+/// Gymnasium's `MAP`: a border around the squares, and between two squares of a row `:` for a passage or `|` for a
+/// wall.
 pub type TaxiMap = [[u8; 2 * SIZE as usize + 1]; SIZE as usize + 2];
 /// The rows and the columns that an action moves by: south, north, east, west.
 const MOVES: [(i64, i64); 4] = [(1, 0), (-1, 0), (0, 1), (0, -1)];
-/// To the left and to the right of each of these directions.
+/// The indices of the directions to the left and right of each move.
 const SIDES: [[usize; 2]; 4] = [[2, 3], [3, 2], [1, 0], [0, 1]];
 const PICK_UP: usize = 4;
 const NUM_ACTIONS: usize = 6;
@@ -33,11 +34,11 @@ impl Ride {
     }
 }
 
-/// The table as Gymnasium's constructor makes it with a map. In rain, a move succeeds with `rainy_probability`, and else drifts to one
-/// of its sides; `None` means dry weather.
+/// The table as Gymnasium's constructor builds it from a map. In rain, a move succeeds with `rainy_probability` and
+/// otherwise drifts to one of its sides; `None` means dry weather.
 ///
 /// # Errors
-/// If the probability does not lie in [0, 1]; as [`TabularMdp::new`].
+/// If the probability does not lie in [0, 1]; and those of [`TabularMdp::new`].
 pub fn taxi_table(map: &TaxiMap, rainy_probability: Option<f64>) -> Result<TabularMdp, InvalidMdp> {
     let (mut initial, mut pairs) = (Vec::new(), Vec::new());
     for row in 0..SIZE {
@@ -77,7 +78,7 @@ fn travel(map: &TaxiMap, ride: Ride, direction: usize, rainy_probability: Option
     vec![to(probability, ahead), to(lateral, aside[0]), to(lateral, aside[1])]
 }
 
-/// Whether neither a wall nor the end of the map is ahead.
+/// Whether neither a wall nor the edge of the map is ahead.
 fn is_free(map: &TaxiMap, (row, column): (i64, i64), direction: usize) -> bool {
     match MOVES[direction] {
         (0, right) => has_passage(map, row, if right > 0 { column } else { column - 1 }),
@@ -85,19 +86,19 @@ fn is_free(map: &TaxiMap, (row, column): (i64, i64), direction: usize) -> bool {
     }
 }
 
-/// Whether there is a passage between a square and the one on its right. The first square has one on its left in column -1.
+/// Whether there is a passage between a square and the one to its right. Column -1 is the one left of the first square.
 fn has_passage(map: &TaxiMap, row: i64, column: i64) -> bool {
     map[row as usize + 1][(2 * column + 2) as usize] == b':'
 }
 
-/// The next square in a direction; at the end of the map the same one.
+/// The next square in a direction; at the edge of the map the same square.
 fn moved((row, column): (i64, i64), direction: usize) -> (i64, i64) {
     let (down, right) = MOVES[direction];
     ((row + down).clamp(0, SIZE - 1), (column + right).clamp(0, SIZE - 1))
 }
 
-/// Where the taxi drifts to. Gymnasium looks for a wall beside the square that the taxi would come to: on its left for one
-/// that drifts to the east, on its right for one that drifts to the west.
+/// The square that the taxi drifts to. Gymnasium looks for a wall next to the square that the taxi would reach: on the
+/// left of that square if the taxi drifts east, on the right if it drifts west.
 fn drifted(map: &TaxiMap, square: (i64, i64), direction: usize) -> (i64, i64) {
     let (row, column) = moved(square, direction);
     let blocked = match MOVES[direction] {

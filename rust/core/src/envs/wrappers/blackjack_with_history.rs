@@ -5,7 +5,7 @@ use crate::envs::toy_text::{Blackjack, BlackjackState};
 use crate::envs::{Env, Step};
 use crate::random::Rng;
 
-/// More draws than any game makes: 21 aces and the dealer's hand.
+/// An upper bound on the draws of a game: 21 aces and the dealer's hand.
 const MAX_DRAWS: usize = 48;
 /// The bits of one draw, and the draws per word.
 const BITS: usize = 4;
