@@ -6,16 +6,16 @@ use super::{BatchFeatures, Features, OutOfBounds};
 use crate::numeric::Float;
 use crate::simd::{F32s, F64s, Mask, Simd, U64s};
 
-/// Up to this many edges are compared one by one, without a branch. More are binary searched.
+/// Up to this many edges are compared one by one, without a branch. Beyond that, a binary search is used.
 const LINEAR_SCAN_MAX: usize = 64;
 
-/// The inner edges of the bins of one component, in ascending order. Edges in float32 are stored as f64, which changes
-/// no comparison.
+/// The inner edges of the bins of one component, in ascending order. Float32 edges are stored as f64, which does not
+/// change any comparison.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Edges(Vec<f64>);
 
 impl Edges {
-    /// Bins of any width.
+    /// Bins between the given edges.
     ///
     /// # Panics
     /// If the edges are not ascending, or one is NaN.

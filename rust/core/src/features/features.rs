@@ -17,17 +17,18 @@ pub trait Features<O: ?Sized> {
     /// The active rows, in the order in which a learner sums their values.
     type Active: ActiveRows;
 
-    /// Whether the active rows are computed in vector registers, so that code which finds them is worth compiling for wide
-    /// ones too. [`active_rows`](Self::active_rows) is then always inlined.
+    /// Whether the active rows are computed in vector registers, so that code that computes them is worth compiling for
+    /// wide registers too. [`active_rows`](Self::active_rows) is then always inlined.
     const USES_VECTORS: bool = false;
 
     /// The active rows of an observation.
     ///
     /// # Errors
-    /// The observation has no row. A row index never wraps around, and is clamped only where the features say so.
+    /// The observation has no row. A row index never wraps around, and is clamped only by features that document it.
     fn active_rows(&self, observation: &O) -> Result<Self::Active, OutOfBounds>;
 
-    /// [`active_rows`](Self::active_rows), which writes the rows to `active`. Many rows are then copied once.
+    /// Like [`active_rows`](Self::active_rows), but writes the rows to `active`, so that many rows are copied only
+    /// once.
     ///
     /// # Errors
     /// As for `active_rows`.
@@ -49,11 +50,11 @@ pub trait Features<O: ?Sized> {
 
 /// Features of `M` components that find the active rows of several observations at once.
 pub trait BatchFeatures<const M: usize>: Features<[f32; M]> + Clone + PartialEq {
-    /// The active rows as a lane holds them.
+    /// The active rows in the representation of a lane.
     type ActiveInLane: LaneRows<Active = Self::Active>;
 
-    /// Writes the active rows of the observation in each lane, given component by component. Returns `false` if one of them
-    /// has no row; the rows are then of no use.
+    /// Writes the active rows of the observation in each lane, given component by component. Returns `false` if an
+    /// observation has no row; the rows written are then unspecified.
     #[must_use]
     fn write_active_rows_batch<S: Simd, const K: usize>(
         &self,
@@ -68,7 +69,7 @@ pub trait BatchFeatures<const M: usize>: Features<[f32; M]> + Clone + PartialEq 
 pub struct OutOfBounds {
     /// The index of the component of the observation.
     pub axis: usize,
-    /// Its value.
+    /// The value of that component.
     pub value: f64,
 }
 

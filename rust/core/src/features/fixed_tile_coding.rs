@@ -9,8 +9,8 @@ use super::{BatchFeatures, Features, OutOfBounds, TileCoding};
 use crate::numeric::Float;
 use crate::simd::{F32s, Simd};
 
-/// The active tiles, one per tiling. Their alignment is that of the vector registers in which they are computed and copied:
-/// numbers that are read across the words in which they were written would stall the processor.
+/// The active tiles, one per tiling. They are aligned like the vector registers in which they are computed and copied:
+/// reading numbers across the words in which they were written would stall the processor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(align(16))]
 pub struct FixedTiles<const N: usize>([u32; N]);
@@ -50,7 +50,7 @@ pub struct FixedTileCoding<T, const D: usize, const N: usize> {
     axes: [FixedAxis<N>; D],
     /// The first row of each tiling.
     first_rows: [u32; N],
-    /// What finds the rows where there is no code of its own for it here: hashing, and boxes of almost no width.
+    /// Finds the rows in the cases without specialized code: hashing, and boxes of almost no width.
     general: Option<Box<TileCoding<T, N>>>,
     len: usize,
 }
@@ -62,15 +62,15 @@ struct FixedAxis<const N: usize> {
     high: f64,
     /// A part is the `N`-th part of a tile.
     parts_per_unit: f64,
-    /// The number of rows from one tile to the next.
+    /// The distance in rows between neighbouring tiles.
     stride: u32,
-    /// The offset of each tiling, in parts. Not a constant: the compiler would then leave out the sum where it is 0, and
-    /// add one by one the others, which are a vector.
+    /// The offset of each tiling, in parts. They are not constants: the compiler would then omit the zero and add the
+    /// others one by one instead of as a vector.
     offsets: [u32; N],
 }
 
 impl<T: Float, const D: usize, const N: usize> FixedTileCoding<T, D, N> {
-    /// The same rows as those of `tiles`; `None` if it has another number of tilings or of components.
+    /// A specialized version of `tiles`, with the same rows; `None` if its number of tilings or components differs.
     pub fn new(tiles: &TileCoding<T, N>) -> Option<Self> {
         let axes: &[TiledAxis<N>; D] = tiles.axes().try_into().ok()?;
         if tiles.tilings() != N {
@@ -90,7 +90,7 @@ impl<T: Float, const D: usize, const N: usize> FixedTileCoding<T, D, N> {
             (axis.stride, stride) = (stride, axis.stride.wrapping_mul(stride));
         }
         let first_rows = std::array::from_fn(|tiling| (tiling as u32).wrapping_mul(stride));
-        // Otherwise a product with the number of parts is the product with the number of tiles, scaled.
+        // Only then is a product with the number of parts the scaled product with the number of tiles.
         let scales = N.is_power_of_two() && fixed.iter().all(|axis| axis.parts_per_unit.is_finite());
         let general = (tiles.is_hashed() || !scales).then(|| Box::new(tiles.clone()));
         Some(Self { axes: fixed, first_rows, general, len })
@@ -106,7 +106,7 @@ impl<T: Float, const D: usize, const N: usize> FixedTileCoding<T, D, N> {
         Ok(())
     }
 
-    /// The error of an observation of which a component is NaN.
+    /// The error of an observation with a NaN component.
     #[cold]
     fn out_of_bounds(values: [f64; D]) -> OutOfBounds {
         let axis = values.iter().position(|value| value.is_nan()).unwrap_or(0);
@@ -132,7 +132,7 @@ impl<T: Float, const D: usize, const N: usize> Features<[T; D]> for FixedTileCod
             return Self::write_general_rows(tiles, observation, active);
         }
         let values: [f64; D] = std::array::from_fn(|index| observation[index].into());
-        // Without a branch for each component.
+        // Avoids a branch for each component.
         if values.iter().fold(false, |any, value| any | value.is_nan()) {
             return Err(Self::out_of_bounds(values));
         }
@@ -181,7 +181,7 @@ mod tests {
 
     use super::*;
 
-    /// Compares the rows with those of tile coding in general.
+    /// Compares the rows with those of the general tile coding.
     fn check<const D: usize, const N: usize>(
         low: [f64; D],
         width: [f64; D],
@@ -193,7 +193,7 @@ mod tests {
         let general = TileCoding::<f64, N>::new(&low, &high, &tiles, N as u32);
         let general = if hashed { general.hashed(1000) } else { general };
         let fixed = FixedTileCoding::<f64, D, N>::new(&general).expect("the numbers agree");
-        // Part of a box's width away from its lower bound, so that all tiles are met.
+        // Positions are relative to the box, so that all tiles are reached.
         let observation = std::array::from_fn(|axis| low[axis] + width[axis] * observation[axis]);
         let rows = general.active_rows(&observation).map(|active| active.as_ref().to_vec());
         assert_eq!(fixed.active_rows(&observation).map(|active| active.0.to_vec()), rows);

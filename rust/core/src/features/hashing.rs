@@ -15,8 +15,8 @@ impl HashTable {
     }
 }
 
-/// Mixes a number into a hash: one step of `SplitMix64` from their sum (G. Steele, D. Lea and C. Flood, "Fast splittable
-/// pseudorandom number generators", 2014, with the constants of S. Vigna's version). The first hash is 0.
+/// Mixes a number into a hash: one step of `SplitMix64` applied to their sum (G. Steele, D. Lea and C. Flood, "Fast
+/// splittable pseudorandom number generators", 2014, with the constants of S. Vigna's version). The first hash is 0.
 #[inline]
 pub(super) fn mix(hash: u64, number: u32) -> u64 {
     let mut hash = hash.wrapping_add(u64::from(number)).wrapping_add(0x9E37_79B9_7F4A_7C15);

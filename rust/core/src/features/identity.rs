@@ -2,7 +2,7 @@
 
 use super::{Features, OutOfBounds};
 
-/// One row for each of this many discrete observations: an observation is its own row.
+/// Discrete observations as row indices; the field is their number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Identity(pub u32);
 

@@ -1,22 +1,21 @@
-//! The active rows of an observation as a batch holds them.
+//! The active rows of an observation in the representation of a batch.
 
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
 use super::{ActiveRows, FixedTiles};
 
-/// The active rows of one lane of a batch. A row alone is held in 64 bits, like everything else that a vector register
-/// holds one of for each lane.
+/// The active rows of one lane of a batch. A single row is stored in 64 bits, like every other number of a lane.
 pub trait LaneRows: Copy + Default {
-    /// Whether there is always one row.
+    /// Whether an observation always has exactly one row.
     const IS_SINGLE: bool;
 
     /// [`Features::Active`](super::Features::Active).
     type Active: ActiveRows;
 
-    /// The rows that features returned.
+    /// Converts the rows that features returned.
     fn new(active: Self::Active) -> Self;
 
-    /// The rows as features return them.
+    /// The rows in the type that features return.
     fn active(self) -> Self::Active;
 
     /// The first row.

@@ -1,4 +1,4 @@
-//! Features: from an observation to the active rows of a Q table.
+//! Features map an observation to the active rows of a Q table.
 
 mod any_grid;
 mod bins;

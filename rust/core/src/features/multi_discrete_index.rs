@@ -2,8 +2,8 @@
 
 use super::{Features, OutOfBounds};
 
-/// One row for each combination of discrete numbers, in C order: `np.ravel_multi_index`. Holds how many values each
-/// number can take.
+/// One row for each combination of discrete numbers, in C order: `np.ravel_multi_index`. The field holds the number of
+/// values that each of them can take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MultiDiscreteIndex<C>(pub C);
 

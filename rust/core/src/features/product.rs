@@ -2,16 +2,16 @@
 
 use super::{ActiveTiles, AnyGrid, Features, MAX_TILINGS, OutOfBounds, TileCoding};
 
-/// How a factor of a [`Product`] finds its rows.
+/// The features of a factor of a [`Product`].
 #[derive(Clone, Debug, PartialEq)]
 pub enum FactorFeatures {
-    /// One component, which is an index below this number.
+    /// One component: an index below this number.
     Index(u32),
-    /// One component, by a grid with arithmetic in f32.
+    /// One component on a grid with arithmetic in f32.
     Single(AnyGrid<f32>),
-    /// One component, by a grid with arithmetic in f64.
+    /// One component on a grid with arithmetic in f64.
     Double(AnyGrid<f64>),
-    /// Any number of components, by tile coding.
+    /// Any number of components, with tile coding.
     TileCoding(TileCoding<f64>),
 }
 
@@ -26,14 +26,14 @@ impl FactorFeatures {
     }
 }
 
-/// Some components of an observation, and how far apart in the table two neighboring rows of theirs are.
+/// Some components of an observation, with their features and their stride in the table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Factor {
     /// The components, by their index in the observation: one, except for tiles.
     pub components: Vec<usize>,
-    /// How their rows are found.
+    /// The features that map them to rows.
     pub features: FactorFeatures,
-    /// By how much the row of the table increases with a row of the factor.
+    /// The distance in the table between two neighbouring rows of the factor.
     pub stride: u32,
 }
 
@@ -45,8 +45,8 @@ pub struct Product {
 }
 
 impl Product {
-    /// The table of these factors; `None` if a row of them would lie outside a table with as many rows as there are
-    /// combinations, or more than one of them is a tile coding.
+    /// The table of these factors; `None` if a row would exceed the number of combinations, or if more than one factor
+    /// is a tile coding.
     pub fn new(factors: Vec<Factor>) -> Option<Self> {
         let mut n_rows = 1_usize;
         let mut last = 0_usize;

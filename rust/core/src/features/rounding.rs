@@ -6,8 +6,8 @@ use super::{BatchFeatures, Features, OutOfBounds};
 use crate::numeric::Float;
 use crate::simd::{F32s, Mask, Simd, U64s};
 
-/// Adding this to a number below 2⁵¹ in magnitude rounds it, half to even, and leaves the integer in the low bits of the
-/// sum. That is faster than a call of `rint` and a conversion.
+/// Adding this to a number below 2⁵¹ in magnitude rounds it, half to even, and leaves the integer in the low bits of
+/// the sum. This is faster than calling `rint` and converting the result.
 const ROUND_TO_INTEGER: f64 = 6_755_399_441_055_744.0; // 1.5 × 2⁵²
 
 /// The cells of one component of the observation, in the dtype `T` of its bounds.
@@ -30,7 +30,8 @@ impl<T: Float> Axis<T> {
         self.size as usize
     }
 
-    /// The cell of a value, if it has one. The subtraction is in `T` and the product in f64, as `NumPy` promotes them.
+    /// The cell of a value, if it has one. The subtraction is in `T` and the product in f64, as in `NumPy`'s type
+    /// promotion.
     #[inline]
     fn cell(&self, value: T) -> Option<u32> {
         let cell = self.rounded(value);
@@ -47,7 +48,7 @@ impl<T: Float> Axis<T> {
 }
 
 /// A grid of rounded cells for observations of dtype `T`: one row per cell, in C order. `A` is an array of axes, or a
-/// `Vec` if their number is known at run time only.
+/// `Vec` if their number is known only at run time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rounding<T, A = Vec<Axis<T>>> {
     axes: A,
@@ -109,7 +110,7 @@ impl<const M: usize> BatchFeatures<M> for Rounding<f32, [Axis<f32>; M]> {
             let sums = (values - axis.low).to_f64s() * axis.scale + ROUND_TO_INTEGER;
             let cells = sums.to_bits() - ROUND_TO_INTEGER.to_bits();
             outside = outside | !cells.less(size);
-            // Rows are below 2³². Out of bounds, the cell may be any integer.
+            // Rows are below 2³². The cell of a value out of bounds may be any integer.
             rows = rows.mul_lower(size) + cells;
         }
         *active = rows.to_array().map(|row| row as usize);

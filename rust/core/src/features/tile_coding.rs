@@ -18,7 +18,7 @@ pub struct ActiveTiles<const M: usize = MAX_TILINGS> {
 }
 
 impl<const M: usize> ActiveTiles<M> {
-    /// The active tiles where all `M` tilings are in use.
+    /// The active tiles if all `M` tilings are used.
     #[inline]
     pub(super) fn rows(self) -> [u32; M] {
         self.rows
@@ -49,7 +49,7 @@ pub(super) struct TiledAxis<const M: usize> {
     pub(super) low: f64,
     pub(super) high: f64,
     pub(super) tiles_per_unit: f64,
-    /// The tiles of a tiling: one more than requested, because its offset moves the first tile across the lower bound.
+    /// The number of tiles: one more than requested, because its offset moves the first tile across the lower bound.
     pub(super) tiles: u32,
     /// The offset of each tiling, in units of a tile divided by the number of tilings.
     pub(super) offsets: [u32; M],
@@ -89,8 +89,8 @@ impl<T: Float, const M: usize> TileCoding<T, M> {
         Self { axes, tilings, hash_table: None, dtype: PhantomData }
     }
 
-    /// The same tilings over a table of `rows` rows, where each tile has the row of its hash. Tiles whose hashes collide
-    /// share a row, so the same row can be active twice.
+    /// The same tilings over a table of `rows` rows, in which the row of each tile is given by its hash. Tiles whose
+    /// hashes collide share a row, so the same row can be active twice.
     ///
     /// # Panics
     /// If `rows` is 0.
@@ -110,7 +110,7 @@ impl<T: Float, const M: usize> TileCoding<T, M> {
         &self.axes
     }
 
-    /// Whether the tiles have the rows of their hashes.
+    /// Whether the rows of tiles are given by their hashes.
     pub(super) fn is_hashed(&self) -> bool {
         self.hash_table.is_some()
     }
