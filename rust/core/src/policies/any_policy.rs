@@ -13,14 +13,14 @@ pub enum AnyPolicy {
     EpsilonGreedy {
         /// The exploration rate ε.
         epsilon: Schedule,
-        /// Which of several greedy actions.
+        /// The rule for ties between greedy actions.
         ties: TieBreaking,
     },
     /// The ε-greedy policy over the available actions only. The value of an unavailable action is -∞.
     MaskedEpsilonGreedy {
         /// The exploration rate ε.
         epsilon: Schedule,
-        /// Which of several greedy actions.
+        /// The rule for ties between greedy actions.
         ties: TieBreaking,
     },
     /// The softmax policy (Sutton & Barto, equation 2.11).
@@ -35,7 +35,7 @@ impl AnyPolicy {
         Self::Softmax(Softmax::new(temperature, num_actions))
     }
 
-    /// [`Policy::choose_in`] for the policies that are not compiled into the learners. `row` is the first active one.
+    /// [`Policy::choose_in`] for the policies that are not compiled into the learners. `row` is the first active row.
     fn choose_otherwise(&mut self, row: u32, values: &[f64], rng: &mut impl Rng) -> usize {
         match self {
             Self::EpsilonGreedy { .. } => self.choose(values, rng),
@@ -99,14 +99,14 @@ impl Policy for AnyPolicy {
     fn probability(&mut self, values: &[f64], action: usize) -> f64 {
         match self {
             Self::EpsilonGreedy { epsilon, ties } => ties.probability(epsilon.value(), values, values.len(), action),
-            // An action that was taken before the mask of its state changed.
+            // The action was taken before the mask of its state changed.
             Self::MaskedEpsilonGreedy { .. } if !is_available(&values[action]) => 0.0,
             Self::MaskedEpsilonGreedy { epsilon, ties } => {
                 let count = values.iter().filter(|&value| is_available(value)).count();
                 ties.probability(epsilon.value(), values, count, action)
             }
             Self::Softmax(softmax) => softmax.probability(values, action),
-            // It has counted its choice since; nothing that needs probabilities is combined with it.
+            // UCB has already counted its choice; no learner that needs probabilities is combined with it.
             Self::Ucb(_) => 1.0,
         }
     }
@@ -130,7 +130,7 @@ impl Policy for AnyPolicy {
     }
 }
 
-/// A random action among those that are available.
+/// A random available action.
 #[inline]
 pub(crate) fn random_available_action(values: &[f64], rng: &mut impl Rng) -> usize {
     random_action(values, is_available, rng)

@@ -7,7 +7,7 @@ use crate::numeric::argmax;
 use crate::random::Rng;
 
 /// The ε-greedy policy (Sutton & Barto, section 2.2): a random action with probability ε, otherwise the greedy action,
-/// the first one if several have the maximal value. ε falls by a constant after every episode.
+/// or the first of several with the maximal value. ε falls by a constant after every episode.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EpsilonGreedy {
     epsilon: f64,
@@ -21,7 +21,7 @@ impl EpsilonGreedy {
         Self { epsilon, min_epsilon, reduction: (epsilon - min_epsilon) / episodes as f64 }
     }
 
-    /// The probability of the greedy action and that of each other one, among so many.
+    /// The probability of the greedy action and that of each other action, for this number of actions.
     #[inline]
     pub(crate) fn probabilities(&self, num_actions: usize) -> (f64, f64) {
         let other = self.epsilon / num_actions as f64;
@@ -49,7 +49,8 @@ impl Policy for EpsilonGreedy {
                 if action == greedy { greedy_probability * value } else { other_probability * value }
             }))
         };
-        // With few actions it is faster to compute the sum for each possible greedy action while the argmax is searched.
+        // With few actions it is faster to compute the sum for each possible greedy action while searching for the
+        // argmax.
         let best = argmax(values);
         (1..values.len()).fold(expected_if_greedy(0), |found, action| {
             select_unpredictable(action == best, expected_if_greedy(action), found)

@@ -1,4 +1,4 @@
-//! Policies: choosing an action by its value.
+//! Policies choose an action by its value.
 
 mod any_policy;
 mod epsilon_greedy;

@@ -8,7 +8,8 @@ pub trait Policy {
     /// Samples an action from π, given the values of all actions.
     fn choose(&mut self, values: &[f64], rng: &mut impl Rng) -> usize;
 
-    /// The same in the state with these active rows, for policies that count what they chose in each state.
+    /// [`choose`](Self::choose) in the state with these active rows, for policies that count their choices in each
+    /// state.
     #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
     #[inline(always)]
     fn choose_in(&mut self, rows: &[u32], values: &[f64], rng: &mut impl Rng) -> usize {
@@ -19,7 +20,7 @@ pub trait Policy {
     /// The expected value Σₐ π(a) Q(a), summed from left to right.
     fn expected_value(&mut self, values: &[f64]) -> f64;
 
-    /// The same in the state with these active rows.
+    /// [`expected_value`](Self::expected_value) in the state with these active rows.
     #[inline]
     fn expected_value_in(&mut self, rows: &[u32], values: &[f64]) -> f64 {
         let _ = rows;
@@ -29,7 +30,7 @@ pub trait Policy {
     /// The probability π(a) of an action, for policies that do not count.
     fn probability(&mut self, values: &[f64], action: usize) -> f64;
 
-    /// Saves or restores what it has counted.
+    /// Saves or restores the counts.
     ///
     /// # Errors
     /// The bytes are damaged.

@@ -5,13 +5,14 @@ use super::{Policy, sum};
 use crate::numeric::maximum;
 use crate::random::Rng;
 
-/// The softmax (Boltzmann) policy over the available actions: π(a) ∝ exp(Q(a) / τ) with the temperature τ (Sutton & Barto, equation 2.11).
+/// The softmax (Boltzmann) policy over the available actions: π(a) ∝ exp(Q(a) / τ) with temperature τ (Sutton & Barto,
+/// equation 2.11).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Softmax {
     temperature: f64,
     /// The values for which π was computed last; NaN before.
     values: Vec<f64>,
-    /// π for them.
+    /// The probabilities π for `values`.
     probabilities: Vec<f64>,
     /// A buffer for the gradient.
     gradient: Vec<f64>,
@@ -26,8 +27,8 @@ impl Softmax {
 
     /// π for these action values, which are shifted by their maximum so that `exp` cannot overflow.
     ///
-    /// A learner of preferences often asks for π in the state in which it has just acted, with the same values.
-    /// Comparing them takes less time than one exponential.
+    /// A policy-gradient learner often needs π in the state in which it has just acted, with the same values. Comparing
+    /// the values is faster than a single exponential.
     fn probabilities(&mut self, values: &[f64]) -> &[f64] {
         if self.values == values {
             return &self.probabilities;
@@ -39,8 +40,8 @@ impl Softmax {
         }
         divide(&mut self.probabilities, self.temperature);
         for probability in &mut self.probabilities {
-            // exp(0), of the largest value, is exactly 1 on every platform. The compiler knows that too: it would call `exp`
-            // after a comparison of floats.
+            // The largest value gives exp(0), which is exactly 1 on every platform. The bits are compared because the
+            // compiler would optimize a comparison of floats away and call `exp`.
             *probability = if probability.to_bits() == 0 { 1.0 } else { probability.exp() };
         }
         let total = sum(self.probabilities.iter().copied());
@@ -61,7 +62,7 @@ impl Softmax {
     }
 }
 
-/// Divides numbers by the same one. A division by 1 changes nothing, but takes time.
+/// Divides all numbers by the same divisor, and skips a division by 1 to save time.
 fn divide(numbers: &mut [f64], divisor: f64) {
     if divisor != 1.0 {
         for number in numbers {

@@ -6,12 +6,12 @@ use super::sum;
 use crate::numeric::argmax;
 use crate::random::Rng;
 
-/// Which of several actions with the maximal value is the greedy one.
+/// The rule that selects the greedy action if several have the maximal value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TieBreaking {
-    /// The first: `np.argmax`.
+    /// The first action: `np.argmax`.
     First,
-    /// A random one, which takes one more draw. A unique maximum draws nothing.
+    /// A random action, which takes one more draw. A unique maximum takes none.
     Random,
 }
 
@@ -65,7 +65,7 @@ impl TieBreaking {
             }
             Self::Random => {
                 let ties = values.clone().filter(|&value| is_largest(value)).count();
-                // Dividing by 1 would give the same share, but takes time.
+                // Skips a division by 1, which takes time.
                 let share = if ties == 1 { 1.0 - epsilon } else { (1.0 - epsilon) / ties as f64 };
                 let greedy = other + share;
                 sum(values.map(|value| select_unpredictable(is_largest(value), greedy, other) * value))
@@ -74,12 +74,12 @@ impl TieBreaking {
     }
 }
 
-/// A random action among the `ties` ones with the maximal value.
+/// A random action among the `ties` actions with the maximal value.
 #[inline]
 fn tied_action(values: &[f64], largest: f64, ties: usize, rng: &mut impl Rng) -> usize {
     let (mut left, mut chosen) = (rng.integers(ties as u32) as usize, 0);
-    // Which one is random, so that a branch would often be mispredicted. If the maximum is NaN, no action has it: the run
-    // has then diverged and stops after this episode.
+    // A branch would often be mispredicted, because the choice is random. If the maximum is NaN, no action has it: the
+    // run has then diverged and stops after this episode.
     for (action, &value) in values.iter().enumerate() {
         let eligible = value == largest;
         chosen = select_unpredictable(eligible && left == 0, action, chosen);

@@ -7,20 +7,21 @@ use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::memory::{AllocationError, filled};
 use crate::random::Rng;
 
-/// Chooses argmaxₐ [Q(S, a) + c √(ln t / N(S, a))] (Sutton & Barto, equation 2.10), where N(S, a) is how often a was chosen
-/// in S, and t one more than their sum over the actions. An action that was never chosen comes first.
+/// Chooses argmaxₐ [Q(S, a) + c √(ln t / N(S, a))] (Sutton & Barto, equation 2.10), where N(S, a) is the number of
+/// times that a was chosen in S, and t is one more than the sum of these numbers over all actions. An action that was
+/// never chosen comes first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ucb {
     confidence: f64,
     ties: TieBreaking,
-    /// N, row by row.
+    /// The counts N(S, a), row by row.
     counts: Vec<u32>,
     /// A buffer for the bounds.
     bounds: Vec<f64>,
 }
 
 impl Ucb {
-    /// With the degree of exploration c, for a table of so many rows and actions.
+    /// A policy with the degree of exploration c, for a table with these numbers of rows and actions.
     ///
     /// # Errors
     /// `OutOfMemory`; `Stopped` after `stop` was set.
@@ -34,7 +35,7 @@ impl Ucb {
         Ok(Self { confidence, ties, counts, bounds: vec![0.0; num_actions] })
     }
 
-    /// N(S, ·).
+    /// The counts N(S, ·).
     fn counts(&mut self, row: u32) -> &mut [u32] {
         let num_actions = self.bounds.len();
         &mut self.counts[row as usize * num_actions..][..num_actions]
@@ -52,7 +53,7 @@ impl Ucb {
         &self.bounds
     }
 
-    /// The action with the largest bound. It counts as chosen. Draws one `integers` to break a tie at random.
+    /// The action with the largest bound. The choice is counted. Draws one `integers` to break a tie at random.
     #[inline]
     pub(super) fn choose(&mut self, row: u32, values: &[f64], rng: &mut impl Rng) -> usize {
         let ties = self.ties;
@@ -62,7 +63,7 @@ impl Ucb {
         action
     }
 
-    /// The value of the action with the largest bound; the mean over several that may be chosen.
+    /// The value of the action with the largest bound; or the mean over the actions that may be chosen in a tie.
     pub(super) fn expected_value(&mut self, row: u32, values: &[f64]) -> f64 {
         let ties = self.ties;
         let bounds = self.bounds(row, values);
@@ -80,7 +81,7 @@ impl Ucb {
     }
 }
 
-/// The upper bound of a value: infinite for an action that was never chosen, -∞ for one that is not available.
+/// The upper bound of a value: ∞ for an action that was never chosen, -∞ for an unavailable one.
 #[inline]
 fn upper_bound(confidence: f64, log: f64, count: u32, value: f64) -> f64 {
     match count {

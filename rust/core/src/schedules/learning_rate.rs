@@ -5,17 +5,17 @@ use crate::StopFlag;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::memory::{AllocationError, filled};
 
-/// A learning rate that follows a schedule, or falls with the number of visits of each weight.
+/// A learning rate that follows a schedule, or decreases with the number of visits to each weight.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LearningRate {
     schedule: Schedule,
     n_active: f64,
     /// The scheduled learning rate divided by `n_active`.
     step_size: f64,
-    /// The number of visits of each weight; empty if the learning rate does not depend on it.
+    /// The number of visits to each weight; empty if the learning rate does not depend on visits.
     visits: Vec<u32>,
     min: f64,
-    /// Whether `step_size` is that of every weight, and updates are not logged.
+    /// Whether `step_size` applies to every weight and updates are not logged.
     uniform: bool,
     log: UpdateLog,
     logs: bool,
@@ -37,7 +37,7 @@ impl LearningRate {
         }
     }
 
-    /// `initial / n` at the n-th visit of a weight, but at least `min`. With `initial = 1` and `min = 0` a value is the
+    /// `initial / n` at the n-th visit to a weight, but at least `min`. With `initial = 1` and `min = 0` a value is the
     /// average of its targets (Sutton & Barto, equation 2.3).
     ///
     /// # Errors
@@ -60,14 +60,14 @@ impl LearningRate {
         self.n_active
     }
 
-    /// Starts or ends logging of the updates with this learning rate. It changes none of them. Those of traces are not
-    /// logged.
+    /// Turns the logging of updates with this learning rate on or off. It does not affect the updates. Updates of
+    /// traces are not logged.
     pub fn set_logging(&mut self, logs: bool) {
         self.logs = logs;
         self.uniform = self.visits.is_empty() && !logs;
     }
 
-    /// The updates that were logged.
+    /// The logged updates.
     pub fn logged(&mut self) -> &mut UpdateLog {
         &mut self.log
     }

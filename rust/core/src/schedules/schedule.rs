@@ -1,9 +1,9 @@
 //! Rates that change from episode to episode.
 
-/// How a rate changes after an episode.
+/// The change of a rate after an episode.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Decay {
-    /// Not at all.
+    /// The rate does not change.
     Constant,
     /// Subtracts a constant while the rate is above its minimum. The result is not clamped, as in the article, so rounding
     /// may leave it a few 1e-14 below the minimum.
@@ -25,7 +25,7 @@ pub struct Schedule {
     min: f64,
     warm_up: u64,
     decay: Decay,
-    /// Whether the rate will not change any more.
+    /// Whether the rate has stopped changing.
     is_final: bool,
 }
 
@@ -56,7 +56,7 @@ impl Schedule {
         self.value
     }
 
-    /// Whether the rate will not change any more.
+    /// Whether the rate has stopped changing.
     #[inline]
     pub(crate) fn is_final(&self) -> bool {
         self.is_final
@@ -65,7 +65,7 @@ impl Schedule {
     /// Moves on to the next episode.
     #[inline]
     pub fn end_episode(&mut self) {
-        // One comparison where there is nothing to do: the episodes of a bandit are single steps.
+        // A single comparison suffices for a final rate. It matters for bandits, whose episodes are single steps.
         if self.is_final {
             return;
         }

@@ -6,7 +6,7 @@ use crate::checkpoint::{Checkpoint, CheckpointError};
 /// The step size of each weight of a Q table: the learning rate divided by the number of active rows. The index of a
 /// weight is `row * num_actions + action`.
 pub trait StepSize {
-    /// Counts a visit of a weight, before its update.
+    /// Counts a visit to a weight, before its update.
     fn visit(&mut self, weight_index: usize);
 
     /// The step size, if it is the same for every weight, visits are not counted, and updates are not logged.
@@ -18,13 +18,13 @@ pub trait StepSize {
     /// Called after every episode.
     fn end_episode(&mut self);
 
-    /// Where updates are logged; `None` if they are not.
+    /// The log of updates; `None` if they are not logged.
     #[inline]
     fn log(&mut self) -> Option<&mut UpdateLog> {
         None
     }
 
-    /// Saves or restores what it has counted; the episode that it is in is not part of it.
+    /// Saves or restores the counts of visits, but not the position in the schedule.
     ///
     /// # Errors
     /// The bytes are damaged.

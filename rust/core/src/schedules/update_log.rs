@@ -1,13 +1,13 @@
-//! The updates of action values, with the numbers that they were made of.
+//! A log of the updates of action values, with the numbers behind each.
 
 /// An update of an action value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoggedUpdate {
     /// The action A.
     pub action: usize,
-    /// Q(S, A) before.
+    /// Q(S, A) before the update.
     pub old: f64,
-    /// Q(S, A) after.
+    /// Q(S, A) after the update.
     pub new: f64,
     /// The target.
     pub target: f64,
@@ -24,7 +24,7 @@ pub struct UpdateLog {
 }
 
 impl UpdateLog {
-    /// Adds an update of the state with these active rows, as many as of any other state.
+    /// Adds an update of the state with these active rows. Their number is the same for all states.
     pub fn push(&mut self, rows: &[u32], update: LoggedUpdate) {
         self.rows.extend_from_slice(rows);
         self.updates.push(update);
@@ -36,7 +36,7 @@ impl UpdateLog {
         self.rows.chunks(n_active).zip(&self.updates)
     }
 
-    /// Forgets all updates, and keeps their memory for others.
+    /// Removes all updates and keeps the allocated memory.
     pub fn clear(&mut self) {
         self.rows.clear();
         self.updates.clear();
