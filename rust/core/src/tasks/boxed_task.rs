@@ -12,19 +12,21 @@ struct StatefulTask<T: Task, X> {
     task: T,
     state: Option<T::State>,
     error: Option<X>,
-    /// What the steps are compiled for: the loop that calls them does not know of it.
+    /// The vector instructions that the steps are compiled for. The training loop that calls the steps does not know
+    /// it.
     level: SimdLevel,
 }
 
 /// [`Task`] without the state, for trait objects. `R` holds the active rows, `X` is the error.
 trait DynTask<R, X> {
     fn reset(&mut self) -> Result<R, X>;
-    /// Takes a step and writes the active rows, which are unspecified after a terminal state. Returns the reward too: both
-    /// are returned in registers, and the rows are written once. A [`Transition`] is copied from one layout to another
-    /// instead, and read across the words in which it was written. `None` says that the step has failed, and that the task
+    /// Takes a step and writes the active rows, which are unspecified after a terminal state. Returns the reward and
+    /// the kind of the next state in registers. A [`Transition`] would be copied from one layout to another, and read
+    /// across the words in which it was written. `None` means that the step has failed and the task has stored the
+    /// error.
     /// keeps the error.
     fn step(&mut self, action: usize, active: &mut R) -> (f64, Option<NextKind>);
-    /// The error of the step that has failed.
+    /// The error of the failed step.
     fn take_error(&mut self) -> X;
     fn action_mask(&self) -> Option<&[bool]>;
     fn visits(&self) -> Option<&[i64]>;
@@ -97,13 +99,13 @@ impl<T: Task, X: From<T::Error>> DynTask<T::Active, X> for StatefulTask<T, X> {
     }
 }
 
-/// A boxed task with active rows `R` and errors `X`: generic code is compiled once for all tasks behind it.
+/// A boxed task with active rows `R` and errors `X`: generic code is compiled only once for all boxed tasks.
 pub struct BoxedTask<R, X> {
     task: Box<dyn DynTask<R, X> + Send>,
-    /// What the last step wrote; `None` before the first reset.
+    /// The active rows that the last step wrote; `None` before the first reset.
     active: Option<R>,
     step_work: u64,
-    /// Whether the task has action masks. Where it has none, no call is made to ask for them.
+    /// Whether the task has action masks. If not, the dynamic call is skipped.
     has_masks: bool,
 }
 

@@ -7,8 +7,8 @@ use crate::envs::tabular::TabularMdp;
 use crate::features::OutOfBounds;
 use crate::random::Pcg64;
 
-/// Two transition tables with the same states: one for the first steps of a run, counted over all episodes, the other for
-/// all later ones. A state has its own row.
+/// Two transition tables with the same states: one for the first steps of a run, counted over all episodes, the other
+/// for all later ones. Each state has its own row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChangingTask {
     tables: [TabularMdp; 2],
@@ -24,7 +24,7 @@ impl ChangingTask {
     /// `rng` is the environment's generator, seeded as `env.reset(seed=…)` seeds it.
     ///
     /// # Panics
-    /// If the tables have other numbers of states.
+    /// If the tables differ in their number of states.
     pub fn new(tables: [TabularMdp; 2], change_after: u64, max_episode_steps: u64, rng: Pcg64) -> Self {
         assert!(tables[0].num_states() == tables[1].num_states(), "both tables must have the same states");
         Self { tables, change_after, max_episode_steps, total_steps: 0, rng }
@@ -93,7 +93,7 @@ mod tests {
     use crate::envs::tabular::Outcome;
     use crate::random::SeedSequence;
 
-    /// Two states, one action: it stays where it is, or moves to the other state and ends the episode.
+    /// Two states, one action: it stays in the state, or moves to the other state and ends the episode.
     fn table(moves: bool) -> TabularMdp {
         let to = |state: i64| {
             let state = if moves { 1 - state } else { state };

@@ -1,4 +1,4 @@
-//! Recordings of the last episodes, with all that a replay needs.
+//! Recordings of the last episodes, with everything that a replay needs.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -26,15 +26,15 @@ pub struct EpisodeRecorder<T: RngSnapshot> {
     task: T,
     capacity: usize,
     room: MemoryRoom,
-    /// How many bytes of the room a recorded action takes, in the copies that are made of it, too.
+    /// The memory in bytes that a recorded action takes, including its copies.
     action_bytes: u64,
     current: Option<Recording<T::Snapshot>>,
     finished: Recordings<T::Snapshot>,
 }
 
 impl<T: RngSnapshot> EpisodeRecorder<T> {
-    /// Records the last `capacity` finished episodes of `task`, as long as there is room for them and for the unfinished
-    /// one, with `action_bytes` for each action. Returns the recorder and the recordings.
+    /// Records the last `capacity` finished episodes of `task`, as long as there is memory for them and for the
+    /// unfinished one, at `action_bytes` per action. Returns the recorder and the recordings.
     pub fn new(task: T, capacity: usize, (room, action_bytes): (MemoryRoom, u64)) -> (Self, Recordings<T::Snapshot>) {
         let finished = Arc::default();
         (Self { task, capacity, room, action_bytes, current: None, finished: Arc::clone(&finished) }, finished)
@@ -75,7 +75,7 @@ impl<T: RngSnapshot> Task for EpisodeRecorder<T> {
 
     fn reset(&mut self) -> Result<(T::State, T::Active), Self::Error> {
         let snapshot = self.task.rng_snapshot().map_err(TrainingError::Task)?;
-        // An episode that failed leaves its recording behind.
+        // A failed episode leaves its recording here.
         let abandoned = self.current.replace(Recording { snapshot, actions: Vec::new() });
         self.give_back(abandoned.as_ref());
         self.task.reset().map_err(TrainingError::Task)
@@ -107,7 +107,7 @@ impl<T: RngSnapshot> Task for EpisodeRecorder<T> {
         self.task.resumes_episodes()
     }
 
-    /// Recordings are not part of it: an episode that is resumed in the middle is not recorded.
+    /// Recordings are not saved: an episode that is resumed midway is not recorded.
     fn persist(
         &mut self,
         state: Option<&mut T::State>,
@@ -125,7 +125,7 @@ impl<T: RngSnapshot> Task for EpisodeRecorder<T> {
 mod tests {
     use super::*;
 
-    /// Two steps to the end of an episode; the step with this number fails.
+    /// Two steps to the end of an episode; the step with the given number fails.
     struct FailingTask {
         steps: u64,
         failing: u64,

@@ -17,29 +17,30 @@ pub struct Testbed {
     pub num_actions: usize,
     /// The mean of the true values q⁎(a).
     pub mean: f64,
-    /// Their standard deviation.
+    /// The standard deviation of the true values.
     pub deviation: f64,
-    /// The standard deviation of the steps by which each true value walks after each action; 0 for a stationary problem.
+    /// The standard deviation of the random-walk increments added to each true value after each action; 0 for a
+    /// stationary problem.
     pub random_walk: f64,
 }
 
-/// Whether the optimal action was taken in each episode; false for unfinished episodes. The task that writes it shares it with
-/// its reader.
+/// Whether the optimal action was taken in each episode; false for unfinished episodes. It is shared by the task, which
+/// writes it, and its reader.
 pub type OptimalActions = Arc<Vec<AtomicBool>>;
 
-/// A bandit problem, drawn by the first reset: q⁎(a) is normal, and a reward is normal with mean q⁎(A) and variance 1. An
-/// episode is one action.
+/// A bandit problem, drawn by the first reset: q⁎(a) is normal, and a reward is normal with mean q⁎(A) and variance 1.
+/// An episode consists of one action.
 ///
 /// It is a task, not an environment, because the problem outlasts an episode.
 #[derive(Clone, Debug)]
 pub struct KArmedBandit {
     testbed: Testbed,
-    /// q⁎; empty before the first reset.
+    /// The true values q⁎; empty before the first reset.
     values: Vec<f64>,
     /// The action with the largest true value.
     optimal: usize,
     rng: Pcg64,
-    /// Of each episode to record; empty if none is recorded.
+    /// Whether the optimal action was taken, for each recorded episode; empty if none is recorded.
     optimal_actions: OptimalActions,
     /// The number of finished episodes since the construction.
     episode: usize,
@@ -51,7 +52,7 @@ impl KArmedBandit {
         Self { testbed, values: Vec::new(), optimal: 0, rng, optimal_actions: Arc::default(), episode: 0 }
     }
 
-    /// Records whether the optimal action is taken in each of so many episodes, from the first one on.
+    /// Records whether the optimal action is taken in each of the first `episodes` episodes.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -62,7 +63,7 @@ impl KArmedBandit {
         Ok(Arc::clone(&self.optimal_actions))
     }
 
-    /// Draws q⁎.
+    /// Draws the true values q⁎.
     fn draw(&mut self) {
         let Testbed { num_actions, mean, deviation, .. } = self.testbed;
         self.values = (0..num_actions).map(|_| mean + deviation * self.rng.standard_normal()).collect();

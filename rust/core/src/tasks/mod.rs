@@ -1,4 +1,4 @@
-//! Tasks: what a learner interacts with. An environment, its features and its time limit.
+//! Tasks: an environment, its features and its time limit, with which a learner interacts.
 
 mod boxed_task;
 mod changing_task;

@@ -90,8 +90,8 @@ where
     E: Env<Action = usize>,
     F: Features<E::Observation>,
 {
-    /// The kind of what follows a step of the environment, which was the `elapsed`th of the episode. To be asked after the
-    /// active rows: a branch before them takes a tenth of the time of learning with tile coding.
+    /// The kind of the next state, given the `elapsed`th step of the episode. Call this after computing the active
+    /// rows: with tile coding, a branch before them takes a tenth of the time of learning.
     #[expect(clippy::inline_always, reason = "as for `step`")]
     #[inline(always)]
     fn next_kind(&self, step: &Step<E::State>, elapsed: u64) -> NextKind {
@@ -104,7 +104,7 @@ where
         }
     }
 
-    /// The transition by a step of the environment, which moves the state on.
+    /// The transition of one step of the environment. Updates the state.
     #[expect(clippy::inline_always, reason = "as for `step`")]
     #[inline(always)]
     fn transition(
@@ -113,7 +113,7 @@ where
         step: Step<E::State>,
     ) -> Result<Transition<F::Active>, OutOfBounds> {
         *state = TimedState { state: step.state, elapsed: state.elapsed + 1 };
-        // A terminal observation needs no row, but one outside the observation space is an error there too.
+        // A terminal observation needs no row, but an observation outside the observation space is still an error.
         let active = self.features.active_rows(&self.env.observe(&step.state))?;
         Ok(Transition { reward: step.reward, next: self.next_kind(&step, state.elapsed).with_rows(active) })
     }

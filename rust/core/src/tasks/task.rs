@@ -3,7 +3,7 @@
 use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::features::ActiveRows;
 
-/// What follows a step, as an update sees it. `R` holds the active rows of the next state.
+/// The next state, as an update needs it. `R` holds its active rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Next<R> {
     /// The episode continues.
@@ -26,7 +26,7 @@ pub enum NextKind {
 }
 
 impl NextKind {
-    /// What follows, where these are the active rows of the next state.
+    /// The [`Next`] of this kind, with these active rows of the next state.
     #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
     #[inline(always)]
     pub fn with_rows<R>(self, active: R) -> Next<R> {
@@ -43,7 +43,7 @@ impl NextKind {
 pub struct Transition<R> {
     /// The reward.
     pub reward: f64,
-    /// What follows.
+    /// The next state.
     pub next: Next<R>,
 }
 
@@ -54,7 +54,7 @@ pub trait Task {
     type State: Copy;
     /// The active rows of an observation.
     type Active: ActiveRows;
-    /// Why a reset or a step can fail.
+    /// The error of a reset or a step.
     type Error;
 
     /// Whether a step is worth compiling for wide vector registers too. [`step`](Self::step) is then always inlined.
@@ -72,8 +72,8 @@ pub trait Task {
     /// As for `reset`.
     fn step(&mut self, state: &mut Self::State, action: usize) -> Result<Transition<Self::Active>, Self::Error>;
 
-    /// [`step`](Self::step), which writes the active rows and returns the reward. The rows are unspecified after a terminal
-    /// state.
+    /// Like [`step`](Self::step), but writes the active rows, and returns the reward and the kind of the next state.
+    /// The rows are unspecified after a terminal state.
     ///
     /// # Errors
     /// As for `reset`.
@@ -100,21 +100,21 @@ pub trait Task {
         Ok((reward, kind))
     }
 
-    /// The work of a step, as [`Budget`](crate::Budget) counts it, beside the learner's: 0 for the environments of this
-    /// crate.
+    /// The work of a step in units of [`Budget`](crate::Budget), in addition to the learner's: 0 for the environments
+    /// of this crate.
     #[inline]
     fn step_work(&self) -> u64 {
         0
     }
 
-    /// Which actions the last state has, the one that `reset` or `step` led to; `None` if each state has all of them, or if
-    /// the learner knows the masks. Unspecified after a terminal state.
+    /// The action mask of the last state that `reset` or `step` led to; `None` if every action is available in every
+    /// state, or if the learner already knows the masks. Unspecified after a terminal state.
     #[inline]
     fn action_mask(&self) -> Option<&[bool]> {
         None
     }
 
-    /// How often each action was taken in each row, row by row; `None` where visits are not counted.
+    /// The number of times that each action was taken in each row, row by row; `None` if visits are not counted.
     fn visits(&self) -> Option<&[i64]> {
         None
     }
@@ -149,6 +149,6 @@ pub trait RngSnapshot: Task {
     /// The state of the generator now.
     ///
     /// # Errors
-    /// Whatever the environment raises.
+    /// Any error that the environment raises.
     fn rng_snapshot(&self) -> Result<Self::Snapshot, Self::Error>;
 }

@@ -1,14 +1,14 @@
-//! The number of steps taken as a part of the state, as Gymnasium's `TimeAwareObservation` makes it (F. Pardo et al.,
-//! "Time limits in reinforcement learning", 2018).
+//! The number of steps taken as a part of the state, as in Gymnasium's `TimeAwareObservation` (F. Pardo et al., "Time
+//! limits in reinforcement learning", 2018).
 
 use super::{Next, Task, TimedState, Transition};
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 
-/// A wrapper around a task with one active row, with rows of their own for each step before the time limit: the table has
-/// `max_episode_steps` times as many, those of an episode's first step first.
+/// A wrapper around a task with one active row, with separate rows for each step before the time limit: the table has
+/// `max_episode_steps` times as many rows, beginning with those of an episode's first step.
 ///
-/// No rows follow the last step: there the next state of a truncated episode is reported with those of the last step, and
-/// a learner must take it as terminal.
+/// There are no rows for the state after the last step: the next state of a truncated episode is reported with the rows
+/// of the last step, and a learner must treat it as terminal.
 #[derive(Clone, Debug)]
 pub struct TimeAware<T> {
     task: T,
@@ -16,13 +16,13 @@ pub struct TimeAware<T> {
     rows: u32,
     /// The time limit.
     max_episode_steps: u64,
-    /// Whether the last step reached the time limit, where no state follows whose actions could be masked.
+    /// Whether the last step reached the time limit, after which there is no state with an action mask.
     at_limit: bool,
 }
 
 impl<T> TimeAware<T> {
-    /// `rows` is the number of rows of `task`, which ends episodes after `max_episode_steps` at the latest. None if the
-    /// table would have 2³² rows or more.
+    /// `rows` is the number of rows of `task`, which ends episodes after `max_episode_steps` at the latest. `None` if
+    /// the table would have 2³² rows or more.
     pub fn new(task: T, rows: usize, max_episode_steps: u64) -> Option<Self> {
         let all = (rows as u64).checked_mul(max_episode_steps)?;
         u32::try_from(all).ok()?;
@@ -34,7 +34,7 @@ impl<T> TimeAware<T> {
         self.rows as usize * self.max_episode_steps as usize
     }
 
-    /// The row of the task's row after so many steps.
+    /// The row in this table of a row of the task, after `elapsed` steps.
     fn at(&self, active: impl AsRef<[u32]>, elapsed: u64) -> [u32; 1] {
         let step = elapsed.min(self.max_episode_steps - 1) as u32;
         [step * self.rows + active.as_ref()[0]]

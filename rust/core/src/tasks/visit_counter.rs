@@ -1,4 +1,4 @@
-//! Counts of the visits of each state-action pair.
+//! Counts of the visits to each state-action pair.
 
 use super::{Next, Task, Transition};
 use crate::StopFlag;
@@ -42,7 +42,7 @@ impl<T: Task> Task for VisitCounter<T> {
         Ok((CountedState { state, active }, active))
     }
 
-    /// A step that fails is not counted: nothing is learned from it.
+    /// A failed step is not counted, because nothing is learned from it.
     #[expect(clippy::inline_always, reason = "a call per step would take a fifth of its time")]
     #[inline(always)]
     fn step(&mut self, counted: &mut Self::State, action: usize) -> Result<Transition<T::Active>, T::Error> {
