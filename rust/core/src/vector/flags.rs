@@ -2,17 +2,17 @@
 
 use std::ops::{BitAnd, BitOr, Not};
 
-/// So many sub-environments are looked through together for episodes that end.
+/// The number of sub-environments that are searched together for ended episodes.
 pub(super) const CHUNK: usize = 8;
 
-/// One flag for each sub-environment of a chunk: a byte that is 0 or 1.
+/// One flag for each sub-environment of a chunk: a byte of value 0 or 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Flags(u64);
 
 impl Flags {
     pub(super) const NONE: Self = Self(0);
 
-    /// The flags of a chunk, of which the last may be shorter.
+    /// The flags of a chunk. The last chunk may be shorter.
     #[inline]
     pub(super) fn read(flags: &[bool]) -> Self {
         let mut chunk = [false; CHUNK];

@@ -9,8 +9,8 @@ use crate::memory::{AllocationError, filled};
 use crate::random::{NoRng, Rng};
 use crate::simd::{F64s, LANES, Simd, SimdCode, SimdLevel, U64s};
 
-/// States of `M` numbers in blocks of [`LANES`], each of which is a structure of arrays. The last block may have lanes
-/// that are not used.
+/// States of `M` numbers in blocks of [`LANES`] states. Each block is a structure of arrays. The last block may have
+/// unused lanes.
 #[derive(Clone, Debug)]
 pub struct LaneStates<const M: usize>(Vec<[[f64; LANES]; M]>);
 
@@ -31,7 +31,7 @@ where
         scatter(&mut self.0[index / LANES], index % LANES, state);
     }
 
-    /// Steps the inactive ones as well, which draws nothing.
+    /// Inactive states are stepped as well, because a step draws no random numbers.
     fn step(
         &mut self,
         env: &E,
@@ -116,7 +116,7 @@ mod tests {
     use super::*;
     use crate::envs::classic_control::{CartPole, MountainCar};
 
-    /// Steps one block with plain and with the widest instructions, and each state alone.
+    /// Steps one block with plain instructions and with the widest ones, and each state alone.
     fn check<E, const M: usize>(env: E, states: [[f64; M]; LANES], actions: [usize; LANES])
     where
         E: SimdEnv<M> + Env<Observation = [f32; M], State: std::fmt::Debug + PartialEq>,

@@ -14,15 +14,15 @@ use crate::random::Rng;
 #[derive(Clone, Debug)]
 pub(super) struct Shard<E: Env, S> {
     states: S,
-    /// The number of steps that were taken.
+    /// The number of steps taken.
     steps: u64,
     /// The value of `steps` when each episode began. Differences wrap around: a restored episode can have begun before
     /// the first step.
     begun: Vec<u64>,
-    /// For each chunk a number of steps, counted as in `begun`, before which none of its episodes began: until these reach
-    /// the time limit, no episode does.
+    /// For each chunk, a lower bound on the `begun` of its episodes: no episode reaches the time limit before this
+    /// bound does.
     earliest: Vec<u64>,
-    /// Whether the episode has ended without a reset since.
+    /// Whether each episode has ended and has not been reset yet.
     done: Vec<bool>,
     /// With `Autoreset::SameStep`, the index and the last state of each episode that ended in the last step. It has
     /// capacity for all sub-environments, so that a step allocates nothing.
@@ -67,7 +67,7 @@ impl<E: Env, S: States<E>> Shard<E, S> {
         &self.final_states
     }
 
-    /// Saves or restores the episodes. Which of them ended in the last step is not part of it.
+    /// Saves or restores the episodes. The flags of episodes that ended in the last step are not included.
     pub(super) fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
         if checkpoint.is_restoring() {
             self.final_states.clear();
@@ -144,7 +144,7 @@ impl<E: Env, S: States<E>> Shard<E, S> {
         }
     }
 
-    /// Which episodes of the chunk are at the time limit.
+    /// The episodes of the chunk that have reached the time limit.
     #[inline]
     fn find_truncations(&mut self, chunk: usize, limit: u64) -> Flags {
         if self.steps.wrapping_sub(self.earliest[chunk]) < limit {

@@ -1,11 +1,11 @@
-//! How the states of the sub-environments are stored and stepped.
+//! The storage of the states of the sub-environments, and their steps.
 
 use crate::StopFlag;
 use crate::envs::Env;
 use crate::memory::{AllocationError, filled};
 use crate::random::Rng;
 
-/// What a step of several sub-environments writes besides their states: one element for each.
+/// The outputs of a step of several sub-environments besides their states, with one element for each.
 #[derive(Debug)]
 pub struct StepOutputs<'a, O> {
     /// The observations after the step.
@@ -30,8 +30,8 @@ pub trait States<E: Env>: Sized {
     /// Replaces the state of a sub-environment.
     fn set(&mut self, index: usize, state: E::State);
 
-    /// One step of each sub-environment, with the results of [`Env::step`]. Those that are `inactive` await a reset: nothing
-    /// is drawn from their generators, and their states and outputs are unspecified.
+    /// One step of each sub-environment, with the results of [`Env::step`]. The `inactive` ones await a reset: their
+    /// generators are not used, and their states and outputs are unspecified.
     ///
     /// # Panics
     /// May panic if an action is out of range.
@@ -45,7 +45,7 @@ pub trait States<E: Env>: Sized {
     );
 }
 
-/// One state after another, stepped one by one.
+/// States stored in a row and stepped one by one.
 impl<E: Env> States<E> for Vec<E::State> {
     fn new(state: E::State, size: usize) -> Result<Self, AllocationError> {
         filled(&state, size, &StopFlag::new())

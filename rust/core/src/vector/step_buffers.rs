@@ -1,6 +1,6 @@
-//! Where a step writes its results.
+//! The buffers that a step writes its results to.
 
-/// Where a step writes its results: one element per sub-environment.
+/// The buffers that a step writes its results to, with one element per sub-environment.
 #[derive(Debug)]
 pub struct StepBuffers<'a, O> {
     /// The observations after the step.
@@ -9,12 +9,12 @@ pub struct StepBuffers<'a, O> {
     pub rewards: &'a mut [f64],
     /// Whether the next state is terminal.
     pub terminated: &'a mut [bool],
-    /// Whether the time limit was reached. Both flags can be set.
+    /// Whether the time limit was reached. Both `terminated` and `truncated` can be true.
     pub truncated: &'a mut [bool],
 }
 
 impl<'a, O> StepBuffers<'a, O> {
-    /// The buffers of each shard of `len` sub-environments.
+    /// The buffers of the shards, which have `len` sub-environments each.
     pub(super) fn chunks(self, len: usize) -> impl Iterator<Item = StepBuffers<'a, O>> {
         let values = self.observations.chunks_mut(len).zip(self.rewards.chunks_mut(len));
         let flags = self.terminated.chunks_mut(len).zip(self.truncated.chunks_mut(len));

@@ -1,4 +1,4 @@
-//! Vector environments against single environments.
+//! Compares vector environments with single environments.
 
 use proptest::prelude::*;
 

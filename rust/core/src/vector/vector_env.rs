@@ -11,14 +11,14 @@ use crate::envs::Env;
 use crate::memory::AllocationError;
 use crate::random::{NoRng, Rng};
 
-/// What happens to a sub-environment when its episode ends: Gymnasium's `AutoresetMode`.
+/// The reset of a sub-environment after its episode ends: Gymnasium's `AutoresetMode`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Autoreset {
-    /// The next step resets it and ignores its action.
+    /// The next step resets the sub-environment and ignores its action.
     NextStep,
-    /// The same step resets it. Its last state is in [`VectorEnv::final_states`].
+    /// The same step resets the sub-environment. Its last state is in [`VectorEnv::final_states`].
     SameStep,
-    /// Nothing. The caller must reset it before the next step.
+    /// The caller must reset the sub-environment before the next step.
     Disabled,
 }
 
@@ -29,9 +29,9 @@ pub(super) struct VectorConfig {
     pub(super) autoreset: Autoreset,
 }
 
-/// Several sub-environments of one kind that step together, each with a random generator and a step count. Their
-/// results are those of the same environments stepped one by one. `S` is how their states are stored: `LaneStates` steps
-/// them in SIMD lanes.
+/// Several sub-environments of one kind that step together, each with a random generator and a step count. The results
+/// equal those of the same environments stepped one by one. `S` stores the states: `LaneStates` steps them in SIMD
+/// lanes.
 #[derive(Clone)]
 pub struct VectorEnv<E: Env, S = Vec<<E as Env>::State>> {
     env: E,
@@ -50,8 +50,8 @@ impl<E: Env<State: fmt::Debug> + fmt::Debug, S: fmt::Debug> fmt::Debug for Vecto
 }
 
 impl<E: Env, S: States<E>> VectorEnv<E, S> {
-    /// `size` sub-environments, stepped by `threads` threads, each of which must be reset before the first step. The
-    /// number of threads does not change the results. Episodes are truncated after `max_episode_steps` steps.
+    /// `size` sub-environments, stepped by `threads` threads. Each sub-environment must be reset before the first step.
+    /// The number of threads does not change the results. Episodes are truncated after `max_episode_steps` steps.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -70,7 +70,7 @@ impl<E: Env, S: States<E>> VectorEnv<E, S> {
         Ok(Self { env, config, shards, shard_len })
     }
 
-    /// The environment of all sub-environments.
+    /// The environment, which all sub-environments share.
     pub fn env(&self) -> &E {
         &self.env
     }
@@ -95,7 +95,7 @@ impl<E: Env, S: States<E>> VectorEnv<E, S> {
         self.shards[index / self.shard_len].elapsed(index % self.shard_len)
     }
 
-    /// Whether the episode of a sub-environment has ended without a reset since.
+    /// Whether the episode of a sub-environment has ended and has not been reset yet.
     pub fn is_done(&self, index: usize) -> bool {
         self.shards[index / self.shard_len].is_done(index % self.shard_len)
     }
@@ -114,7 +114,8 @@ impl<E: Env, S: States<E>> VectorEnv<E, S> {
         })
     }
 
-    /// Begins an episode in a sub-environment, within these bounds or the environment's default ones.
+    /// Begins an episode in a sub-environment, with its initial state within these bounds or the environment's default
+    /// bounds.
     pub fn reset(&mut self, index: usize, bounds: Option<[f64; 2]>, rng: &mut impl Rng) {
         let state = match bounds {
             Some(bounds) => self.env.reset_within(bounds, rng),
@@ -124,10 +125,10 @@ impl<E: Env, S: States<E>> VectorEnv<E, S> {
     }
 
     /// Saves the episodes of all sub-environments, or restores them in a vector environment of the same environment and
-    /// size. The number of threads can be another, and [`final_states`](Self::final_states) are left out.
+    /// size. The number of threads may differ. The [`final_states`](Self::final_states) are not saved.
     ///
     /// # Errors
-    /// The bytes are damaged, or belong to another vector environment. This one is then useless.
+    /// The bytes are damaged, or belong to another vector environment. This vector environment is then unusable.
     pub fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
         self.shards.iter_mut().try_for_each(|shard| shard.persist(checkpoint))
     }
@@ -139,7 +140,7 @@ impl<E: Env, S: States<E>> VectorEnv<E, S> {
         }
     }
 
-    /// One step of all sub-environments. It allocates nothing, except for threads if there are several.
+    /// One step of all sub-environments. It does not allocate memory, except for threads if there are several.
     ///
     /// # Panics
     /// With [`Autoreset::Disabled`], if an episode has ended. May panic if an action is out of range.
@@ -168,7 +169,7 @@ impl<E: Env, S: States<E>> VectorEnv<E, S> {
         thread::scope(|scope| {
             let mut refused = false;
             for job in jobs.iter().skip(1) {
-                // Threads may run out. The calling thread then does their share.
+                // The system may refuse a thread. The calling thread then does its share.
                 refused |= thread::Builder::new().spawn_scoped(scope, || run_once(job)).is_err();
             }
             jobs.iter().take(if refused { jobs.len() } else { 1 }).for_each(run_once);
