@@ -1,4 +1,4 @@
-//! Allocation that can fail: what a user asks for may be larger than memory, and an infallible `Vec` would abort.
+//! Fallible allocation: the size that a user asks for may exceed the memory, and `Vec` would abort the process.
 
 use std::collections::TryReserveError;
 use std::error::Error;
@@ -9,44 +9,44 @@ use crate::StopFlag;
 
 mod run_memory;
 
-/// How many values are written between two looks at the stop flag: a fraction of a millisecond.
+/// The number of values written between two checks of the stop flag; this takes a fraction of a millisecond.
 const VALUES_BETWEEN_CHECKS: usize = 1 << 16;
 
-/// Why memory was not allocated.
+/// The reason why memory was not allocated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AllocationError {
-    /// So many bytes more could not be allocated.
+    /// The system could not allocate the memory.
     OutOfMemory {
-        /// The number of bytes.
+        /// The number of additional bytes requested.
         bytes: usize,
     },
     /// The caller set the stop flag.
     Stopped,
-    /// What a run stores while it trains takes more than the caller permits.
+    /// The memory that grows during training would exceed the caller's limit.
     LimitReached {
-        /// The number of bytes that the caller permits for everything.
+        /// The limit on all memory, in bytes.
         limit: u64,
-        /// What would take more.
+        /// The kind of data that would exceed the limit.
         growing: Growing,
     },
-    /// There are more values than their indices can number.
+    /// There are more values than 32-bit indices can address.
     TooManyEntries,
 }
 
 impl fmt::Display for AllocationError {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::OutOfMemory { bytes } => write!(formatter, "{bytes} bytes more could not be allocated"),
+            Self::OutOfMemory { bytes } => write!(formatter, "could not allocate {bytes} more bytes"),
             Self::Stopped => write!(formatter, "the allocation was stopped"),
             Self::LimitReached { limit, .. } => write!(formatter, "the limit of {limit} bytes is reached"),
-            Self::TooManyEntries => write!(formatter, "there are more values than their indices can number"),
+            Self::TooManyEntries => write!(formatter, "there are more values than 32-bit indices can address"),
         }
     }
 }
 
 impl Error for AllocationError {}
 
-/// Fails as an allocation of `additional` values of `T` does.
+/// The error of a failed allocation of `additional` values of `T`.
 pub fn out_of_memory<T>(additional: usize) -> impl FnOnce(TryReserveError) -> AllocationError {
     move |_| AllocationError::OutOfMemory { bytes: additional.saturating_mul(size_of::<T>()) }
 }
@@ -59,7 +59,7 @@ pub fn reserve<T>(values: &mut Vec<T>, additional: usize) -> Result<(), Allocati
     values.try_reserve(additional).map_err(out_of_memory::<T>(additional))
 }
 
-/// Checks that 32-bit indices can number so many values and leave the largest index free as a mark.
+/// Checks that 32-bit indices can address this many values and leave the largest index free as a marker.
 ///
 /// # Errors
 /// `TooManyEntries`.
@@ -95,7 +95,7 @@ pub fn filled<T: Clone>(value: &T, len: usize, stop: &StopFlag<'_>) -> Result<Ve
     from_fn(len, stop, || value.clone())
 }
 
-/// `len` values of a function.
+/// The results of `len` calls of a function.
 ///
 /// # Errors
 /// `OutOfMemory`; `Stopped` after `stop` was set.

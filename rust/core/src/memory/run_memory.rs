@@ -1,4 +1,4 @@
-//! A limit on the memory that grows while runs train.
+//! A limit on the memory that grows during training.
 
 use std::collections::{HashMap, TryReserveError, VecDeque};
 use std::hash::{BuildHasher, Hash};
@@ -7,16 +7,17 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::{AllocationError, out_of_memory};
 
-/// What grows while a run trains, for messages.
+/// The kinds of data that grow during training, for error messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Growing {
     /// The recordings of the last episodes.
     Recordings,
-    /// What a learner stores: the steps of an episode, or the outcomes of its model.
+    /// The data of a learner: the steps of an episode or the outcomes of its model.
     Learner,
 }
 
-/// The bytes that the runs of a call may still take for what grows while they train. All clones take from the same bytes.
+/// The bytes that the runs of a call may still allocate for data that grows during training. All clones share the same
+/// bytes.
 #[derive(Clone, Debug)]
 pub struct MemoryRoom {
     limit: u64,
@@ -24,17 +25,17 @@ pub struct MemoryRoom {
 }
 
 impl MemoryRoom {
-    /// `left` bytes; `limit` is what all memory of the call was limited to, for messages.
+    /// `left` bytes. `limit` is the limit on all memory of the call, for error messages.
     pub fn new(limit: u64, left: u64) -> Self {
         Self { limit, left: Arc::new(AtomicU64::new(left)) }
     }
 
-    /// Without a limit.
+    /// No limit.
     pub fn unlimited() -> Self {
         Self::new(u64::MAX, u64::MAX)
     }
 
-    /// How many bytes are left.
+    /// The number of bytes left.
     pub fn left(&self) -> u64 {
         self.left.load(Ordering::Relaxed)
     }
@@ -54,7 +55,7 @@ impl MemoryRoom {
     }
 }
 
-/// What the learner of one run has taken. It is given back when the run is dropped.
+/// The bytes that the learner of one run has taken. They are given back when the run is dropped.
 #[derive(Debug)]
 pub struct RunMemory {
     room: MemoryRoom,
@@ -62,13 +63,13 @@ pub struct RunMemory {
 }
 
 impl RunMemory {
-    /// A run that has taken nothing from `room` yet.
+    /// The memory of a run that has not taken anything from `room` yet.
     pub fn new(room: MemoryRoom) -> Self {
         Self { room, taken: 0 }
     }
 
-    /// Makes room for `additional` more values. The capacity doubles, so that values are rarely moved, unless that would
-    /// take more than half of what is left to all runs.
+    /// Makes room for `additional` more values. The capacity doubles, so that values are rarely moved, unless that
+    /// would take more than half of the bytes left for all runs.
     ///
     /// # Errors
     /// `LimitReached`, `OutOfMemory`.
@@ -98,29 +99,29 @@ impl Drop for RunMemory {
     }
 }
 
-/// A copy shares the room and has taken nothing from it.
+/// A copy shares the room and starts with nothing taken.
 impl Clone for RunMemory {
     fn clone(&self) -> Self {
         Self::new(self.room.clone())
     }
 }
 
-/// A collection that grows while a run trains.
+/// A collection that grows during training.
 #[expect(clippy::len_without_is_empty, reason = "only its growth is of interest")]
 pub trait Growable {
     /// The number of values.
     fn len(&self) -> usize;
 
-    /// How many values it has room for.
+    /// The number of values that it has room for.
     fn capacity(&self) -> usize;
 
-    /// How many bytes a value takes.
+    /// The size of a value in bytes.
     fn value_bytes(&self) -> u64;
 
     /// Makes room for `additional` more values.
     ///
     /// # Errors
-    /// There is no memory for them.
+    /// The memory could not be allocated.
     fn try_grow(&mut self, additional: usize) -> Result<(), TryReserveError>;
 }
 
@@ -186,7 +187,7 @@ mod tests {
         memory.reserve(&mut values, 1).expect("80 bytes");
         assert_eq!((values.capacity(), room.left()), (20, 160));
         values.extend(0..10);
-        // Twice as many would take all of the room.
+        // Doubling the capacity would take all of the room.
         memory.reserve(&mut values, 1).expect("80 bytes");
         assert_eq!((values.capacity(), room.left()), (30, 80));
         let refused = AllocationError::LimitReached { limit: 1000, growing: Growing::Learner };
