@@ -34,7 +34,7 @@ impl<const N: usize> QTable<N> {
         &self.sums
     }
 
-    /// Sums the rows of `A` values, all actions at once, in registers.
+    /// Sums rows of `A` values for all actions at once, in registers.
     #[inline]
     fn sum_rows<const A: usize>(&mut self, rows: &[u32]) {
         let table = self.values.as_chunks::<A>().0;
@@ -45,7 +45,7 @@ impl<const N: usize> QTable<N> {
     /// The value of one action with these active rows.
     #[inline]
     pub fn value<R: AsRef<[u32]> + ?Sized>(&self, rows: &R, action: usize) -> f64 {
-        // The check of the action is then the one of `value_mut`.
+        // The bounds check of the action is then that of `value_mut`.
         if N > 0
             && let &[row] = rows.as_ref()
         {
@@ -60,7 +60,7 @@ impl<const N: usize> QTable<N> {
         row as usize * self.num_actions() + action
     }
 
-    /// Q ← Q + α (target - Q). The step size is the share of each row.
+    /// Q ← Q + α (target - Q). Each active row moves by its step size times the error.
     #[inline]
     pub fn update<R: AsRef<[u32]> + ?Sized>(
         &mut self,
@@ -80,8 +80,8 @@ impl<const N: usize> QTable<N> {
         }
     }
 
-    /// The update where each weight has a step size, or where updates are logged. It is a function of its own because a step
-    /// of the learners whose step size is uniform takes up to 6 % more instructions when this is inlined.
+    /// The update with a step size for each weight, or with logging. It is a separate function because inlining it
+    /// costs the learners with a uniform step size up to 6 % more instructions per step.
     #[inline(never)]
     fn update_each(&mut self, rows: &[u32], action: usize, (target, error): (f64, f64), step_size: &mut impl StepSize) {
         let old = step_size.log().is_some().then(|| self.value(rows, action));
@@ -137,8 +137,8 @@ impl<const N: usize> QTable<N> {
         }
     }
 
-    /// Records an error that is infinite or NaN. With one active row it is not looked at: at a step size of at most 1 a
-    /// value never leaves the range of its targets.
+    /// Records an error that is infinite or NaN. With one active row this check is unnecessary: with a step size of at
+    /// most 1, a value never leaves the range of its targets.
     #[inline]
     pub fn check_finite(&mut self, error: f64) {
         // 0 for a finite error, NaN otherwise.
@@ -148,7 +148,7 @@ impl<const N: usize> QTable<N> {
     /// Whether a recorded error was infinite or NaN.
     #[inline]
     pub fn diverged(&self) -> bool {
-        // As integers, which compare faster. It is never -0.
+        // Integers compare faster than floats. The divergence is never -0.
         self.divergence.to_bits() != 0
     }
 }

@@ -1,4 +1,4 @@
-//! The Q table: action values and their updates, for one active row or several.
+//! The Q table: action values and their updates, for one or more active rows.
 
 mod linear;
 mod moved_values;

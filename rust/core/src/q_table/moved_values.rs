@@ -1,18 +1,17 @@
-//! Action values while a learner keeps some of the values behind the rows.
+//! Action values while a learner stores some of the values after the rows.
 
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
 use super::{QTable, sum_rows, sum_values};
 
 impl<const N: usize> QTable<N> {
-    /// The values of the rows, and those that a learner keeps behind them.
+    /// The values of the rows, and those that a learner stores after them.
     #[inline(always)]
     pub(crate) fn storage_mut(&mut self) -> &mut Vec<f64> {
         &mut self.values
     }
 
-    /// [`action_values`](Self::action_values), where `slots` says for each weight at which index of the storage its value
-    /// is.
+    /// [`action_values`](Self::action_values), where `slots` holds the index in the storage of each weight's value.
     #[inline(always)]
     pub(crate) fn values_at<R: AsRef<[u32]>>(&mut self, slots: &[u32], rows: &R) -> &[f64] {
         match self.num_actions() {
@@ -34,7 +33,7 @@ impl<const N: usize> QTable<N> {
         sum_values(rows.iter().map(|&row| self.values[slots[self.weight_index(row, action)] as usize]))
     }
 
-    /// The sums of `A` values a row, all actions at once, in registers.
+    /// Sums rows of `A` values for all actions at once, in registers.
     #[inline(always)]
     fn sum_slots<const A: usize>(&mut self, slots: &[u32], rows: &[u32]) {
         let slots = slots.as_chunks::<A>().0;
@@ -50,7 +49,7 @@ mod tests {
     fn check<const A: usize>(rows: &[u32]) {
         let values = (0..4 * A).map(|weight| 0.1 * weight as f64).collect::<Vec<_>>();
         let (mut table, mut moved) = (QTable::<0>::new(values.clone(), A), QTable::<0>::new(values.clone(), A));
-        // Every other value is behind the rows, in reverse, and its old place holds nonsense.
+        // Every other value is stored after the rows, in reverse order, and its old place holds garbage.
         let mut slots: Vec<u32> = (0..).take(4 * A).collect();
         for weight in (0..4 * A).step_by(2) {
             slots[weight] = moved.values.len() as u32;

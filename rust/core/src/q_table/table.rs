@@ -2,11 +2,11 @@
 
 use crate::random::Rng;
 
-/// A Q table: rows of `N` action values in C order. With `N = 0` the number of actions is known at run time only; with a
-/// known number the compiler unrolls the loops over a row.
+/// A Q table: rows of `N` action values in C order. With `N = 0` the number of actions is known only at run time;
+/// otherwise the compiler unrolls the loops over a row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct QTable<const N: usize = 0> {
-    /// The rows. Behind them a learner may keep some of their values while it learns.
+    /// The rows. A learner may store some of their values after them while it learns.
     pub(super) values: Vec<f64>,
     /// The number of values in the rows.
     len: usize,
@@ -43,8 +43,8 @@ impl<const N: usize> QTable<N> {
         &mut self.values[..self.len]
     }
 
-    /// Exchanges the storage of the values, and what a learner keeps behind them. The table can be used again when it has
-    /// been given back.
+    /// Exchanges the storage of the values, including those that a learner stores after the rows. The table must not be
+    /// used until its storage has been swapped back.
     pub(crate) fn swap_storage(&mut self, storage: &mut Vec<f64>) {
         std::mem::swap(&mut self.values, storage);
     }
@@ -70,14 +70,14 @@ impl<const N: usize> QTable<N> {
         &self.values[row as usize * actions..][..actions]
     }
 
-    /// The same, to be changed.
+    /// The action values of a row, mutable.
     #[inline]
     pub(crate) fn row_mut(&mut self, row: u32) -> &mut [f64] {
         let actions = self.num_actions();
         &mut self.values[row as usize * actions..][..actions]
     }
 
-    /// The value of an action in a row.
+    /// The value of an action in a row, mutable.
     #[inline]
     pub fn value_mut(&mut self, row: u32, action: usize) -> &mut f64 {
         if N > 0 {

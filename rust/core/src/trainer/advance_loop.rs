@@ -1,4 +1,4 @@
-//! The training loop, compiled for wide vector registers too where a learner or a task has use for them.
+//! The training loop, compiled for wide vector registers too if the learner or the task benefits from them.
 
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
@@ -16,8 +16,8 @@ pub(super) struct AdvanceLoop<'a, T: Task, L, R> {
 }
 
 impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> AdvanceLoop<'_, T, L, R> {
-    /// Runs the loop with the machine's instructions. The results are the same with all of them: no multiplication is fused
-    /// with an addition.
+    /// Runs the loop with the widest instructions of the machine. The results do not depend on them, because
+    /// multiplications and additions are never fused.
     #[inline(always)]
     pub(super) fn dispatch(self) -> Result<(), T::Error> {
         let level = if L::HAS_VECTOR_PASSES || T::USES_VECTORS { SimdLevel::detect() } else { SimdLevel::PLAIN };
@@ -75,7 +75,7 @@ mod tests {
         table.values().iter().map(|value| value.to_bits()).collect()
     }
 
-    /// Runs an update rule with the machine's instructions and with those that every machine has.
+    /// Runs an update rule with the machine's instructions and with those available on every machine.
     fn check<U>(rule: U)
     where
         U: UpdateRule<ActiveTiles<8>, Agent> + Clone,
@@ -103,7 +103,7 @@ mod tests {
         }
     }
 
-    /// Sarsa(λ) in parts of this much work, until nothing happens any more.
+    /// Sarsa(λ) in parts of this much work, until the run is finished.
     fn train<T: Task<Error = OutOfBounds>>(task: T, tilings: usize, work: u64) -> (Vec<u64>, Vec<i64>) {
         let traces = Traces::new(tilings * ROWS * 3, 1e-3, &StopFlag::new()).expect("a few weights");
         let rule = SarsaLambda { traces, kind: TraceKind::Replacing, trace_decay: 0.9 };

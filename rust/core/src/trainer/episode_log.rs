@@ -15,7 +15,8 @@ pub struct EpisodeLog {
 }
 
 impl EpisodeLog {
-    /// Makes room for all episodes that can finish within a budget, as each takes a step: the loop then cannot fail.
+    /// Makes room for all episodes that can finish within a budget, given that each takes at least one step. The loop
+    /// then cannot run out of memory.
     pub(super) fn reserve(&mut self, budget: Budget) -> Result<(), AllocationError> {
         let missing = budget.episodes.saturating_sub(self.returns.len()) as u64;
         let count = missing.min(budget.work) as usize;

@@ -1,4 +1,4 @@
-//! A training run as a value, and the only training loop.
+//! A training run, and the only training loop.
 
 mod advance_loop;
 mod checkpoint;
@@ -14,16 +14,16 @@ use crate::random::Rng;
 use crate::tasks::{Next, Task, Transition};
 use crate::training_error::TrainingError;
 
-/// Active rows of at most this many bytes are copied in registers.
+/// The largest size in bytes of active rows that are copied in registers.
 const IN_REGISTERS: usize = 32;
 
-/// How far `advance` goes: it stops at whichever limit it reaches first.
+/// The limits of a call of `advance`, which stops at the first limit that it reaches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Budget {
     /// The number of finished episodes, counted from the start of the run.
     pub episodes: usize,
-    /// The work, counted from the call. A step of a one-step learner on a grid counts as 1, and other steps as much more
-    /// as they cost; see [`Learner::work`]. A call ends after the step that uses up its work.
+    /// The work, counted from the call. A step of a one-step learner on a grid counts as 1, and other steps count in
+    /// proportion to their cost; see [`Learner::work`]. A call ends after the step that uses up its work.
     pub work: u64,
 }
 
@@ -37,7 +37,7 @@ pub(crate) struct EpisodeState<S, R> {
     pub(crate) action: usize,
     pub(crate) episode_return: f64,
     pub(crate) length: i64,
-    /// What followed the last step, if the learner has not finished learning from it.
+    /// The next state of the last step, if the learner has not finished learning from that step.
     pub(crate) unfinished: Option<Next<R>>,
 }
 
@@ -49,14 +49,14 @@ pub struct Trainer<T: Task, L, R> {
     pub(crate) rng: R,
     pub(crate) episodes: EpisodeLog,
     pub(crate) episode: Option<EpisodeState<T::State, T::Active>>,
-    /// Whether the last episode failed and was given up.
+    /// Whether the last episode failed and was abandoned.
     pub(crate) abandoned: bool,
     /// The memory that the learner may still take while it trains.
     memory: RunMemory,
 }
 
 impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> Trainer<T, L, R> {
-    /// A run before its first step.
+    /// A run that has not taken a step yet.
     pub fn new(task: T, learner: L, rng: R) -> Self {
         let memory = RunMemory::new(MemoryRoom::unlimited());
         Self { task, learner, rng, episodes: EpisodeLog::default(), episode: None, abandoned: false, memory }
@@ -93,16 +93,16 @@ impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> Trainer<T, L, R> {
         self.episode.as_ref().map(|episode| (episode.episode_return, episode.length, episode.action))
     }
 
-    /// Takes the finished episodes out. The run cannot be continued.
+    /// Takes the finished episodes out. The run cannot be continued afterwards.
     pub fn take_episodes(&mut self) -> EpisodeLog {
         std::mem::take(&mut self.episodes)
     }
 
-    /// Trains until the budget is used up. The next call resumes exactly where this one stopped. A learner that has
-    /// diverged stops after that episode.
+    /// Trains until the budget is used up. The next call resumes exactly where this one stopped. If the learner has
+    /// diverged, training stops after that episode.
     ///
     /// # Errors
-    /// The task's error; `Allocation` if what the run stores does not fit into memory or its limit. What was learned before
+    /// The task's error; `Allocation` if the data of the run exceeds the memory or its limit. Everything learned before
     /// is kept. An episode in which the task fails is abandoned and not counted.
     pub fn advance(&mut self, budget: Budget) -> Result<(), TrainingError<T::Error>> {
         self.reserve(budget)?;
@@ -112,22 +112,23 @@ impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> Trainer<T, L, R> {
         self.rng = rng;
         self.abandoned = result.is_err();
         if self.abandoned {
-            // Its steps must not be learned from again with the next episode's.
+            // The next episode must not learn from the steps of the failed one.
             self.learner.abandon_episode();
         }
         self.learner.complete_tables();
         result.map_err(TrainingError::Task)
     }
 
-    /// Makes room for what the run stores within a budget.
+    /// Makes room for the data that the run can store within a budget.
     pub(crate) fn reserve(&mut self, budget: Budget) -> Result<(), AllocationError> {
         self.episodes.reserve(budget)?;
         self.learner.reserve(budget.work, &mut self.memory)
     }
 
-    /// Whether the task writes the active rows of a step. A result that holds many rows would be copied through memory, in
-    /// pieces that differ from copy to copy, and the processor would wait for each: with 8 to 32 tilings and a boxed task for
-    /// a quarter of the run, although the instructions are the same within 2 %.
+    /// Whether the task writes the active rows of a step instead of returning them. A result with many rows would be
+    /// copied through memory, in pieces that differ from copy to copy, and the processor would wait for each copy: with
+    /// 8 to 32 tilings and a boxed task, a quarter of the run's time, although the number of instructions is the same
+    /// within 2 %.
     const WRITES_ROWS: bool = size_of::<T::Active>() > IN_REGISTERS;
 
     #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
@@ -191,7 +192,7 @@ impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> Trainer<T, L, R> {
         Ok(())
     }
 
-    /// Continues to learn from a step that the learner left unfinished.
+    /// Continues learning from a step that the learner left unfinished.
     #[cold]
     fn finish_step(&mut self, mut episode: EpisodeState<T::State, T::Active>, next: Next<T::Active>, rng: &mut R) {
         episode.action = self.learner.resume(next, rng);

@@ -1,4 +1,4 @@
-//! Steps that are learned from in parts, and the work that is counted.
+//! Tests of learning from steps in parts, and of the work counted.
 
 use super::*;
 use crate::envs::classic_control::MountainCar;
@@ -16,8 +16,8 @@ use crate::tasks::NativeTask;
 const ROWS: usize = 19 * 15;
 const ACTIONS: usize = 3;
 
-/// Two episodes with a rule whose steps are more work than a learner does in one call, in one part and in the
-/// smallest parts.
+/// Runs two episodes in one part and in the smallest parts, with a rule whose steps take more work than a learner does
+/// in one call.
 fn check_parts<U>(rule: &U, steps: u64, terminate: bool)
 where
     U: UpdateRule<[u32; 1], Agent> + Clone,
@@ -55,7 +55,7 @@ fn a_step_in_parts_is_the_same_step() {
     for terminate in [false, true] {
         check_parts(&DynaQ::new(model(), 20_000), 4, terminate);
         check_parts(&DynaQPlus::new(model(), 20_000, 1e-3, &stop).expect("a small model"), 4, terminate);
-        // Every error is large enough, so that the queue is never empty.
+        // Every error exceeds the threshold, so the queue is never empty.
         let sweeping = PrioritizedSweeping::new(model(), 20_000, -1.0, &stop).expect("a small model");
         check_parts(&sweeping, 4, terminate);
         check_parts(&NStepSarsa::new(5000), 2000, terminate);
