@@ -1,6 +1,6 @@
-//! The time per step of bandit algorithms on the 10-armed testbed, and of the draws that a step cannot do without.
+//! The time per step of bandit algorithms on the 10-armed testbed, and of the draws that a step needs.
 //!
-//! `cargo bench --bench bandits`. The runs have the types of the Python package's.
+//! `cargo bench --bench bandits`. The runs have the same types as in the Python package.
 
 mod benchmarks;
 mod runs;
@@ -17,7 +17,7 @@ use qtab_core::tasks::{BoxedTask, KArmedBandit, Testbed};
 use qtab_core::{Budget, StopFlag, Trainer};
 use runs::{agent, train};
 
-/// What the benchmarks store is small.
+/// The message for allocations, which are small here.
 const FITS: &str = "it fits into memory";
 
 const GROUP: &str = "10-armed testbed";
@@ -36,7 +36,8 @@ fn run<U: UpdateRule<[u32; 1], Agent>>(policy: AnyPolicy, learning_rate: Learnin
     train(Trainer::new(task, learner, rng), Budget { episodes: STEPS, work: u64::MAX })
 }
 
-/// Adds the benchmark of a learner on the problems of one seed after the other: with one problem, branches would be predicted too well.
+/// Adds the benchmark of a learner on a new problem for each run, one seed after the other: with a single problem,
+/// branches would be predicted too well.
 fn bench<U>(benchmarks: &mut Benchmarks, name: &str, parts: impl Fn() -> (AnyPolicy, LearningRate, U))
 where
     U: UpdateRule<[u32; 1], Agent>,

@@ -55,7 +55,7 @@ fn physics(benchmarks: &mut Benchmarks) {
     });
 }
 
-/// From observations to rows.
+/// Converts observations to rows.
 fn discretizer(benchmarks: &mut Benchmarks) {
     let (pole, bins) = (CartPole::default(), bins());
     let states = states(&mut Pcg64::new(&SeedSequence::new(&[0])));

@@ -1,7 +1,7 @@
 //! The time per step of each learner on `MountainCar`, on a grid and on eight tilings.
 //!
-//! `cargo bench --bench learners`, or `cargo bench --bench learners -- tilings` for the tilings only. All learners use the
-//! policy and the learning rate that are chosen at run time.
+//! `cargo bench --bench learners`, or `cargo bench --bench learners -- tilings` for the tilings only. All learners use
+//! a policy and a learning rate chosen at run time.
 
 mod benchmarks;
 mod mountain_car_task;
@@ -24,7 +24,7 @@ use qtab_core::tasks::BoxedTask;
 use qtab_core::{Budget, Learner, StopFlag, Task, Trainer};
 use runs::{agent, train, train_batch};
 
-/// What the benchmarks store is small.
+/// The message for allocations, which are small here.
 const FITS: &str = "it fits into memory";
 
 const EPISODES: usize = 100;
@@ -109,7 +109,7 @@ fn tilings(benchmarks: &mut Benchmarks) {
     boxed_tilings::<32>(benchmarks, "32 tilings, boxed");
 }
 
-/// A learner compiled for its policy and its learning rate: a run alone, and a batch of runs on one core.
+/// Benchmarks a learner compiled for its policy and its learning rate: a single run, and a batch of runs on one core.
 fn compiled_tilings<U>(benchmarks: &mut Benchmarks, name: &str, rule: &U)
 where
     U: UpdateRule<FixedTiles<TILINGS>, Agent<ACTIONS, EpsilonGreedy, f64>> + BatchRule + Clone,
@@ -127,7 +127,7 @@ where
     benchmarks.add(group, &format!("{name}, a batch of 8 on one core"), || train_batch(run, BUDGET));
 }
 
-/// Learners on a boxed task, as the Python package runs them.
+/// Benchmarks learners on a boxed task, as the Python package runs them.
 fn boxed_tilings<const N: usize>(benchmarks: &mut Benchmarks, group: &'static str) {
     type Boxed<const N: usize> = BoxedTask<<FixedTileCoding<f32, 2, N> as Features<[f32; 2]>>::Active, OutOfBounds>;
     let features = tile_coding::<N>();

@@ -41,7 +41,7 @@ fn learner(rng: &mut impl Rng) -> QLearner {
     TdLearner { agent, rule: QLearning }
 }
 
-/// The active row of a state, the action taken, and what followed.
+/// The active row of a state, the action taken, and the transition.
 type WalkStep = ([u32; 1], usize, Transition<[u32; 1]>);
 
 /// Random states and actions.
@@ -63,7 +63,7 @@ fn physics(benchmarks: &mut Benchmarks) {
     });
 }
 
-/// From observations to rows.
+/// Converts observations to rows.
 fn discretizer(benchmarks: &mut Benchmarks) {
     let (car, rounding) = (MountainCar::default(), rounding());
     let observations: Vec<_> = states(&mut agent_rng()).iter().map(|(state, _)| car.observe(state)).collect();
@@ -75,7 +75,7 @@ fn discretizer(benchmarks: &mut Benchmarks) {
     });
 }
 
-/// The steps of a car that acts at random.
+/// The steps of a car with random actions.
 fn random_walk(rng: &mut Pcg64) -> Vec<WalkStep> {
     let mut task = task(rounding());
     let (mut state, mut active) = task.reset().expect(IN_BOUNDS);
@@ -131,7 +131,7 @@ fn draws_only(steps: u64, rng: &mut Pcg64) -> u32 {
     (0..steps).map(|_| if rng.random() < greedy_below { 0 } else { rng.integers(3) }).sum()
 }
 
-/// The table only: the largest value of the next row, and the update, along steps known in advance.
+/// The table only, along steps known in advance: the largest value of the next row, and the update.
 fn table_only(walk: &[WalkStep], agent: &mut Agent<3, EpsilonGreedy, f64>) {
     for &(active, action, transition) in walk {
         if let Next::NonTerminal(next) = transition.next {

@@ -1,4 +1,4 @@
-//! The time per step of prediction beside that of Q-learning with random actions, in the same environments.
+//! The time per step of prediction compared with that of Q-learning with random actions, in the same environments.
 //!
 //! `cargo bench --bench prediction`. "boxed" is a run whose task and method are chosen at run time.
 
@@ -23,14 +23,14 @@ use runs::{agent, train};
 
 const EPISODES: usize = 100;
 const MAX_EPISODE_STEPS: u64 = 10_000;
-/// Methods that look back reserve memory for so many.
+/// The number of steps for which methods that look back reserve memory.
 const MOST_STEPS: u64 = EPISODES as u64 * MAX_EPISODE_STEPS;
 const LEARNING_RATE: f64 = 0.1;
 
 /// A method that is chosen at run time.
 type Method = Box<dyn PredictionRule + Send>;
 
-/// A table whose step from a state by an action is given, until it leads to one of the terminal states.
+/// A table given by the step from each state and action. Episodes end in the terminal states.
 fn table(states: i64, start: usize, terminal: &[i64], actions: usize, step: impl Fn(i64, usize) -> i64) -> TabularMdp {
     let row = |pair: usize| {
         let (state, action) = ((pair / actions).cast_signed() as i64, pair % actions);

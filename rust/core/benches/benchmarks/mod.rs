@@ -1,9 +1,9 @@
-//! Benchmarks that Criterion times, or that run so often as a counter of instructions asks for.
+//! Benchmarks that Criterion times, or that run a given number of times under an instruction counter.
 //!
-//! With `QTAB_BENCH=list` a benchmark program prints the names of its benchmarks; with `QTAB_BENCH=NAME` it runs one of them
-//! `QTAB_RUNS` times and prints the number of steps. Otherwise Criterion reads the command line. `.ci/run instructions`
-//! counts the instructions of one run and of two under Valgrind, and so those of a step. `QTAB_SIMD=plain` or `=avx2` turns
-//! wider vector instructions off.
+//! With `QTAB_BENCH=list` a benchmark program prints the names of its benchmarks; with `QTAB_BENCH=NAME` it runs one of
+//! them `QTAB_RUNS` times and prints the number of steps. Otherwise Criterion reads the command line. `.ci/run
+//! instructions` counts the instructions of one run and of two runs under Valgrind; their difference gives the
+//! instructions per step. `QTAB_SIMD=plain` or `=avx2` disables wider vector instructions.
 #![expect(clippy::print_stdout, reason = "names and numbers of steps are the program's output")]
 
 use std::env;
@@ -18,10 +18,10 @@ pub(crate) enum Benchmarks {
 }
 
 impl Benchmarks {
-    /// As the environment variables and the command line ask for.
+    /// The benchmarks in the mode given by the environment variables and the command line.
     pub(crate) fn from_env() -> Self {
         if let Ok(name) = env::var("QTAB_SIMD") {
-            SimdLevel::restrict(SimdLimit::from_name(&name).expect("QTAB_SIMD names a limit"));
+            SimdLevel::restrict(SimdLimit::from_name(&name).expect("QTAB_SIMD must be a known limit"));
         }
         match env::var("QTAB_BENCH") {
             Err(_) => Self::Timed(Box::new(Criterion::default().configure_from_args())),
@@ -33,7 +33,7 @@ impl Benchmarks {
         }
     }
 
-    /// Adds a benchmark. `run` returns how many steps it took.
+    /// Adds a benchmark. `run` returns the number of steps it took.
     pub(crate) fn add(&mut self, group: &str, name: &str, mut run: impl FnMut() -> u64) {
         match self {
             Self::Timed(criterion) => {

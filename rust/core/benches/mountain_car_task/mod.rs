@@ -1,4 +1,5 @@
-//! What the benchmarks share: the task of the article (`MountainCar` on its grid) and the random generators of seed 0.
+//! Shared parts of the benchmarks: the task of the article (`MountainCar` on its grid) and the random generators of
+//! seed 0.
 
 use qtab_core::envs::classic_control::MountainCar;
 use qtab_core::features::{Axis, Features, Rounding};
