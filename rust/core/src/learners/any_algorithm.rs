@@ -1,4 +1,4 @@
-//! An algorithm chosen at run time, and the learner that it makes of an agent.
+//! An algorithm chosen at run time, and the construction of its learner.
 
 use super::{
     ActorCritic, ActorCriticLambda, Agent, Critic, DifferentialQLearning, DifferentialSarsa, DoubleQLearning, DynaQ,
@@ -39,36 +39,36 @@ pub enum AnyAlgorithm {
     WatkinsQLambda(TraceOptions),
     /// [`DynaQ`]
     DynaQ {
-        /// The updates from the model after each step.
+        /// The number of planning updates after each step.
         planning_steps: u32,
     },
     /// [`DynaQPlus`]
     DynaQPlus {
-        /// The updates from the model after each step.
+        /// The number of planning updates after each step.
         planning_steps: u32,
-        /// The weight κ of the bonus for actions not tried for long.
+        /// The weight κ of the bonus for actions that have not been tried for a long time.
         time_weight: f64,
     },
     /// [`DynaQ`] with a [`StochasticModel`]
     StochasticDynaQ {
-        /// The updates from the model after each step.
+        /// The number of planning updates after each step.
         planning_steps: u32,
     },
     /// [`MonteCarloControl`]
     MonteCarlo {
-        /// The most steps of an episode.
+        /// The maximum number of steps of an episode.
         max_episode_steps: u64,
     },
     /// [`MonteCarloControl`] with exploring starts
     MonteCarloEs {
-        /// The most steps of an episode.
+        /// The maximum number of steps of an episode.
         max_episode_steps: u64,
     },
     /// [`OffPolicyMonteCarlo`]
     OffPolicyMonteCarlo {
-        /// The most steps of an episode.
+        /// The maximum number of steps of an episode.
         max_episode_steps: u64,
-        /// α, by which W / C is multiplied.
+        /// The learning rate α, which multiplies W / C.
         learning_rate: f64,
         /// The smallest step size.
         min_learning_rate: f64,
@@ -91,9 +91,9 @@ pub enum AnyAlgorithm {
     },
     /// [`PrioritizedSweeping`]
     PrioritizedSweeping {
-        /// The most updates after each step.
+        /// The maximum number of updates after each step.
         planning_steps: u32,
-        /// The smallest error that is planned, θ.
+        /// The threshold θ: errors up to this are not planned.
         priority_threshold: f64,
     },
     /// [`DifferentialSarsa`]
@@ -132,17 +132,17 @@ pub enum AnyAlgorithm {
     },
 }
 
-/// What is done with the learner that [`AnyAlgorithm::learner`] makes, whichever its type.
+/// Receives the learner that [`AnyAlgorithm::learner`] creates, whatever its type.
 pub trait LearnerVisitor<R> {
     /// The result.
     type Output;
 
-    /// Takes the learner.
+    /// Receives the learner.
     fn visit<L: Learner<R> + Send + 'static>(self, learner: L) -> Self::Output;
 }
 
 impl AnyAlgorithm {
-    /// How many tables the algorithm learns.
+    /// The number of tables that the algorithm learns.
     pub fn n_tables(&self) -> usize {
         if matches!(self, Self::DoubleQLearning) || self.value_learning_rate().is_some() { 2 } else { 1 }
     }
@@ -152,7 +152,8 @@ impl AnyAlgorithm {
         matches!(self, Self::OffPolicyMonteCarlo { .. } | Self::NStepTreeBackup { .. } | Self::NStepQSigma { .. })
     }
 
-    /// Whether each state must have a row of the table: for a model, for a baseline of each state, or for visits to be counted.
+    /// Whether each state must have exactly one active row: for a model, for a baseline of each state, or for visit
+    /// counts.
     pub fn needs_single_rows(&self) -> bool {
         matches!(
             self,
@@ -167,7 +168,7 @@ impl AnyAlgorithm {
         )
     }
 
-    /// The step size of the state values, which are the second table; `None` for an algorithm that learns none.
+    /// The step size of the state values, stored in the second table; `None` for an algorithm that learns none.
     pub fn value_learning_rate(&self) -> Option<f64> {
         match *self {
             Self::ReinforceWithBaseline { value_learning_rate }
@@ -177,14 +178,14 @@ impl AnyAlgorithm {
         }
     }
 
-    /// Whether the table holds preferences, of which the policy must be the softmax.
+    /// Whether the table holds preferences, in which case the policy must be the softmax.
     pub fn learns_preferences(&self) -> bool {
         matches!(self, Self::GradientBandit { .. } | Self::Reinforce) || self.value_learning_rate().is_some()
     }
 
-    /// Makes a learner of an agent and passes it to `visitor`. `second_table` is the other table of Double Q-learning, or
-    /// the state values of a critic.
-    /// `None` where the algorithm needs single rows and `R` holds several, or a second table and there is none.
+    /// Creates the learner of an agent and passes it to `visitor`. `second_table` is the other table of Double
+    /// Q-learning, or the state values of a critic. The result is `None` if the algorithm needs single rows and `R`
+    /// holds several, or if it needs a second table and there is none.
     ///
     /// # Errors
     /// `OutOfMemory`; `Stopped` after `stop` was set.
@@ -199,7 +200,7 @@ impl AnyAlgorithm {
         R: ActiveRows + Send + 'static,
         V: LearnerVisitor<R>,
     {
-        // Known when this is compiled, so that what needs single rows is left out of the code for several rows.
+        // This is known at compile time, so algorithms that need single rows are not compiled for several rows.
         if self.needs_single_rows() && size_of::<R>() != size_of::<u32>() {
             return Ok(None);
         }

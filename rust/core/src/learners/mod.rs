@@ -1,4 +1,4 @@
-//! The learning algorithms, grouped by what they learn from. What all of them share is in `common`.
+//! The learning algorithms, grouped by the experience that they learn from. Shared parts are in `common`.
 
 mod any_algorithm;
 mod common;

@@ -54,7 +54,7 @@ impl<const N: usize> QTable<N> {
         sum_values(rows.as_ref().iter().map(|&row| self.values[self.weight_index(row, action)]))
     }
 
-    /// The index of the weight of an action in a row, as step sizes and traces use it.
+    /// The index of the weight of an action in a row, as used for step sizes and traces.
     #[inline]
     pub fn weight_index(&self, row: u32, action: usize) -> usize {
         row as usize * self.num_actions() + action

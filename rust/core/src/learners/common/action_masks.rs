@@ -1,15 +1,15 @@
-//! Which actions each state has.
+//! The actions that are available in each state.
 
 use crate::StopFlag;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::memory::{AllocationError, filled};
 
-/// Which actions the states have, each as it was last seen. With one active row per state, there is a mask for each row;
+/// The action masks of the states, each as last reported. With one active row per state, there is a mask for each row;
 /// with several, as in tile coding, only that of the last state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ActionMasks {
     num_actions: usize,
-    /// The distance between the masks of two rows; 0 if there is one mask only.
+    /// The distance between the masks of two rows; 0 if there is only one mask.
     stride: usize,
     available: Vec<bool>,
     /// A buffer for masked values.
@@ -17,7 +17,7 @@ pub struct ActionMasks {
 }
 
 impl ActionMasks {
-    /// Masks for a table with so many rows, with every action available.
+    /// Masks for a table with `rows` rows, with every action available.
     ///
     /// # Errors
     /// `OutOfMemory`; `Stopped` after `stop` was set.
@@ -27,7 +27,7 @@ impl ActionMasks {
         Ok(Self { num_actions, stride, available, values: vec![0.0; num_actions] })
     }
 
-    /// Masks that are known, row by row.
+    /// Known masks, row by row.
     pub fn known(available: Vec<bool>, num_actions: usize) -> Self {
         Self { num_actions, stride: num_actions, available, values: vec![0.0; num_actions] }
     }
@@ -43,7 +43,7 @@ impl ActionMasks {
         self.available[start..][..self.num_actions].copy_from_slice(mask);
     }
 
-    /// The action values of a state, with -∞ for the actions that it does not have.
+    /// The action values of a state, with -∞ for unavailable actions.
     pub fn masked(&mut self, rows: &[u32], values: &[f64]) -> &[f64] {
         let start = self.start(rows);
         let available = &self.available[start..][..self.num_actions];

@@ -8,13 +8,13 @@ use crate::random::Rng;
 use crate::schedules::{LearningRate, StepSize};
 use crate::tasks::Next;
 
-/// How many values of a row, traces or rewards of a return are read in the time that counts as a work of 1.
+/// The number of values of a row, traces or rewards of a return that are read per unit of work.
 pub(crate) const VALUES_PER_WORK: u64 = 16;
 
-/// The most work that a learner does in one call. A step that takes more is left unfinished.
+/// The most work that a learner does in one call. A step that takes more work is left unfinished.
 pub(crate) const MAX_WORK_PER_CALL: u64 = 8192;
 
-/// The work of an update that reads a row of so many values.
+/// The work of an update that reads a row of this many values.
 #[inline]
 pub(in crate::learners) fn row_work(num_actions: usize) -> u64 {
     1 + num_actions as u64 / VALUES_PER_WORK
@@ -33,7 +33,7 @@ pub struct Agent<const N: usize = 0, P = AnyPolicy, A = LearningRate> {
     pub discount: f64,
     /// The update at a terminal state.
     pub terminal_update: TerminalUpdate,
-    /// Which actions the states have; `None` if each has all of them. Ignored with `N` > 0.
+    /// The action masks; `None` if every action is available in every state. Ignored with `N` > 0.
     pub masks: Option<Box<ActionMasks>>,
 }
 
@@ -46,7 +46,7 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
         self.policy.choose_in(rows.as_ref(), values, rng)
     }
 
-    /// The action values of the state with these active rows. The value of an action that the state does not have is -∞.
+    /// The action values of the state with these active rows. The value of an unavailable action is -∞.
     #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
     #[inline(always)]
     pub fn action_values(&mut self, rows: impl AsRef<[u32]>) -> &[f64] {
@@ -67,7 +67,7 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
         self.policy.probability(values, action)
     }
 
-    /// A random action among those that the state with these active rows has: `rng.integers` of their number.
+    /// A random available action in the state with these active rows, drawn by `rng.integers`.
     #[inline]
     pub fn sample_action(&mut self, rows: impl AsRef<[u32]>, rng: &mut impl Rng) -> usize {
         match &self.masks {
@@ -76,7 +76,7 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
         }
     }
 
-    /// Takes over which actions a state has.
+    /// Records the action mask of a state.
     #[inline]
     pub fn set_action_mask(&mut self, rows: impl AsRef<[u32]>, mask: &[bool]) {
         if let Some(masks) = &mut self.masks {
@@ -84,7 +84,7 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
         }
     }
 
-    /// Which actions the states have, row by row; `None` if each has all of them.
+    /// The action masks, row by row; `None` if every action is available in every state.
     pub fn action_masks(&self) -> Option<&[bool]> {
         self.masks.as_deref().map(ActionMasks::available)
     }
@@ -116,7 +116,7 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
         self.table.value(&rows, action)
     }
 
-    /// Counts a visit of a state-action pair.
+    /// Counts a visit to a state-action pair.
     #[inline]
     pub fn visit(&mut self, rows: impl AsRef<[u32]>, action: usize) {
         if self.learning_rate.uniform().is_some() {
@@ -133,20 +133,20 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
         self.table.update(&rows, action, target, &mut self.learning_rate);
     }
 
-    /// The update when S′ is terminal, as `terminal_update` says.
+    /// The update for a terminal S′, according to `terminal_update`.
     #[inline]
     pub fn update_terminal(&mut self, rows: impl AsRef<[u32]>, action: usize, reward: f64) {
         self.table.update_terminal(rows.as_ref(), action, reward, self.terminal_update, &mut self.learning_rate);
     }
 
-    /// The work of an update: 1 with a few actions, more where reading a row takes longer. A number of actions that the
-    /// compiler knows is small.
+    /// The work of an update: 1 with a few actions, more if reading a row takes longer. A number of actions known to
+    /// the compiler is always small.
     #[inline]
     pub fn work(&self) -> u64 {
         if N > 0 { 1 } else { row_work(self.table.num_actions()) }
     }
 
-    /// Saves or restores what the learning rate has counted, and which actions the states had.
+    /// Saves or restores the counts of the learning rate and the action masks.
     pub(crate) fn persist_counts(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
         if let Some(masks) = &mut self.masks {
             masks.persist(checkpoint)?;
@@ -163,7 +163,7 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
     }
 }
 
-/// Action values, with -∞ for the actions that the state with these active rows does not have.
+/// Action values, with -∞ for the actions that are not available in the state with these active rows.
 #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
 #[inline(always)]
 pub(in crate::learners) fn available<'a, const N: usize>(

@@ -4,19 +4,19 @@ use crate::StopFlag;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::memory::{AllocationError, filled};
 
-/// A learner is given R + β / √N(S, A) for R, where N counts the visits of the pair, this one included. Of several active
-/// rows, each with a count of its own, the bonus is the average.
+/// The learner receives R + β / √N(S, A) instead of R, where N counts the visits to the pair, including the current
+/// one. With several active rows, each of which has a count, the bonus is the average over the rows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CountBonus {
     /// The weight β.
     weight: f64,
     num_actions: usize,
-    /// N of each row and action.
+    /// The counts N of each row and action.
     counts: Vec<u32>,
 }
 
 impl CountBonus {
-    /// Counts for a table of this many rows and actions.
+    /// Counts for a table with these numbers of rows and actions.
     ///
     /// # Errors
     /// `OutOfMemory`; `Stopped` after `stop` was set.

@@ -1,9 +1,11 @@
-//! What a type that holds a learner leaves to it.
+//! The macro that forwards the methods of a learner to a wrapped learner.
 
-/// Implements the methods of [`Learner`](crate::Learner) by the learner inside a type, within its `impl Learner<R>`.
+/// Implements the methods of [`Learner`](crate::Learner) by forwarding to the learner inside a type, within its `impl
+/// Learner<R>`.
 ///
-/// `$pattern` matches the type and binds `$learner`: a wrapper has one, an enum one for each variant. `rest` leaves out
-/// the methods that a wrapper may change, `learn`, `resume`, `end_episode` and `persist`; `all` includes them.
+/// `$pattern` matches the type and binds `$learner`: a wrapper has one such pattern, an enum one for each variant.
+/// `rest` leaves out the methods that a wrapper may change, `learn`, `resume`, `end_episode` and `persist`; `all`
+/// includes them.
 ///
 /// ```
 /// use qtab_core::learners::{Learner, QLearning, Sarsa, TdLearner};

@@ -17,13 +17,14 @@ pub trait Learner<R> {
     /// Learns from one step and returns the next action. The result is ignored at the end of an episode.
     fn learn(&mut self, state: R, action: usize, reward: f64, next: Next<R>, rng: &mut impl Rng) -> usize;
 
-    /// Takes over which actions a state has, before it chooses or learns from them. The task says which.
+    /// Records the action mask of a state, as reported by the task, before an action is chosen in this state or learned
+    /// from.
     #[inline]
     fn set_action_mask(&mut self, state: R, mask: &[bool]) {
         let (_, _) = (state, mask);
     }
 
-    /// Which actions the states have, row by row; `None` if each has all of them.
+    /// The action masks, row by row; `None` if every action is available in every state.
     fn action_masks(&self) -> Option<&[bool]> {
         None
     }
@@ -34,7 +35,7 @@ pub trait Learner<R> {
         1
     }
 
-    /// Makes room for what so much work can store.
+    /// Makes room for everything that this much work can store.
     ///
     /// # Errors
     /// `OutOfMemory`, `LimitReached`.
@@ -43,8 +44,8 @@ pub trait Learner<R> {
         Ok(())
     }
 
-    /// Whether the last step still has work to do, because it is more than a caller may have to wait for. The trainer
-    /// then calls [`resume`](Self::resume) before anything else.
+    /// Whether the last step is unfinished, because its work exceeds that of one call. The trainer then calls
+    /// [`resume`](Self::resume) before anything else.
     #[inline]
     fn is_unfinished(&self) -> bool {
         false
@@ -56,12 +57,12 @@ pub trait Learner<R> {
         0
     }
 
-    /// How many updates were made from a model; `None` where that is not counted.
+    /// The number of updates made from a model; `None` if they are not counted.
     fn planning_updates(&self) -> Option<u64> {
         None
     }
 
-    /// The estimate of the average reward; `None` where none is learned.
+    /// The estimate of the average reward; `None` if the learner does not estimate it.
     fn average_reward(&self) -> Option<f64> {
         None
     }
@@ -69,16 +70,17 @@ pub trait Learner<R> {
     /// Called after the last step of every episode.
     fn end_episode(&mut self);
 
-    /// Writes into the tables what it keeps elsewhere while it learns. The trainer calls it after the last step of a call.
+    /// Writes back into the tables the values that the learner stores elsewhere while it learns. The trainer calls it
+    /// after the last step of a call.
     fn complete_tables(&mut self) {}
 
-    /// The values of its tables, row by row. The greedy policy is over their sum.
+    /// The values of the tables, row by row. The greedy policy maximizes their sum.
     fn tables(&self) -> Vec<&[f64]>;
 
-    /// The same, to be replaced when a run is resumed.
+    /// The values of the tables, mutable, so that a resumed run can replace them.
     fn tables_mut(&mut self) -> Vec<&mut [f64]>;
 
-    /// The number of rows and of actions of each table.
+    /// The number of rows and actions of each table.
     fn shape(&self) -> (usize, usize);
 
     /// Moves the schedules on by this many episodes without learning.
@@ -86,10 +88,11 @@ pub trait Learner<R> {
         (0..episodes).for_each(|_| self.end_episode());
     }
 
-    /// Gives up an unfinished episode, so that another one can begin.
+    /// Abandons an unfinished episode, so that another one can begin.
     fn abandon_episode(&mut self);
 
-    /// Saves or restores all that has changed since the start of the run, except for the tables and the schedules.
+    /// Saves or restores everything that has changed since the start of the run, except for the tables and the
+    /// schedules.
     ///
     /// # Errors
     /// The bytes are damaged, or belong to another run.

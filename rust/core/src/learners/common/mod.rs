@@ -1,4 +1,4 @@
-//! What all learners share: their traits, the agent, and what wraps them.
+//! The shared parts of all learners: their traits, the agent, and wrappers.
 
 mod action_masks;
 mod agent;

@@ -1,11 +1,11 @@
-//! A step that may take so long that it is done in parts.
+//! A step that is done in parts because it can take long.
 
 use super::MAX_WORK_PER_CALL;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 
-/// How far the learning from a step is done, for the methods of which one step can take longer than a user who pressed Ctrl-C
-/// should wait: those that learn when an episode ends, n-step methods, whose work then grows with n², and batch TD, which
-/// repeats itself until the values settle.
+/// The progress of learning from a step, for methods in which one step can take longer than a user should wait after
+/// pressing Ctrl-C: those that learn when an episode ends, n-step methods, whose work then grows with n², and batch TD,
+/// which repeats its updates until the values converge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct StepInParts {
     is_unfinished: bool,
@@ -18,8 +18,8 @@ impl StepInParts {
         Self { is_unfinished: false, work: 0 }
     }
 
-    /// Calls `part` until nothing is left to do, or until the work of one call is done. `part` returns its work, and whether
-    /// something is left to do.
+    /// Calls `part` until no work remains or the work of one call is done. `part` returns its work and whether any
+    /// remains.
     pub(crate) fn advance(&mut self, mut part: impl FnMut() -> (u64, bool)) {
         (self.is_unfinished, self.work) = (true, 0);
         while self.is_unfinished && self.work < MAX_WORK_PER_CALL {
@@ -29,7 +29,7 @@ impl StepInParts {
         }
     }
 
-    /// Forgets what is left to do, and the work of the last call.
+    /// Discards the remaining work and resets the work of the last call.
     pub(crate) fn clear(&mut self) {
         *self = Self::new();
     }
@@ -45,7 +45,7 @@ impl StepInParts {
     }
 }
 
-/// Whether something is left to do; the work only measures.
+/// Saves whether work remains. The work of the last call is only a measurement.
 impl Persist for StepInParts {
     fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
         self.is_unfinished.persist(checkpoint)

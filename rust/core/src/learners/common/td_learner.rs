@@ -9,7 +9,7 @@ use crate::random::Rng;
 use crate::schedules::StepSize;
 use crate::tasks::Next;
 
-/// An agent together with the update rule that it learns by. The update rule is the algorithm; the rest is shared.
+/// An agent with its update rule. The update rule is the algorithm; the rest is shared.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TdLearner<U, G = Agent> {
     /// The table, the policy and the constants.

@@ -6,7 +6,7 @@ use crate::q_table::{QTable, TerminalUpdate};
 use crate::random::{Pcg64, SeedSequence};
 use crate::schedules::{LearningRate, Schedule};
 
-/// Two actions, α = γ = 1/2 and ε = 0.
+/// An agent with two actions, α = γ = 1/2 and ε = 0.
 pub(crate) fn agent(values: &[f64]) -> Agent {
     Agent {
         table: QTable::new(values.to_vec(), 2),

@@ -1,5 +1,5 @@
-//! What a learner is told of a step: truncated episodes (F. Pardo et al., "Time limits in reinforcement learning", 2018),
-//! and rewards with a bonus.
+//! Transformations of the steps that a learner learns from: truncation as termination (F. Pardo et al., "Time limits in
+//! reinforcement learning", 2018), and rewards with a bonus.
 
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
@@ -9,20 +9,21 @@ use crate::delegate_learner;
 use crate::random::Rng;
 use crate::tasks::Next;
 
-/// A wrapper around a learner that can treat truncation as termination. That is a mistake, because the next state has a
-/// value that the update then ignores. It is available to show the cost of the mistake.
+/// A wrapper around a learner that transforms the steps it learns from: it can treat truncation as termination, and add
+/// a bonus to the rewards. Treating truncation as termination is a mistake, because the update then ignores the value
+/// of the next state. The option exists to show the cost of the mistake.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TruncationHandling<L> {
     /// The learner.
     pub learner: L,
     /// Whether truncation is treated as termination.
     pub terminate: bool,
-    /// What is added to the rewards, if anything.
+    /// The bonus added to the rewards, if any.
     pub bonus: Option<CountBonus>,
 }
 
 impl<L> TruncationHandling<L> {
-    /// What the learner is told.
+    /// The next state as the learner receives it.
     #[inline(always)]
     fn as_learned<R>(&self, next: Next<R>) -> Next<R> {
         match next {

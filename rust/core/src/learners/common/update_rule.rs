@@ -6,12 +6,12 @@ use crate::q_table::QTable;
 use crate::random::Rng;
 use crate::tasks::Next;
 
-/// The update rule of an algorithm for an agent `G`: its equation, and what it stores between steps.
+/// The update rule of an algorithm for an agent `G`: its equation, and the data that it stores between steps.
 pub trait UpdateRule<R, G> {
     /// As [`Learner::HAS_VECTOR_PASSES`](super::Learner::HAS_VECTOR_PASSES).
     const HAS_VECTOR_PASSES: bool = false;
 
-    /// Samples the first action of an episode; `None` leaves that to the policy.
+    /// Samples the first action of an episode; `None` leaves the choice to the policy.
     #[inline]
     fn first_action(&mut self, agent: &mut G, state: R, rng: &mut impl Rng) -> Option<usize> {
         let (_, _, _) = (agent, state, rng);
@@ -58,27 +58,27 @@ pub trait UpdateRule<R, G> {
         None
     }
 
-    /// The estimate of the average reward; `None` where none is learned.
+    /// The estimate of the average reward; `None` if the rule does not estimate it.
     fn average_reward(&self) -> Option<f64> {
         None
     }
 
-    /// The table beside the agent's, if it learns two.
+    /// The second table, if the rule learns one besides the agent's.
     fn second_table(&self) -> Option<&QTable> {
         None
     }
 
-    /// The same, to be replaced when a run is resumed.
+    /// The second table, mutable, so that a resumed run can replace it.
     fn second_table_mut(&mut self) -> Option<&mut QTable> {
         None
     }
 
-    /// Called after the last step of every episode. It forgets what it stores of the episode.
+    /// Called after the last step of every episode. The rule discards its data of the episode.
     fn end_episode(&mut self, agent: &mut G) {
         let _ = agent;
     }
 
-    /// Called where an episode is given up before its end.
+    /// Called when an episode is abandoned before its end.
     fn abandon_episode(&mut self, agent: &mut G) {
         self.end_episode(agent);
     }
@@ -88,7 +88,7 @@ pub trait UpdateRule<R, G> {
         let _ = agent;
     }
 
-    /// Saves or restores what it stores between steps; `shape` is the number of rows and of actions of the table.
+    /// Saves or restores the data stored between steps. `shape` is the number of rows and of actions of the table.
     ///
     /// # Errors
     /// The bytes are damaged, or belong to another run.

@@ -10,7 +10,7 @@ pub trait DynaModel: Persist {
     /// The number of actions.
     fn num_actions(&self) -> usize;
 
-    /// Whether it has learned from a transition.
+    /// Whether the model has not learned from any transition yet.
     fn is_empty(&self) -> bool;
 
     /// Learns from a transition.
@@ -22,19 +22,19 @@ pub trait DynaModel: Persist {
     /// A random action among those tried in a visited row.
     fn sample_action(&self, row: u32, rng: &mut impl Rng) -> usize;
 
-    /// What follows a pair according to the model; `None` if it was never tried.
+    /// Samples an outcome of a pair; `None` if the pair was never tried.
     fn sample(&self, row: u32, action: usize, rng: &mut impl Rng) -> Option<ModelEntry>;
 
-    /// The work of recording or sampling a transition, beside that of its row; 0 where it is one look.
+    /// The work of recording or sampling a transition, in addition to that of its row; 0 if it is a single lookup.
     #[inline]
     fn work(&self) -> u64 {
         0
     }
 
-    /// Makes room for so many transitions more.
+    /// Makes room for this many more transitions.
     ///
     /// # Errors
-    /// `OutOfMemory`, `LimitReached`; `TooManyEntries` if they could not be told apart.
+    /// `OutOfMemory`, `LimitReached`; `TooManyEntries` if they would exceed 32-bit indices.
     fn reserve(&mut self, transitions: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
         let (_, _) = (transitions, memory);
         Ok(())

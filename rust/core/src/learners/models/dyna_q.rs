@@ -13,7 +13,8 @@ use crate::tasks::Next;
 /// 2. Model(S, A) ← R, S′;
 /// 3. n times: S ← a random visited state, A ← a random action tried in S, R, S′ ← Model(S, A), and update 1.
 ///
-/// With a [`StochasticModel`](super::StochasticModel), R, S′ is sampled from what followed S, A so far. A state must have one active row.
+/// With a [`StochasticModel`](super::StochasticModel), R, S′ are sampled from the outcomes observed for S, A. A state
+/// must have one active row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DynaQ<M = Model> {
     /// The model.

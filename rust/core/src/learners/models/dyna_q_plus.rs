@@ -8,9 +8,10 @@ use crate::memory::{AllocationError, filled};
 use crate::random::Rng;
 use crate::tasks::Next;
 
-/// Dyna-Q whose planning updates use the reward R + κ √τ, where τ is the number of steps since the pair was last tried in
-/// the environment. Planning considers all actions that a visited state has. An action that was never tried is assumed to lead
-/// back to the same state with a reward of 0 (the book's footnote), and its τ counts from the start of the run.
+/// Dyna-Q whose planning updates use the reward R + κ √τ, where τ is the number of steps since the pair was last tried
+/// in the environment. Planning considers all available actions of a visited state. An action that was never tried is
+/// assumed to lead back to the same state with a reward of 0 (the book's footnote), and its τ counts from the start of
+/// the run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DynaQPlus {
     /// The model.

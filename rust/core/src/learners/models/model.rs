@@ -8,7 +8,7 @@ use crate::numeric::maximum;
 use crate::random::Rng;
 use crate::tasks::Next;
 
-/// What followed a state-action pair.
+/// The reward and the next state that followed a state-action pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModelEntry {
     /// The reward.
@@ -18,7 +18,7 @@ pub struct ModelEntry {
 }
 
 impl ModelEntry {
-    /// What a step led to. A truncated episode counts as non-terminal.
+    /// The entry of a step. A truncated episode counts as non-terminal.
     ///
     /// # Panics
     /// If the next state has more than one active row.
@@ -91,7 +91,7 @@ impl Model {
         self.entries[row as usize * self.num_actions + action]
     }
 
-    /// Whether it has learned from a transition.
+    /// Whether the model has not learned from any transition yet.
     pub fn is_empty(&self) -> bool {
         self.visited.is_empty()
     }
@@ -111,7 +111,8 @@ impl Model {
     }
 }
 
-/// The entries in the order in which their pairs were first tried, row by row: an index into that order is drawn.
+/// Saves the entries row by row in the order in which their pairs were first tried, because planning draws indices into
+/// that order.
 impl Persist for Model {
     fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
         let (rows, num_actions) = (self.counts.len(), self.num_actions);
@@ -137,7 +138,7 @@ impl Persist for Model {
 }
 
 impl Model {
-    /// The entry of the action that was tried in a row as number `position`.
+    /// Saves or restores the entry of the action at `position` in the order in which the actions of a row were tried.
     fn persist_entry(
         &mut self,
         row: u32,

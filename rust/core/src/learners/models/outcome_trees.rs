@@ -1,15 +1,15 @@
-//! Counted outcomes in the order in which they were first seen: found, counted and drawn in a time that grows with the
-//! logarithm of their number.
+//! Counted outcomes in the order in which they were first seen. Finding, counting or drawing an outcome takes a time
+//! that grows with the logarithm of their number.
 
 use super::ModelEntry;
 use crate::memory::{AllocationError, RunMemory};
 
-/// No node, and the end of a chain.
+/// Marks a missing node and the end of a chain.
 const NONE: u32 = u32::MAX;
-/// Set in the number of an inner node.
+/// The bit that is set in the number of an inner node.
 const INNER: u32 = 1 << 31;
 
-/// A leaf: what followed a pair, and how often.
+/// A leaf: an outcome of a pair and its count.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Leaf {
     entry: ModelEntry,
@@ -20,17 +20,18 @@ struct Leaf {
     after: u32,
 }
 
-/// An inner node. The outcomes below its first child were seen before those below its second one.
+/// An inner node. The outcomes below its first child were seen before those below its second child.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Inner {
-    /// The sum of the counts below it.
+    /// The sum of the counts below the node.
     count: u32,
     parent: u32,
     children: [u32; 2],
 }
 
-/// The tree of a pair: its n leaves in their order, of which the first child of the root has as many as the largest power of
-/// two below n, and so on down. A tree whose number of leaves is a power of two is perfect.
+/// The tree of a pair: its n leaves in their order. The first child of the root holds as many of them as the largest
+/// power of two below n, and each subtree is divided in the same way. A tree whose number of leaves is a power of two
+/// is perfect.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Root {
     node: u32,
@@ -47,17 +48,17 @@ impl Root {
     }
 }
 
-/// The trees of all pairs, whose nodes are stored together, and an index of their leaves.
+/// The trees of all pairs, with their nodes stored together, and an index of their leaves.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct OutcomeTrees {
     leaves: Vec<Leaf>,
     inner: Vec<Inner>,
-    /// The first leaf of each chain. There are as many buckets as a power of two.
+    /// The first leaf of each chain. The number of buckets is a power of two.
     buckets: Vec<u32>,
 }
 
 impl OutcomeTrees {
-    /// Without an outcome.
+    /// Trees without outcomes.
     pub(super) fn new() -> Self {
         Self { leaves: Vec::new(), inner: Vec::new(), buckets: vec![NONE] }
     }
@@ -67,13 +68,13 @@ impl OutcomeTrees {
         self.leaves.len()
     }
 
-    /// Makes room for so many outcomes more.
+    /// Makes room for this many more outcomes.
     pub(super) fn reserve(&mut self, additional: usize, memory: &mut RunMemory) -> Result<(), AllocationError> {
         if self.leaves.len().saturating_add(additional) >= INNER as usize {
             return Err(AllocationError::TooManyEntries);
         }
         memory.reserve(&mut self.leaves, additional)?;
-        // Each leaf but the first of a tree comes with an inner node.
+        // Every leaf except the first of a tree adds an inner node.
         let nodes = self.leaves.len() + additional;
         let missing = nodes - self.inner.len();
         memory.reserve(&mut self.inner, missing)?;
@@ -89,8 +90,8 @@ impl OutcomeTrees {
         Ok(())
     }
 
-    /// Counts an outcome of a pair so many times more. There must be room for it. Where the count of the whole tree would
-    /// not fit into 32 bits, nothing is counted, and the result is false.
+    /// Counts an outcome of a pair another `times` times. There must be room for it. If the count of the whole tree
+    /// would exceed 32 bits, nothing is counted and the result is false.
     pub(super) fn count(&mut self, root: &mut Root, pair: usize, entry: ModelEntry, times: u32) -> bool {
         if self.total(*root).checked_add(times).is_none() {
             return false;
@@ -113,7 +114,7 @@ impl OutcomeTrees {
         if root.leaves == 0 { 0 } else { self.count_of(root.node) }
     }
 
-    /// The first outcome whose count and those before it add up to more than `left`; `None` if all counts together do not.
+    /// The first outcome at which the cumulative count exceeds `left`; `None` if the total count does not.
     #[inline]
     pub(super) fn at(&self, root: Root, mut left: u32) -> Option<ModelEntry> {
         if left >= self.total(root) {
@@ -133,7 +134,7 @@ impl OutcomeTrees {
         Some(self.leaves[node as usize].entry)
     }
 
-    /// The outcome number `index` of a tree, and its count.
+    /// The outcome at `index` in a tree, and its count.
     pub(super) fn outcome(&self, root: Root, mut index: u32) -> (ModelEntry, u32) {
         let (mut node, mut leaves) = (root.node, root.leaves);
         while node & INNER != 0 {
@@ -214,7 +215,7 @@ impl OutcomeTrees {
         leaf
     }
 
-    /// How many inner nodes are above the first leaf.
+    /// The number of inner nodes above the first leaf.
     #[cfg(test)]
     pub(super) fn depth(&self) -> usize {
         let parent = |&node: &u32| Some(self.inner[(node & !INNER) as usize].parent).filter(|&node| node != NONE);
@@ -227,7 +228,7 @@ impl OutcomeTrees {
         hash as usize & (self.buckets.len() - 1)
     }
 
-    /// Puts a leaf into its chain.
+    /// Adds a leaf to its chain.
     fn link(&mut self, leaf: u32) {
         let bucket = self.bucket(self.leaves[leaf as usize].hash);
         self.leaves[leaf as usize].after = std::mem::replace(&mut self.buckets[bucket], leaf);
@@ -239,7 +240,7 @@ fn largest_power_below(number: u32) -> u32 {
     1 << (number - 1).ilog2()
 }
 
-/// The same for equal entries of a pair. Of floats, 0 and -0 are equal, and they differ in their bits.
+/// A hash that is the same for equal entries of a pair. The floats 0 and -0 are equal although their bits differ.
 fn hash(pair: usize, ModelEntry { reward, next }: ModelEntry) -> u32 {
     let mut mixed = (reward + 0.0).to_bits();
     for value in [pair as u64, next.map_or(0, |next| u64::from(next) + 1)] {

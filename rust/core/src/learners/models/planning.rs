@@ -3,8 +3,8 @@
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::learners::MAX_WORK_PER_CALL;
 
-/// The planning updates of a step, made in parts, so that a caller never waits long: a million updates, the most that may be
-/// asked for, take seconds where states have many actions.
+/// The planning updates of a step, made in parts, so that a caller never waits long: a million updates, the maximum,
+/// take seconds if states have many actions.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Planning {
     /// The number of updates still to make.
@@ -20,7 +20,7 @@ impl Planning {
         self.remaining = planning_steps;
     }
 
-    /// How many updates to make now, where each takes so much work. The step itself counts as one.
+    /// The number of updates to make now, given the work of each. The step itself counts as one update.
     #[inline]
     pub(super) fn take(&mut self, work_per_update: u64) -> u32 {
         let updates = self.remaining.min((MAX_WORK_PER_CALL / work_per_update).max(1) as u32);
@@ -29,8 +29,8 @@ impl Planning {
         updates
     }
 
-    /// Calls `update` for updates that take different amounts of work, which it returns; `None` if there is nothing left to
-    /// update.
+    /// Calls `update` for the remaining updates, which may differ in work. It returns the work, or `None` if there is
+    /// nothing left to update.
     pub(super) fn advance(&mut self, mut update: impl FnMut() -> Option<u64>) {
         self.work = 0;
         while self.remaining > 0 && self.work < MAX_WORK_PER_CALL {
@@ -41,7 +41,7 @@ impl Planning {
         }
     }
 
-    /// Gives up what remains.
+    /// Discards the remaining updates.
     pub(super) fn clear(&mut self) {
         self.remaining = 0;
     }
@@ -59,7 +59,7 @@ impl Planning {
     }
 }
 
-/// The number of updates still to make; the work only measures.
+/// Saves the number of updates still to make. The work is only a measurement.
 impl Persist for Planning {
     fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
         self.remaining.persist(checkpoint)

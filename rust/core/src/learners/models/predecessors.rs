@@ -3,7 +3,7 @@
 use crate::StopFlag;
 use crate::memory::{AllocationError, check_indices, filled};
 
-/// The end of a list, and a pair in none.
+/// Marks the end of a list and a pair that is in no list.
 const NONE: u32 = u32::MAX;
 
 /// A doubly linked list of pairs for each row.
@@ -22,7 +22,7 @@ impl Predecessors {
         Ok(Self { first: filled(&NONE, rows, stop)?, links: filled(&[NONE; 2], pairs, stop)? })
     }
 
-    /// Adds a pair, which is in no list, to that of a row.
+    /// Adds a pair that is in no list to the list of a row.
     pub(in crate::learners) fn add(&mut self, row: u32, pair: usize) {
         let after = self.first[row as usize];
         self.links[pair] = [after, NONE];

@@ -17,15 +17,15 @@ use crate::tasks::Next;
 /// 3. n times, while the queue is not empty: take the first pair S, A from it, R, S′ ← Model(S, A),
 ///    Q(S, A) ← Q(S, A) + α [R + γ maxₐ Q(S′, a) - Q(S, A)], and do 2 for every pair predicted to lead to S.
 ///
-/// A state must have one active row. The order of pairs of equal priority is that of the table.
+/// A state must have one active row. Pairs of equal priority are taken in the order of the table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PrioritizedSweeping {
     model: Model,
     predecessors: Predecessors,
     queue: PriorityQueue,
-    /// The most updates per step, n.
+    /// The maximum number of updates per step, n.
     planning_steps: u32,
-    /// The smallest priority, θ.
+    /// The threshold θ: pairs need a higher priority.
     threshold: f64,
     /// The planning of the last step.
     planning: Planning,
@@ -51,7 +51,7 @@ impl PrioritizedSweeping {
         Ok(Self { model, predecessors, queue, planning_steps, threshold, planning, updates: 0 })
     }
 
-    /// Does the updates that remain, or a part of them.
+    /// Makes the remaining updates, or a part of them.
     fn sweep(&mut self, agent: &mut Agent) {
         let Self { model, predecessors, queue, threshold, planning, updates, .. } = self;
         let work = row_work(model.num_actions());

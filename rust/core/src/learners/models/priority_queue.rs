@@ -4,28 +4,28 @@ use crate::StopFlag;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::memory::{AllocationError, check_indices, filled, with_capacity};
 
-/// Not in the queue.
+/// Marks a pair that is not in the queue.
 const ABSENT: u32 = u32::MAX;
 
-/// A binary heap of pairs by their indices, each at most once. The pair of the highest priority comes first; of several, the
-/// one of the lowest index. So what comes first depends only on what the queue holds.
+/// A binary heap of pairs by their indices, each at most once. The pair with the highest priority comes first, and
+/// among equal priorities the one with the lowest index. The order thus depends only on the contents of the queue.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::learners) struct PriorityQueue {
     heap: Vec<u32>,
-    /// The place of each pair in the heap.
+    /// The position of each pair in the heap.
     places: Vec<u32>,
     priorities: Vec<f64>,
 }
 
 impl PriorityQueue {
-    /// An empty queue with room for so many pairs.
+    /// An empty queue with room for this many pairs.
     pub(in crate::learners) fn new(pairs: usize, stop: &StopFlag<'_>) -> Result<Self, AllocationError> {
         check_indices(pairs)?;
         let (heap, places) = (with_capacity(pairs)?, filled(&ABSENT, pairs, stop)?);
         Ok(Self { heap, places, priorities: filled(&0.0, pairs, stop)? })
     }
 
-    /// Inserts a pair, or raises its priority. A priority that is not higher than the pair's is ignored.
+    /// Inserts a pair, or raises its priority. A priority that is not higher than the current one is ignored.
     #[inline]
     pub(in crate::learners) fn insert(&mut self, pair: usize, priority: f64) {
         let place = self.places[pair];
@@ -39,7 +39,7 @@ impl PriorityQueue {
         }
     }
 
-    /// Takes out the first pair.
+    /// Removes and returns the first pair.
     #[inline]
     pub(in crate::learners) fn pop(&mut self) -> Option<usize> {
         let (&first, &last) = (self.heap.first()?, self.heap.last()?);

@@ -1,4 +1,4 @@
-//! A model of a stochastic environment: how often each outcome followed each state-action pair.
+//! A model of a stochastic environment: the number of times that each outcome followed each state-action pair.
 
 use super::outcome_trees::{OutcomeTrees, Root};
 use super::{DynaModel, Model, ModelEntry};
@@ -10,7 +10,7 @@ use crate::random::Rng;
 /// The outcomes of each pair in the order in which they were first seen, with their counts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StochasticModel {
-    /// Which pairs were tried, and in which order.
+    /// The pairs that were tried, in their order.
     tried: Model,
     /// The outcomes of each pair.
     roots: Vec<Root>,
@@ -59,14 +59,14 @@ impl DynaModel for StochasticModel {
         self.tried.sample_action(row, rng)
     }
 
-    /// Draws one `integers` of the number of times that the pair was tried.
+    /// Draws one `integers` below the number of times that the pair was tried.
     fn sample(&self, row: u32, action: usize, rng: &mut impl Rng) -> Option<ModelEntry> {
         let root = self.roots[self.pair(row, action)];
         let left = rng.integers(self.trees.total(root).max(1));
         self.trees.at(root, left)
     }
 
-    /// A tree is as deep as the logarithm of its number of outcomes.
+    /// The depth of a tree is the logarithm of its number of outcomes.
     #[inline]
     fn work(&self) -> u64 {
         u64::from(self.trees.len().checked_ilog2().unwrap_or(0))

@@ -1,10 +1,10 @@
-//! The steps of an episode, which Monte Carlo methods learn from when it ends.
+//! The steps of an episode, which Monte Carlo methods learn from at its end.
 
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::learners::StepInParts;
 use crate::memory::{AllocationError, RunMemory};
 
-/// A step of an episode, on a table.
+/// A step of an episode in a table.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(in crate::learners) struct EpisodeStep<M> {
     /// The row of the state.
@@ -13,7 +13,7 @@ pub(in crate::learners) struct EpisodeStep<M> {
     pub(in crate::learners) action: u32,
     /// The reward.
     pub(in crate::learners) reward: f64,
-    /// What the method keeps of the choice of the action.
+    /// The data that the method stored when the action was chosen.
     pub(in crate::learners) memo: M,
 }
 
@@ -21,23 +21,23 @@ pub(in crate::learners) struct EpisodeStep<M> {
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::learners) struct EpisodeSteps<M> {
     steps: Vec<EpisodeStep<M>>,
-    /// The most steps of an episode.
+    /// The maximum number of steps of an episode.
     limit: u64,
-    /// The return G that follows the steps that are left to learn from.
+    /// The return G after the steps that remain to be learned from.
     pub(in crate::learners) following: f64,
     /// The learning at the end of the episode.
     end: StepInParts,
-    /// The work of the last step, without that.
+    /// The work of the last step, without the learning at the end of the episode.
     work: u64,
 }
 
 impl<M: Copy + Default + Persist> EpisodeSteps<M> {
-    /// Before the first episode, whose steps are at most `limit`.
+    /// No steps, before the first episode. Episodes have at most `limit` steps.
     pub(in crate::learners) fn new(limit: u64) -> Self {
         Self { steps: Vec::new(), limit, following: 0.0, end: StepInParts::new(), work: 1 }
     }
 
-    /// Makes room for so many steps more.
+    /// Makes room for the steps that this much work can take.
     pub(in crate::learners) fn reserve(&mut self, work: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
         let left = self.limit.saturating_sub(self.steps.len() as u64);
         memory.reserve(&mut self.steps, left.min(work) as usize)
@@ -54,8 +54,8 @@ impl<M: Copy + Default + Persist> EpisodeSteps<M> {
         self.steps.iter()
     }
 
-    /// Calls `learn` for the steps of an episode that is over, the last one first, or for a part of them where they are many.
-    /// It changes the return G, does so much work for each step, and returns whether to learn from the steps before.
+    /// Calls `learn` for the steps of a finished episode, the last one first, or for a part of them if there are many.
+    /// `learn` updates the return G, takes `work_per_step`, and returns whether to learn from the earlier steps.
     pub(in crate::learners) fn finish(
         &mut self,
         work_per_step: u64,
@@ -108,7 +108,7 @@ impl<M: Copy + Default + Persist> EpisodeSteps<M> {
             (reward, memo).persist(checkpoint)?;
         }
         (&mut self.following, &mut self.end).persist(checkpoint)?;
-        // An episode that has reached the limit is learned from.
+        // An episode that has reached the limit is already being learned from.
         let is_valid = if self.is_unfinished() { count > 0 } else { (count as u64) < self.limit || count == 0 };
         checkpoint.check(is_valid, "number of steps")
     }

@@ -13,21 +13,21 @@ use crate::tasks::Next;
 /// 1. G ← γ G + R;
 /// 2. unless the pair S, A occurs earlier in the episode: Q(S, A) ← Q(S, A) + α [G - Q(S, A)].
 ///
-/// With α = 1/n at the n-th visit of a pair, Q is the average of the returns, as in the book. The returns of an episode that
-/// was truncated end with the value of a sampled action in its last state.
+/// With α = 1/n at the n-th visit to a pair, Q is the average of the returns, as in the book. The returns of a
+/// truncated episode end with the value of a sampled action in its last state.
 ///
-/// With exploring starts, the first action of an episode is random, with equal probabilities, whatever the policy, which is
-/// greedy in the book; the environment draws the first state.
+/// With exploring starts, the first action of an episode is uniformly random, whatever the policy (greedy in the book).
+/// The environment draws the first state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MonteCarloControl {
     steps: EpisodeSteps<()>,
-    /// How often each pair occurs in the steps.
+    /// The number of occurrences of each pair in the steps.
     occurrences: Vec<u32>,
     exploring_starts: bool,
 }
 
 impl MonteCarloControl {
-    /// An update rule before the first episode of at most `max_episode_steps` steps, on a table of so many pairs.
+    /// An update rule before the first episode of at most `max_episode_steps` steps, on a table of this many pairs.
     ///
     /// # Errors
     /// `OutOfMemory`; `Stopped` after `stop` was set.
@@ -41,7 +41,7 @@ impl MonteCarloControl {
         Ok(Self { steps, occurrences, exploring_starts })
     }
 
-    /// Learns from the steps of the episode, or from a part of them.
+    /// Learns from the steps of the episode, or from a part of them if there are many.
     fn finish(&mut self, agent: &mut Agent) {
         let Self { steps, occurrences, .. } = self;
         steps.finish(row_work(agent.table.num_actions()), |following, step| {

@@ -9,30 +9,30 @@ use crate::numeric::{argmax, maximum};
 use crate::random::Rng;
 use crate::tasks::Next;
 
-/// After an episode of the behaviour policy b, with W = 1 first, from its last step backwards:
+/// After an episode of the behaviour policy b, from its last step backwards, with W = 1 initially:
 ///
 /// 1. G ← γ G + R, C(S, A) ← C(S, A) + W;
 /// 2. Q(S, A) ← Q(S, A) + α W / C(S, A) [G - Q(S, A)], with α = 1 in the book;
 /// 3. if A is not the greedy action, the first maximum of Q(S, ·), stop; else W ← W / b(A|S).
 ///
-/// The target policy is greedy. The return of an episode that was truncated ends with the largest value of its last state.
+/// The target policy is greedy. The return of a truncated episode ends with the largest value of its last state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OffPolicyMonteCarlo {
     /// The steps, with the probabilities b(A|S) when the actions were chosen.
     steps: EpisodeSteps<f64>,
-    /// C: the sum of the weights of each pair.
+    /// The sums C of the weights of each pair.
     weights: Vec<f64>,
-    /// W.
+    /// The weight W.
     weight: f64,
-    /// b(A|S) of the next action.
+    /// The probability b(A|S) of the next action.
     probability: f64,
-    /// α, and the smallest step size.
+    /// The learning rate α and the smallest step size.
     learning_rate: (f64, f64),
 }
 
 impl OffPolicyMonteCarlo {
-    /// An update rule before the first episode of at most `max_episode_steps` steps, on a table of so many pairs.
-    /// `learning_rate` is α, and the smallest step size.
+    /// An update rule before the first episode of at most `max_episode_steps` steps, on a table of this many pairs.
+    /// `learning_rate` holds α and the smallest step size.
     ///
     /// # Errors
     /// `OutOfMemory`; `Stopped` after `stop` was set.
@@ -46,7 +46,7 @@ impl OffPolicyMonteCarlo {
         Ok(Self { steps, weights, weight: 1.0, probability: 1.0, learning_rate })
     }
 
-    /// Samples an action, and keeps its probability before any value changes.
+    /// Samples an action, and stores its probability before any value changes.
     #[inline]
     fn choose(&mut self, agent: &mut Agent, state: impl Copy + AsRef<[u32]>, rng: &mut impl Rng) -> usize {
         let action = agent.choose(state, rng);
@@ -54,7 +54,7 @@ impl OffPolicyMonteCarlo {
         action
     }
 
-    /// Learns from the steps of the episode, or from a part of them.
+    /// Learns from the steps of the episode, or from a part of them if there are many.
     fn finish(&mut self, agent: &mut Agent) {
         let Self { steps, weights, weight, learning_rate: (rate, least), .. } = self;
         steps.finish(row_work(agent.table.num_actions()), |following, step| {

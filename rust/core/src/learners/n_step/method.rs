@@ -1,4 +1,4 @@
-//! What the n-step methods share: the pairs that await their updates (Sutton & Barto, chapter 7).
+//! The common part of n-step methods: the pairs that await their updates (Sutton & Barto, chapter 7).
 
 use std::collections::VecDeque;
 
@@ -10,7 +10,7 @@ use crate::memory::{AllocationError, RunMemory};
 use crate::random::Rng;
 use crate::tasks::Next;
 
-/// A state-action pair that awaits its update, and the reward that followed.
+/// A state-action pair that awaits its update, with the reward that followed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NStepVisit<R, M> {
     /// The active rows of the state.
@@ -19,23 +19,23 @@ pub struct NStepVisit<R, M> {
     pub action: usize,
     /// The reward.
     pub reward: f64,
-    /// What the method keeps of the choice of the action.
+    /// The data that the method stored when the action was chosen.
     pub memo: M,
 }
 
-/// What distinguishes an n-step method from the others.
+/// The parts in which n-step methods differ.
 pub trait NStepMethod<R> {
-    /// What is kept of the choice of each action.
+    /// The data stored when an action is chosen.
     type Memo: Copy + Default + Persist;
 
-    /// What to keep of the choice of an action, before any value changes.
+    /// The data to store when an action is chosen, before any value changes.
     fn memo(&self, agent: &mut Agent, rows: R, action: usize) -> Self::Memo;
 
     /// Updates the oldest pair, the first of the visits. `following` is the pair after the newest reward, or `None` after a
     /// terminal state.
     fn update(&self, agent: &mut Agent, visits: &VecDeque<NStepVisit<R, Self::Memo>>, following: Option<(R, usize)>);
 
-    /// The work of an update with so many visits.
+    /// The work of an update with this many visits.
     #[inline]
     fn work(agent: &Agent, visits: usize) -> u64 {
         agent.work() + visits as u64 / VALUES_PER_WORK
@@ -49,7 +49,7 @@ pub struct NStep<R, M: NStepMethod<R>> {
     n: usize,
     /// The last visits, oldest first, at most n.
     visits: VecDeque<NStepVisit<R, M::Memo>>,
-    /// What was kept of the choice of the next action.
+    /// The data stored when the next action was chosen.
     memo: M::Memo,
     /// The pair after the newest reward of a finished episode, or `None` after a terminal state.
     following: Option<(R, usize)>,
@@ -68,7 +68,7 @@ impl<R: ActiveRows, M: NStepMethod<R>> NStep<R, M> {
         Self { method, n, visits, memo, following: None, end: StepInParts::new() }
     }
 
-    /// Updates the last pairs of an episode, or a part of them where they are many.
+    /// Updates the last pairs of an episode, or a part of them if there are many.
     #[inline(never)]
     fn finish(&mut self, agent: &mut Agent) {
         let Self { method, visits, following, end, .. } = self;
@@ -124,7 +124,7 @@ impl<R: ActiveRows, M: NStepMethod<R>> UpdateRule<R, Agent> for NStep<R, M> {
         self.end.clear();
     }
 
-    /// An episode has as many pairs as steps, and at most n of them wait.
+    /// An episode has as many pairs as steps, and at most n of them await their updates.
     fn reserve(&mut self, _agent: &mut Agent, work: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
         let count = ((self.n - self.visits.len()) as u64).min(work) as usize;
         memory.reserve(&mut self.visits, count)

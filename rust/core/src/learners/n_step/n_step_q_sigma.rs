@@ -9,9 +9,9 @@ use crate::learners::Agent;
 /// Q(Sₜ, Aₜ) ← Q(Sₜ, Aₜ) + α [Gₜ - Q(Sₜ, Aₜ)] with the return, from the last of n steps backwards,
 /// Gₜ = Rₜ₊₁ + γ [Σₐ π(a|Sₜ₊₁) Q(Sₜ₊₁, a) + (σ ρ + (1 - σ) π(Aₜ₊₁|Sₜ₊₁)) (Gₜ₊₁ - Q(Sₜ₊₁, Aₜ₊₁))].
 ///
-/// π is the target policy, and ρ = π(Aₜ₊₁|Sₜ₊₁) / b(Aₜ₊₁|Sₜ₊₁) the importance sampling ratio when Aₜ₊₁ was chosen by the
-/// behaviour policy b. With σ = 0 this is tree backup; with σ = 1 it is Sarsa with importance sampling and control
-/// variates.
+/// π is the target policy, and ρ = π(Aₜ₊₁|Sₜ₊₁) / b(Aₜ₊₁|Sₜ₊₁) is the importance sampling ratio at the time when the
+/// behaviour policy b chose Aₜ₊₁. With σ = 0 this is tree backup; with σ = 1 it is Sarsa with importance sampling and
+/// control variates.
 pub type NStepQSigma<R> = NStep<R, QSigma>;
 
 /// The return of Q(σ).
@@ -42,7 +42,7 @@ impl<R: ActiveRows> NStepMethod<R> for QSigma {
     fn update(&self, agent: &mut Agent, visits: &VecDeque<NStepVisit<R, f64>>, following: Option<(R, usize)>) {
         let weight = |probability: f64, ratio: &f64| self.sigma * ratio + (1.0 - self.sigma) * probability;
         let target = self.target_policy.backed_up(agent, visits, following, weight);
-        // Ratios above 1 can push a value beyond its targets.
+        // Ratios above 1 can push a value beyond the range of its targets.
         agent.table.check_finite(target);
         let NStepVisit { rows, action, .. } = visits[0];
         agent.update(rows, action, target);

@@ -1,4 +1,4 @@
-//! The target policies of off-policy methods over n steps, and the return that they back up.
+//! The target policies of off-policy methods over n steps, and the return of their backups.
 
 use std::collections::VecDeque;
 
@@ -7,7 +7,7 @@ use crate::features::ActiveRows;
 use crate::learners::Agent;
 use crate::numeric::maximum;
 
-/// The policy π whose values are learned.
+/// The target policy π, whose values are learned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TargetPolicy {
     /// The greedy policy. An action that ties for the maximum is greedy.
@@ -47,9 +47,8 @@ impl TargetPolicy {
         }
     }
 
-    /// The return of the first of some visits, from the last one backwards:
-    /// Gₜ = Rₜ₊₁ + γ [Σₐ π(a|Sₜ₊₁) Q(Sₜ₊₁, a) + w (Gₜ₊₁ - Q(Sₜ₊₁, Aₜ₊₁))]. `weight` is w, given π(Aₜ₊₁|Sₜ₊₁) and the memo
-    /// of the visit.
+    /// The return of the first of these visits, computed from the last one backwards: Gₜ = Rₜ₊₁ + γ [Σₐ π(a|Sₜ₊₁)
+    /// Q(Sₜ₊₁, a) + w (Gₜ₊₁ - Q(Sₜ₊₁, Aₜ₊₁))]. `weight` is w, given π(Aₜ₊₁|Sₜ₊₁) and the memo of the visit.
     #[inline]
     pub(in crate::learners) fn backed_up<R: ActiveRows, M>(
         self,

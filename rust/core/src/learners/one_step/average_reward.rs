@@ -4,10 +4,11 @@ use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::features::{ActiveRows, persist_rows};
 use crate::learners::Agent;
 
-/// The estimate R̄ of the average reward, which learns from the differential errors.
+/// The estimate R̄ of the average reward, updated by the differential errors.
 ///
-/// A continuing task does not end. Where an environment terminates, its next reset counts as the transition from the
-/// terminal state to the first state of the next episode, which takes no time; the last update of an episode waits for it.
+/// A continuing task does not end. If an environment terminates, its next reset counts as a transition from the
+/// terminal state to the first state of the next episode, which takes no time. The last update of an episode waits for
+/// this transition.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::learners) struct AverageReward<R> {
     value: f64,
@@ -36,13 +37,13 @@ impl<R: ActiveRows> AverageReward<R> {
     ) {
         let target = (reward - self.value) + following;
         let error = target - agent.value(state, action);
-        // Nothing discounts these values: they can grow beyond all bounds.
+        // These values are not discounted, so they can grow without bound.
         agent.table.check_finite(error);
         self.value += self.step_size * error;
         agent.update(state, action, target);
     }
 
-    /// Keeps the last step of an episode until the next one begins.
+    /// Stores the last step of an episode until the next episode begins.
     #[inline]
     pub(in crate::learners) fn wait(&mut self, step: (R, usize, f64)) {
         self.waiting = Some(step);

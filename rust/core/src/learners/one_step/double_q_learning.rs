@@ -15,9 +15,9 @@ use crate::tasks::Next;
 /// Q₁ is the agent's table. The policy uses Q₁ + Q₂. The argmax takes the first maximum, whatever the policy's tie breaking.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DoubleQLearning {
-    /// Q₂.
+    /// The second table, Q₂.
     pub second_table: QTable,
-    /// The learning rate of Q₂, which counts the visits of Q₂ only.
+    /// The learning rate of Q₂, which counts only the visits of Q₂.
     pub second_learning_rate: LearningRate,
     /// A buffer for Q₁ + Q₂.
     sums: Vec<f64>,
@@ -94,7 +94,7 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for DoubleQLearning {
         self.second_learning_rate.end_episode();
     }
 
-    /// The schedules count the episodes that end.
+    /// The schedules count only finished episodes.
     fn abandon_episode(&mut self, _agent: &mut Agent) {}
 
     fn persist(&mut self, _shape: (usize, usize), checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {

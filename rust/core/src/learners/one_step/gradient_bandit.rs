@@ -12,16 +12,16 @@ use crate::tasks::Next;
 /// - H(A) ← H(A) + α (R - R̄) (1 - π(A))
 /// - H(a) ← H(a) - α (R - R̄) π(a) for all a ≠ A
 ///
-/// R̄ is the average of the rewards in the state before this one (R̄ = R the first time), or 0 without a baseline. What
-/// follows a step is not taken into account: an episode is one step.
+/// R̄ is the average of the earlier rewards in the state (R̄ = R the first time), or 0 without a baseline. The next
+/// state is ignored, because an episode consists of one step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GradientBandit {
-    /// The average reward of each state and how many rewards it is of; empty without a baseline.
+    /// The average reward of each state and the number of its rewards; empty without a baseline.
     averages: Vec<(f64, u64)>,
 }
 
 impl GradientBandit {
-    /// For so many states.
+    /// An update rule for `n_rows` states.
     ///
     /// # Errors
     /// `OutOfMemory`; `Stopped` after `stop` was set.
@@ -29,7 +29,7 @@ impl GradientBandit {
         Ok(Self { averages: filled(&(0.0, 0), if baseline { n_rows } else { 0 }, stop)? })
     }
 
-    /// R̄, which then takes in a reward; 0 without a baseline.
+    /// Returns R̄ and then updates it with a reward; 0 without a baseline.
     #[inline]
     fn baseline(&mut self, row: u32, reward: f64) -> f64 {
         let Some((average, count)) = self.averages.get_mut(row as usize) else { return 0.0 };

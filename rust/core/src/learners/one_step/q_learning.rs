@@ -28,7 +28,7 @@ where
         next: Next<R>,
         rng: &mut impl Rng,
     ) -> usize {
-        // The cases repeat the target: shared code would slow the specialized run down by a twentieth.
+        // The cases repeat the target, because shared code would slow the specialized run down by a twentieth.
         match next {
             Next::NonTerminal(next_state) => {
                 let target = reward + agent.discount * maximum(agent.action_values(next_state));

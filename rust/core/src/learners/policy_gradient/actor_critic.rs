@@ -21,7 +21,7 @@ pub struct ActorCritic {
 }
 
 impl ActorCritic {
-    /// Before the first episode.
+    /// An update rule before the first episode.
     pub fn new(critic: Critic) -> Self {
         Self { critic, power: 1.0 }
     }

@@ -10,10 +10,10 @@ use crate::q_table::QTable;
 use crate::random::Rng;
 use crate::tasks::Next;
 
-/// The mark of a row without traces.
+/// Marks a row without traces.
 const NONE: u32 = u32::MAX;
 
-/// In each step, with the traces zʷ and zᶿ that are 0 when an episode begins:
+/// In each step, with the traces zʷ and zᶿ, which are 0 when an episode begins:
 ///
 /// - δ = R + γ v̂(S′, w) - v̂(S, w)
 /// - zʷ ← γλ zʷ + ∇v̂(S, w)
@@ -31,7 +31,7 @@ pub struct ActorCriticLambda {
     power: f64,
     /// The rows visited in this episode, in the order of their first visits.
     visited: Vec<u32>,
-    /// Where each row is in `visited`, or `NONE`.
+    /// The position of each row in `visited`, or `NONE`.
     positions: Vec<u32>,
     /// zʷ of the visited rows.
     value_traces: Vec<f64>,
@@ -40,7 +40,7 @@ pub struct ActorCriticLambda {
 }
 
 impl ActorCriticLambda {
-    /// With the trace decay λ.
+    /// An update rule with the trace decay λ.
     ///
     /// # Errors
     /// `OutOfMemory`; `Stopped` after `stop` was set.
@@ -50,7 +50,7 @@ impl ActorCriticLambda {
         Ok(Self { critic, trace_decay, power: 1.0, visited, positions, value_traces, preference_traces })
     }
 
-    /// The position of a row, which gets traces if it has none.
+    /// The position of a row. Adds traces for a row that has none.
     #[inline]
     fn position(&mut self, row: u32, num_actions: usize) -> usize {
         let position = &mut self.positions[row as usize];
@@ -71,7 +71,7 @@ impl ActorCriticLambda {
         reserve(&mut self.preference_traces, missing * num_actions)
     }
 
-    /// Forgets the traces of the episode.
+    /// Discards the traces of the episode.
     fn clear(&mut self) {
         for &row in &self.visited {
             self.positions[row as usize] = NONE;
@@ -128,7 +128,7 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for ActorCriticLambda {
         agent.work() + (self.value_traces.len() + self.preference_traces.len()) as u64 / VALUES_PER_WORK
     }
 
-    /// The caller knows of these bytes: they are those of a table.
+    /// The caller has already accounted for these bytes, which are those of a table.
     fn reserve(&mut self, agent: &mut Agent, _work: u64, _memory: &mut RunMemory) -> Result<(), AllocationError> {
         let (n_rows, num_actions) = agent.table.shape();
         self.make_room(n_rows, num_actions)

@@ -1,9 +1,9 @@
-//! State values beside a policy: the baseline of REINFORCE, the critic of actor-critic methods.
+//! State values in addition to a policy: the baseline of REINFORCE, the critic of actor-critic methods.
 
 use crate::q_table::QTable;
 
-/// v̂(S, w): the sum over the active rows. The table has a column for each action, as the policy's preferences have, and the
-/// value of a row in all of them.
+/// v̂(S, w): the sum over the active rows. The table has a column for each action, like the policy's preferences, and
+/// every column holds the value of the row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Critic {
     /// The weights w.

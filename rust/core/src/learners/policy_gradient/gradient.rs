@@ -4,7 +4,7 @@ use crate::learners::{Agent, available};
 use crate::schedules::StepSize;
 
 impl Agent {
-    /// ∇ln π(A | S), the part of each action; it is the same for each active row.
+    /// The components of ∇ln π(A | S), one per action. They are the same for each active row.
     #[inline]
     pub(in crate::learners) fn log_gradient(&mut self, rows: impl AsRef<[u32]>, action: usize) -> &[f64] {
         let values = available::<0>(&mut self.masks, rows.as_ref(), self.table.action_values(&rows));

@@ -9,7 +9,7 @@ use crate::q_table::QTable;
 use crate::random::Rng;
 use crate::tasks::Next;
 
-/// A state-action pair, and the reward that followed; at the end of the episode its return.
+/// A state-action pair with the reward that followed, which its return replaces at the end of the episode.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct PastStep<R> {
     rows: R,
@@ -23,11 +23,11 @@ struct PastStep<R> {
 /// - w ← w + αʷ δ ∇v̂(Sₜ, w)
 /// - θ ← θ + α γᵗ δ ∇ln π(Aₜ | Sₜ, θ)
 ///
-/// An episode that its time limit cuts off has the return up to there.
+/// The returns of a truncated episode end at the time limit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reinforce<R> {
     baseline: Option<Critic>,
-    /// The steps of the episode, and how many of them have been learned from.
+    /// The steps of the episode. The first `learned` of them have been learned from.
     steps: Vec<PastStep<R>>,
     learned: usize,
     /// γᵗ
@@ -37,12 +37,12 @@ pub struct Reinforce<R> {
 }
 
 impl<R: ActiveRows> Reinforce<R> {
-    /// Before the first episode.
+    /// An update rule before the first episode.
     pub fn new(baseline: Option<Critic>) -> Self {
         Self { baseline, steps: Vec::new(), learned: 0, power: 1.0, end: StepInParts::new() }
     }
 
-    /// Turns the rewards into returns, from the last step back.
+    /// Turns the rewards into returns, from the last step backwards.
     fn sum_rewards(&mut self, discount: f64) {
         let mut episode_return = 0.0;
         for step in self.steps.iter_mut().rev() {
@@ -51,7 +51,7 @@ impl<R: ActiveRows> Reinforce<R> {
         }
     }
 
-    /// Learns from the steps of the episode, or from a part of them where they are many.
+    /// Learns from the steps of the episode, or from a part of them if there are many.
     #[inline(never)]
     fn finish(&mut self, agent: &mut Agent) {
         let Self { baseline, steps, learned, power, end } = self;
@@ -96,7 +96,7 @@ impl<R: ActiveRows> UpdateRule<R, Agent> for Reinforce<R> {
         agent.work() + self.end.work()
     }
 
-    /// An episode has as many steps as there is work for them.
+    /// Each step takes at least one unit of work.
     fn reserve(&mut self, _agent: &mut Agent, work: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
         memory.reserve(&mut self.steps, usize::try_from(work).unwrap_or(usize::MAX).min(1 << 20))
     }
@@ -106,7 +106,7 @@ impl<R: ActiveRows> UpdateRule<R, Agent> for Reinforce<R> {
         self.end.is_unfinished()
     }
 
-    /// Only the end of an episode is left unfinished: there is no next action.
+    /// Only the learning at the end of an episode can be unfinished, so there is no next action.
     fn resume(&mut self, agent: &mut Agent, _next: Next<R>, _rng: &mut impl Rng) -> usize {
         self.finish(agent);
         0

@@ -1,4 +1,4 @@
-//! Numbers that begin at a cache line.
+//! Numbers aligned to a cache line.
 
 use std::ops::{Deref, DerefMut};
 
@@ -7,13 +7,13 @@ use crate::memory::{AllocationError, with_capacity};
 /// The number of values in a cache line.
 const LINE: usize = 8;
 
-/// How many numbers lie between the one at `index` and the next cache line. With another address later on, passes over the
-/// numbers take longer, as vectors then cross the lines; the results are the same.
+/// The number of elements from the one at `index` to the next cache line. If the address changes later, passes over the
+/// numbers take longer because vectors cross cache lines; the results are the same.
 pub(super) fn padding(numbers: &[f64], index: usize) -> usize {
     numbers.as_ptr().wrapping_add(index).align_offset(LINE * size_of::<f64>()) % LINE
 }
 
-/// The most that [`padding`] returns.
+/// The maximum of [`padding`].
 pub(super) const MAX_PADDING: usize = LINE - 1;
 
 /// A vector whose first number begins a cache line, as long as it stays within its capacity.
@@ -32,7 +32,7 @@ impl AlignedVec {
         Ok(Self { numbers, padding })
     }
 
-    /// As [`Vec::resize`].
+    /// Resizes the vector like [`Vec::resize`].
     pub(super) fn resize(&mut self, len: usize, number: f64) {
         self.numbers.resize(self.padding + len, number);
     }

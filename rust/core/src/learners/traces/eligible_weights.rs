@@ -1,4 +1,4 @@
-//! The weights whose traces are not zero, side by side: learning is then a pass over contiguous memory.
+//! The weights whose traces are not zero, stored side by side so that learning is a pass over contiguous memory.
 
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
@@ -12,31 +12,33 @@ use crate::memory::{AllocationError, from_fn, reserve, with_capacity};
 use crate::q_table::QTable;
 use crate::simd::SimdLevel;
 
-/// The eligible weights, those whose traces are not zero, and some whose traces have become zero. Each has a place. While the
-/// run learns, their values have moved out of the table, to the same places behind it; see [`QTable::values_at`].
+/// The eligible weights: those whose traces are not zero, and some whose traces have become zero. Each has a place.
+/// While the run learns, their values are stored at these places, after the rows of the table; see
+/// [`QTable::values_at`].
 ///
-/// Updating the values in the table instead, each at the index of its weight, takes a pass 2.7 (64 traces) to 7.6 times (256
-/// traces) as long, measured with AVX2 on an Intel Xeon; a run of Sarsa(λ) with 8 tilings has some hundreds of traces.
+/// If the values stayed in the table, each at the index of its weight, a pass would take 2.7 (64 traces) to 7.6 times
+/// (256 traces) as long, measured with AVX2 on an Intel Xeon. A run of Sarsa(λ) with 8 tilings has several hundred
+/// traces.
 #[derive(Clone, Debug)]
 pub(super) struct EligibleWeights {
-    /// The number of places in use. They are the first ones.
+    /// The number of places in use. The first places are used.
     pub(super) count: usize,
-    /// The trace at each place, 0 at those that are not in use.
+    /// The trace at each place, 0 at unused places.
     pub(super) traces: AlignedVec,
-    /// No magnitude of a trace is smaller than this. 0 if one may be 0.
+    /// A lower bound on the magnitudes of the traces; 0 if a trace may be 0.
     pub(super) smallest: f64,
-    /// Traces whose magnitudes fall to this become 0.
+    /// Traces whose magnitudes fall to this value become 0.
     pub(super) cutoff: f64,
     /// The index of the weight at each place in use.
     pub(super) weights: Vec<u32>,
-    /// With so many places in use, the weights whose traces are 0 lose theirs.
+    /// The number of places in use at which weights with traces of 0 are removed.
     pub(super) remove_zeros_at: usize,
-    /// The instructions of short passes over traces.
+    /// The instructions for short passes over traces.
     pub(super) level: SimdLevel,
-    /// The instructions of long ones.
+    /// The instructions for long passes.
     pub(super) long_pass_level: SimdLevel,
-    /// For each weight the index of its value in the storage of the table: its own index, or that of its place, which is
-    /// `base` more.
+    /// For each weight the index of its value in the storage of the table: the index of the weight, or `base` plus its
+    /// place.
     pub(super) slots: Vec<u32>,
     /// The index of the value at the first place, which is at the start of a cache line.
     pub(super) base: usize,
@@ -45,9 +47,9 @@ pub(super) struct EligibleWeights {
 }
 
 impl EligibleWeights {
-    /// No eligible weights among so many, with room for all.
+    /// No eligible weights, with room for all of this many weights.
     pub(super) fn new(weights: usize, cutoff: f64, stop: &StopFlag<'_>) -> Result<Self, AllocationError> {
-        // A table and as many places have indices of 32 bits.
+        // The indices of a table and as many places must fit into 32 bits.
         if weights > u32::MAX as usize / 2 - BLOCK - MAX_PADDING {
             return Err(AllocationError::OutOfMemory { bytes: weights.saturating_mul(32) });
         }
@@ -72,7 +74,7 @@ impl EligibleWeights {
         })
     }
 
-    /// Makes room behind the table for the values of all weights.
+    /// Makes room after the rows of the table for the values of all weights.
     pub(super) fn reserve<const N: usize>(&self, table: &mut QTable<N>) -> Result<(), AllocationError> {
         let places = self.slots.len().next_multiple_of(BLOCK);
         let storage = table.storage_mut();
@@ -89,7 +91,7 @@ impl EligibleWeights {
         self.slots.len()
     }
 
-    /// Where the value of each weight is, for [`QTable::values_at`].
+    /// The index of the value of each weight, for [`QTable::values_at`].
     pub(super) fn slots(&self) -> &[u32] {
         &self.slots
     }
@@ -104,17 +106,17 @@ impl EligibleWeights {
     #[inline(always)]
     pub(super) fn trace(&self, weight: usize) -> f64 {
         let (slot, len) = (self.slots[weight] as usize, self.base);
-        // No branch, because whether a weight is eligible is hard to predict.
+        // No branch, because it is hard to predict which weights are eligible.
         let eligible = slot >= len;
         let place = select_unpredictable(eligible, slot.wrapping_sub(len), 0);
         select(eligible, self.traces.get(place).copied().unwrap_or(0.0), 0.0)
     }
 
-    /// Makes room for so many more eligible weights.
+    /// Makes room for this many more eligible weights.
     #[inline(always)]
     pub(super) fn grow(&mut self, additional: usize, storage: &mut Vec<f64>) {
         let places = self.count + additional;
-        // As many values as traces: passes work in whole blocks.
+        // There are as many values as traces, because passes work in whole blocks.
         if places > self.traces.len() || self.base + self.traces.len() > storage.len() {
             self.grow_to(places.next_multiple_of(BLOCK), storage);
         }
@@ -146,7 +148,7 @@ impl EligibleWeights {
         }
     }
 
-    /// Begins the places at a cache line, while the values are in the table.
+    /// Aligns the first place to a cache line. The values must be in the table.
     #[cold]
     fn align(&mut self, storage: &[f64]) {
         let len = self.slots.len();
@@ -165,7 +167,7 @@ impl EligibleWeights {
         }
     }
 
-    /// Gives a weight a trace, while the values are in the table. The weight must not be eligible.
+    /// Gives a weight a trace. The values must be in the table, and the weight must not be eligible.
     pub(super) fn insert(&mut self, weight: u32, trace: f64) {
         let place = self.count;
         if place == self.traces.len() {
@@ -198,7 +200,7 @@ impl EligibleWeights {
         self.traces[last] = 0.0;
         self.weights[place] = moving;
         self.slots[moving as usize] = (len + place) as u32;
-        // In this order, because the two can be the same.
+        // The order matters, because the two weights can be the same.
         self.slots[weight as usize] = weight;
         self.count = last;
     }
@@ -206,7 +208,7 @@ impl EligibleWeights {
     /// Sets all traces to 0.
     pub(super) fn clear<const N: usize>(&mut self, table: &mut QTable<N>) {
         if self.moved {
-            // In one pass, not one to move the values back and another one to take them out of use.
+            // A single pass moves the values back and frees their places.
             let (values, moved) = table.storage_mut().split_at_mut(self.base);
             let slots = &mut self.slots[..];
             let values = &mut values[..slots.len()];
@@ -220,7 +222,7 @@ impl EligibleWeights {
         }
     }
 
-    /// Sets all traces to 0, while the values are in the table.
+    /// Sets all traces to 0. The values must be in the table.
     pub(super) fn discard(&mut self) {
         for &weight in &self.weights[..self.count] {
             self.slots[weight as usize] = weight;
@@ -228,7 +230,7 @@ impl EligibleWeights {
         self.empty();
     }
 
-    /// No place is in use any more.
+    /// Frees all places.
     fn empty(&mut self) {
         self.traces[..self.count].fill(0.0);
         self.count = 0;
@@ -238,8 +240,8 @@ impl EligibleWeights {
     }
 }
 
-/// The same traces, whatever their places. The slots follow from the weights; the rest only says where to look for traces at
-/// the cutoff.
+/// Equal if the traces are the same, whatever their places. The slots follow from the weights; the other fields only
+/// determine when to look for traces at the cutoff.
 impl PartialEq for EligibleWeights {
     fn eq(&self, other: &Self) -> bool {
         let parts = |weights: &Self| (weights.num_eligible(), weights.cutoff, weights.moved, weights.num_weights());

@@ -10,7 +10,7 @@ use crate::simd::SimdLevel;
 const ACTIONS: usize = 3;
 const ROWS: usize = 40;
 
-/// What a learner does with traces.
+/// An operation of a learner on traces.
 #[derive(Clone, Debug)]
 enum Operation {
     Visit(TraceKind, Vec<u32>, usize),
@@ -21,11 +21,11 @@ enum Operation {
     ApplyAndDecay(f64, f64),
     Clear,
     CompleteTable,
-    /// Into new traces, or into those in use.
+    /// Whether to restore into the traces in use or into new ones.
     SaveAndRestore(bool),
 }
 
-/// The definition: a trace and a value for every weight.
+/// The definition of traces: a trace and a value for every weight.
 struct Dense {
     values: Vec<f64>,
     traces: Vec<f64>,
@@ -70,7 +70,7 @@ fn bits(numbers: &[f64]) -> Vec<u64> {
     numbers.iter().map(|number| number.to_bits()).collect()
 }
 
-/// Does the same with the traces and with the definition, and compares all values and traces after each operation.
+/// Applies operations to the traces and to the definition, and compares all values and traces after each.
 fn check(operations: &[Operation], cutoff: f64, visits: bool) {
     for level in SimdLevel::available() {
         check_at(level, operations, cutoff, visits);
@@ -84,7 +84,7 @@ fn check_at(level: SimdLevel, operations: &[Operation], cutoff: f64, visits: boo
         traces.set_level(level);
         traces
     };
-    // Some are -0, which a weight without a trace stays.
+    // Some values are -0, which must not change for a weight without a trace.
     let value = |weight| if weight % 4 == 0 { -0.0 } else { f64::from(weight).sin() };
     let values: Vec<f64> = (0..(ROWS * ACTIONS) as u32).map(value).collect();
     let mut dense = Dense { values: values.clone(), traces: vec![0.0; ROWS * ACTIONS], cutoff };
@@ -169,7 +169,7 @@ fn check_at(level: SimdLevel, operations: &[Operation], cutoff: f64, visits: boo
 }
 
 fn operation() -> impl Strategy<Value = Operation> {
-    // Rows can be active twice, as hashing has it.
+    // Rows can be active twice, as with hashing.
     let rows = || prop::collection::vec(0..ROWS as u32, 1..20);
     let kind = prop_oneof![Just(TraceKind::Accumulating), Just(TraceKind::Replacing), Just(TraceKind::Clearing)];
     let factor = || prop_oneof![Just(0.9), Just(0.5), Just(0.0), Just(1.0)];
@@ -186,8 +186,8 @@ fn operation() -> impl Strategy<Value = Operation> {
     ]
 }
 
-/// What a learner with replacing traces does: in each step a visit of as many rows and a decay by the same factor. Seldom
-/// anything else.
+/// The operations of a learner with replacing traces: mostly steps that visit the same number of rows and decay by the
+/// same factor.
 fn steps() -> impl Strategy<Value = Vec<Operation>> {
     let kind = prop_oneof![Just(TraceKind::Replacing), Just(TraceKind::Clearing)];
     let factor = prop_oneof![Just(0.9), Just(0.5), Just(-0.7), Just(0.0), Just(1.0), Just(1.1)];

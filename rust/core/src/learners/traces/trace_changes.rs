@@ -1,4 +1,4 @@
-//! What a visit does to the traces of a state-action pair.
+//! The changes of traces by a visit to a state-action pair.
 
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
@@ -18,7 +18,7 @@ impl EligibleWeights {
         change: impl Fn(f64) -> f64,
     ) -> f64 {
         self.grow(weights.len(), table.storage_mut());
-        // Local variables: behind `self` and `table` each weight would load them again.
+        // Local variables, because fields of `self` and `table` would be loaded again for each weight.
         let base = self.base;
         let slots = self.slots.as_mut_slice();
         let traces = &mut *self.traces;
@@ -28,7 +28,7 @@ impl EligibleWeights {
         for weight in weights {
             let slot = slots[weight] as usize;
             let value = storage[slot];
-            // No branch, because whether a weight is eligible is hard to predict.
+            // No branch, because it is hard to predict which weights are eligible.
             let new = slot < base;
             let place = select_unpredictable(new, count, slot.wrapping_sub(base));
             let trace = change(traces[place]);
@@ -53,8 +53,9 @@ impl EligibleWeights {
     ) -> f64 {
         self.smallest = self.smallest.min(1.0);
         self.grow(weights.len(), table.storage_mut());
-        // Local variables, as in `update`. In 32 bits, so that no sum of them overflows: the compiler then knows that the
-        // value at a place that has a trace is in the storage. `update`, whose next pass waits for it, would be slower so.
+        // Local variables, as in `update`. They have 32 bits, so that no sum of them overflows and the compiler knows
+        // that the value at a place with a trace is in the storage. `update` would be slower this way, because the next
+        // pass waits for it.
         let (base, places) = (self.base as u32, self.traces.len() as u32);
         let (slots, traces) = (self.slots.as_mut_slice(), &mut self.traces[..places as usize]);
         let place_weights = &mut self.weights[..places as usize];

@@ -1,4 +1,4 @@
-//! What an update does to all eligible weights and to their traces.
+//! The updates of all eligible weights and the decay of their traces.
 
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
@@ -55,10 +55,10 @@ impl EligibleWeights {
         level.run(&mut TracePass::<APPLIES, DECAYS> { values, traces, step, factor, cutoff });
     }
 
-    /// Bounds the magnitudes of the traces after a decay.
+    /// Updates the lower bound on the magnitudes of the traces after a decay.
     fn bound_magnitudes(&mut self, factor: f64) {
         let smallest = self.smallest * factor.abs();
-        // NaN, which is ∞ · 0, is no bound either.
+        // NaN, the result of ∞ · 0, is not a bound either.
         self.smallest = if smallest > self.cutoff { smallest } else { 0.0 };
     }
 }

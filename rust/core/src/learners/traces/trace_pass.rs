@@ -4,12 +4,12 @@
 
 use crate::simd::{F64s, LANES, Simd, SimdCode};
 
-/// The number of traces that a pass goes over at once: how many traces there are is hard for the processor to predict, and
-/// how many blocks of them is not.
+/// The number of traces in a block of a pass. The number of traces is hard for the processor to predict, but the number
+/// of blocks is not.
 pub(super) const BLOCK: usize = 2 * LANES;
 
-/// From so many traces on a pass gains from AVX-512. A shorter one gains less than it costs on processors that lower their
-/// clock for such instructions, and with it the speed of all else in a step.
+/// The number of traces from which a pass gains from AVX-512. A shorter pass gains less than it costs on processors
+/// that lower their clock for such instructions, which slows down the rest of the step.
 pub(super) const LONG_PASS: usize = 256;
 
 /// Adds to each weight a step times its trace if `APPLIES`, then multiplies the trace by a factor if `DECAYS`.
@@ -20,12 +20,12 @@ pub(super) struct TracePass<'a, const APPLIES: bool, const DECAYS: bool> {
     pub(super) step: f64,
     /// γλ
     pub(super) factor: f64,
-    /// Where a trace is 0 its weight stays as it is, and a magnitude that the factor takes to the cutoff becomes 0. `None` if
-    /// no trace is 0 and none falls to the cutoff.
+    /// The cutoff: traces whose magnitudes the factor reduces to this value become 0, and the weights of zero traces do
+    /// not change. `None` if no trace is 0 and none falls to the cutoff.
     pub(super) cutoff: Option<f64>,
 }
 
-/// By reference: the struct itself would be copied through memory at each step.
+/// Implemented for a reference, because the struct would be copied through memory at each step.
 impl<const APPLIES: bool, const DECAYS: bool> SimdCode for &mut TracePass<'_, APPLIES, DECAYS> {
     const USES_AVX512: bool = true;
 
@@ -52,7 +52,8 @@ impl<const APPLIES: bool, const DECAYS: bool> TracePass<'_, APPLIES, DECAYS> {
                 let before = F64s::new(simd, *traces);
                 if APPLIES {
                     let change = step * before;
-                    // -0 changes no number, not even -0, unlike 0 and the product of 0 and an infinite step.
+                    // Adding -0 changes no number, not even -0. Adding 0, or the product of 0 and an infinite step, can
+                    // change one.
                     let change = if CUTS { before.equal(zero).select(splat(-0.0), change) } else { change };
                     *values = (F64s::new(simd, *values) + change).to_array();
                 }

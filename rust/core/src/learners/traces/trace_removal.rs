@@ -1,4 +1,4 @@
-//! How the weights whose traces have become 0 lose their places.
+//! The removal of the weights whose traces have become 0.
 
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
@@ -6,12 +6,12 @@ use super::eligible_weights::EligibleWeights;
 use super::trace_pass::BLOCK;
 use crate::simd::{F64s, LANES, Simd, SimdCode};
 
-/// The number of places that are looked at together, a bit for each.
+/// The number of places that are examined together, with a bit for each.
 const GROUP: usize = u64::BITS as usize;
 
 impl EligibleWeights {
-    /// Removes the weights whose traces are 0, if enough places have come into use since the last time. Together, because
-    /// in which steps traces fall is hard for the processor to predict.
+    /// Removes the weights whose traces are 0, if enough places have come into use since the last removal. They are
+    /// removed together, because the processor cannot predict in which steps traces become 0.
     #[inline(always)]
     pub(super) fn remove_zeros(&mut self, storage: &mut [f64]) {
         if self.smallest == 0.0 && self.count >= self.remove_zeros_at {
@@ -35,7 +35,8 @@ struct ZeroRemoval<'a> {
 impl SimdCode for ZeroRemoval<'_> {
     type Output = ();
 
-    /// From the last place on, so that the weight that takes the place of another one has been looked at.
+    /// Proceeds from the last place to the first, so that a weight that moves to a freed place has already been
+    /// examined.
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         let Self { weights, storage } = self;
@@ -51,7 +52,7 @@ impl SimdCode for ZeroRemoval<'_> {
     }
 }
 
-/// Which of the first traces are 0, a bit for each.
+/// The first [`GROUP`] traces that are 0, as a bit mask.
 #[inline(always)]
 fn zeros<S: Simd>(simd: S, traces: &[f64]) -> u64 {
     let lanes = traces.as_chunks::<LANES>().0.iter().take(GROUP / LANES);

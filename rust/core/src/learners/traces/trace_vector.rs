@@ -16,7 +16,7 @@ use crate::schedules::{LearningRate, StepSize};
 use crate::simd::SimdLevel;
 use crate::tasks::Next;
 
-/// How a visit of a state-action pair changes traces.
+/// The change of traces by a visit to a state-action pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TraceKind {
     /// Adds 1 to the traces of the pair (Sutton & Barto, section 12.7).
@@ -27,10 +27,10 @@ pub enum TraceKind {
     Clearing,
 }
 
-/// The options of an algorithm whose eligibility traces are of a kind.
+/// The options of an algorithm with a choice of the kind of its eligibility traces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TraceOptions {
-    /// What a visit does to a trace.
+    /// The change of traces by a visit.
     pub kind: TraceKind,
     /// The trace decay λ.
     pub decay: f64,
@@ -48,7 +48,7 @@ pub struct Traces {
 }
 
 impl Traces {
-    /// Traces of `weights` weights, all 0. There is room for all of them, so that a step cannot run out of memory.
+    /// Traces of `weights` weights, all 0. There is room for all of them, so a step cannot run out of memory.
     ///
     /// # Errors
     /// `OutOfMemory`; `Stopped` after `stop` was set.
@@ -56,13 +56,13 @@ impl Traces {
         Ok(Self { eligible: EligibleWeights::new(weights, cutoff, stop)? })
     }
 
-    /// Passes over these traces with other instructions than the machine's best.
+    /// Sets the instructions of passes over these traces. The default is the best of the machine.
     #[cfg(test)]
     pub(super) fn set_level(&mut self, level: SimdLevel) {
         (self.eligible.level, self.eligible.long_pass_level) = (level, level);
     }
 
-    /// Makes room for what the traces keep in the table.
+    /// Makes room in the table for the values of the weights with traces.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -99,7 +99,7 @@ impl Traces {
         self.eligible.move_out(table);
     }
 
-    /// Changes the traces for a visit of a state-action pair. Returns Q(S, A).
+    /// Changes the traces for a visit to a state-action pair. Returns Q(S, A).
     #[inline(always)]
     pub fn visit<const N: usize>(
         &mut self,
@@ -227,15 +227,15 @@ impl Traces {
     }
 }
 
-/// The indices of the weights of a state-action pair: [`QTable::weight_index`] in 32 bits, in which those of all weights with
-/// traces fit, as a vector register holds more of them.
+/// The indices of the weights of a state-action pair: [`QTable::weight_index`] in 32 bits, which suffice for all
+/// weights with traces, because a vector register holds more such indices.
 #[inline(always)]
 fn weight_indices(rows: &[u32], num_actions: usize, action: usize) -> impl ExactSizeIterator<Item = u32> {
     let (num_actions, action) = (num_actions as u32, action as u32);
     rows.iter().map(move |&row| row * num_actions + action)
 }
 
-/// The active traces in the order of their weights, as their places depend on how they came to be.
+/// Saves the active traces in the order of their weights, because their places depend on the history of the run.
 impl Persist for Traces {
     fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
         let weights = self.eligible.num_weights();

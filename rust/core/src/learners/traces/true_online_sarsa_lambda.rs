@@ -22,7 +22,7 @@ pub struct TrueOnlineSarsaLambda {
     pub traces: Traces,
     /// The trace decay λ.
     pub trace_decay: f64,
-    /// Q′ of the step before.
+    /// Qₒ: Q′ of the previous step.
     q_old: f64,
 }
 
@@ -32,7 +32,7 @@ impl TrueOnlineSarsaLambda {
         Self { traces, trace_decay, q_old: 0.0 }
     }
 
-    /// Qₒ: Q′ of the step before.
+    /// Qₒ: Q′ of the previous step.
     pub fn q_old(&self) -> f64 {
         self.q_old
     }
