@@ -18,7 +18,7 @@ use qtab_core::{Budget, StopFlag, Trainer};
 use runs::{agent, train};
 
 /// The message for allocations, which are small here.
-const FITS: &str = "it fits into memory";
+const FITS: &str = "small allocations succeed";
 
 const GROUP: &str = "10-armed testbed";
 const STEPS: usize = 1000;

@@ -25,7 +25,7 @@ use qtab_core::{Budget, Learner, StopFlag, Task, Trainer};
 use runs::{agent, train, train_batch};
 
 /// The message for allocations, which are small here.
-const FITS: &str = "it fits into memory";
+const FITS: &str = "small allocations succeed";
 
 const EPISODES: usize = 100;
 const BUDGET: Budget = Budget { episodes: EPISODES, work: u64::MAX };
@@ -96,7 +96,7 @@ fn grid(benchmarks: &mut Benchmarks) {
 fn tile_coding<const N: usize>() -> FixedTileCoding<f32, 2, N> {
     let bounds = [[-1.2_f32, -0.07], [0.6, 0.07]].map(|bound| bound.map(f64::from));
     let tiles = TileCoding::<f32, N>::new(&bounds[0], &bounds[1], &[8, 8], N as u32);
-    FixedTileCoding::new(&tiles).expect("the numbers agree")
+    FixedTileCoding::new(&tiles).expect("the numbers of tilings and components match")
 }
 
 fn tilings(benchmarks: &mut Benchmarks) {

@@ -1,4 +1,5 @@
-//! The speed of `MountainCar` in steps per second: the parts of a step, the article's training run, and its lower bounds.
+//! The speed of `MountainCar` in steps per second: the parts of a step, the article's training run, and its lower
+//! bounds.
 //!
 //! `cargo bench --bench mountain_car`, or `cargo bench --bench mountain_car -- run` for the training run only.
 

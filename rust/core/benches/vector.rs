@@ -20,8 +20,8 @@ where
 {
     let mut rngs: Vec<_> = (0..NUM_ENVS as u32).map(|seed| Pcg64::new(&SeedSequence::new(&[seed]))).collect();
     let actions: Vec<_> = rngs.iter_mut().map(|rng| rng.integers(env.num_actions() as u32) as usize).collect();
-    let mut vector =
-        VectorEnv::<_, LaneStates<M>>::new(env, NUM_ENVS, Some(LIMIT), Autoreset::SameStep, 1).expect("it fits");
+    let mut vector = VectorEnv::<_, LaneStates<M>>::new(env, NUM_ENVS, Some(LIMIT), Autoreset::SameStep, 1)
+        .expect("a small vector environment");
     rngs.iter_mut().enumerate().for_each(|(index, rng)| vector.reset(index, None, rng));
     let (mut observations, mut rewards) = (vec![[0.0; M]; NUM_ENVS], vec![0.0; NUM_ENVS]);
     let (mut terminated, mut truncated) = (vec![false; NUM_ENVS], vec![false; NUM_ENVS]);

@@ -1,8 +1,8 @@
 //! Benchmarks that Criterion times, or that run a given number of times under an instruction counter.
 //!
 //! With `QTAB_BENCH=list` a benchmark program prints the names of its benchmarks; with `QTAB_BENCH=NAME` it runs one of
-//! them `QTAB_RUNS` times and prints the number of steps. Otherwise Criterion reads the command line. `.ci/run
-//! instructions` counts the instructions of one run and of two runs under Valgrind; their difference gives the
+//! them `QTAB_RUNS` times and prints the number of steps. Otherwise Criterion reads the command line.
+//! `.ci/run instructions` counts the instructions of one run and of two runs under Valgrind; their difference gives the
 //! instructions per step. `QTAB_SIMD=plain` or `=avx2` disables wider vector instructions.
 #![expect(clippy::print_stdout, reason = "names and numbers of steps are the program's output")]
 

@@ -29,8 +29,9 @@ pub trait BatchedRun: Sized {
     /// Afterwards each run is in the state that it would have reached in as many steps alone, and it can be continued
     /// alone or in any batch.
     ///
-    /// Runs that differ in more than their seeds, tables and learning rates advance one after the other. So do those whose
-    /// learning rates depend on visits, and all runs once one of them has diverged or reaches an observation without a row.
+    /// Runs that differ in more than their seeds, tables and learning rates advance one after the other. So do those
+    /// whose learning rates depend on visits, and all runs once one of them has diverged or reaches an observation
+    /// without a row.
     ///
     /// # Errors
     /// As [`Trainer::advance`](crate::Trainer::advance), with the index of the run that failed. The others can be

@@ -24,8 +24,8 @@ impl Edges {
         Self(edges)
     }
 
-    /// Bins of equal width, as in Gymnasium's `DiscretizeObservation`: `np.linspace(low, high, bins + 1)[1:-1]`, computed
-    /// in the dtype of the bounds.
+    /// Bins of equal width, as in Gymnasium's `DiscretizeObservation`: `np.linspace(low, high, bins + 1)[1:-1]`,
+    /// computed in the dtype of the bounds.
     pub fn equal_width<T: Float>(low: T, high: T, bins: u32) -> Self {
         let width = (high - low) / T::from_count(bins);
         Self::new((1..bins).map(|edge| (T::from_count(edge) * width + low).into()).collect())

@@ -64,7 +64,7 @@ struct FixedAxis<const N: usize> {
     parts_per_unit: f64,
     /// The distance in rows between neighbouring tiles.
     stride: u32,
-    /// The offset of each tiling, in parts. They are not constants: the compiler would then omit the zero and add the
+    /// The offset of each tiling, in parts. Not a constant, because the compiler would then omit the zero and add the
     /// others one by one instead of as a vector.
     offsets: [u32; N],
 }
@@ -90,7 +90,7 @@ impl<T: Float, const D: usize, const N: usize> FixedTileCoding<T, D, N> {
             (axis.stride, stride) = (stride, axis.stride.wrapping_mul(stride));
         }
         let first_rows = std::array::from_fn(|tiling| (tiling as u32).wrapping_mul(stride));
-        // Only then is a product with the number of parts the scaled product with the number of tiles.
+        // Only then is the product with the number of parts exactly `N` times that with the number of tiles.
         let scales = N.is_power_of_two() && fixed.iter().all(|axis| axis.parts_per_unit.is_finite());
         let general = (tiles.is_hashed() || !scales).then(|| Box::new(tiles.clone()));
         Some(Self { axes: fixed, first_rows, general, len })
@@ -192,7 +192,7 @@ mod tests {
         let high: [f64; D] = std::array::from_fn(|axis| low[axis] + width[axis]);
         let general = TileCoding::<f64, N>::new(&low, &high, &tiles, N as u32);
         let general = if hashed { general.hashed(1000) } else { general };
-        let fixed = FixedTileCoding::<f64, D, N>::new(&general).expect("the numbers agree");
+        let fixed = FixedTileCoding::<f64, D, N>::new(&general).expect("the numbers of tilings and components match");
         // Positions are relative to the box, so that all tiles are reached.
         let observation = std::array::from_fn(|axis| low[axis] + width[axis] * observation[axis]);
         let rows = general.active_rows(&observation).map(|active| active.as_ref().to_vec());

@@ -126,7 +126,9 @@ mod tests {
     fn cells_of_mixed_components_are_in_c_order() {
         let bins = AnyGrid::Bins(Bins::new(vec![Edges::equal_width(0.0_f64, 1.0, 4)]));
         let bins = Factor { components: vec![1], features: FactorFeatures::Double(bins), stride: 2 };
-        let Some(product) = Product::new(vec![index(0, 3, 8), bins, index(2, 2, 1)]) else { unreachable!("it fits") };
+        let Some(product) = Product::new(vec![index(0, 3, 8), bins, index(2, 2, 1)]) else {
+            unreachable!("the factors fill the table")
+        };
         assert_eq!(Features::<[f64]>::len(&product), 24);
         assert_eq!(product.active_rows(&[2.0, 0.6, 1.0]).map(|active| active.as_ref().to_vec()), Ok(vec![21]));
         assert_eq!(product.active_rows(&[2.0, 0.6, 2.0]), Err(OutOfBounds { axis: 2, value: 2.0 }));
@@ -139,7 +141,9 @@ mod tests {
     fn each_index_has_tilings_of_its_own() {
         let tiles = TileCoding::new(&[0.0], &[1.0], &[4], 2);
         let tiles = Factor { components: vec![0], features: FactorFeatures::TileCoding(tiles), stride: 1 };
-        let Some(product) = Product::new(vec![tiles, index(1, 3, 10)]) else { unreachable!("it fits") };
+        let Some(product) = Product::new(vec![tiles, index(1, 3, 10)]) else {
+            unreachable!("the factors fill the table")
+        };
         assert_eq!(Features::<[f64]>::len(&product), 30);
         assert_eq!(product.active_rows(&[0.0, 2.0]).map(|active| active.as_ref().to_vec()), Ok(vec![20, 25]));
     }

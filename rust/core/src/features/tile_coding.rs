@@ -55,8 +55,8 @@ pub(super) struct TiledAxis<const M: usize> {
     pub(super) offsets: [u32; M],
 }
 
-/// Several tilings of a box. Along component `i` (from 0), tiling `t` of `n` is offset by `t (2i + 1) mod n` parts, where
-/// a part is the n-th part of a tile. Observations of dtype `T` are converted to f64.
+/// Several tilings of a box. Along component `i` (from 0), tiling `t` of `n` is offset by `t (2i + 1) mod n` parts,
+/// where a part is the n-th part of a tile. Observations of dtype `T` are converted to f64.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TileCoding<T = f64, const M: usize = MAX_TILINGS> {
     axes: Vec<TiledAxis<M>>,
@@ -66,8 +66,8 @@ pub struct TileCoding<T = f64, const M: usize = MAX_TILINGS> {
 }
 
 impl<T: Float, const M: usize> TileCoding<T, M> {
-    /// `tilings` tilings of the box from `low` to `high`, with `tiles` tiles along each component. Observations are clipped
-    /// to the box.
+    /// `tilings` tilings of the box from `low` to `high`, with `tiles` tiles along each component. Observations are
+    /// clipped to the box.
     ///
     /// # Panics
     /// If `tilings` is 0 or greater than `M`.
@@ -197,7 +197,7 @@ mod tests {
     fn each_tiling_has_one_active_tile() {
         let tiles = TileCoding::<f64, 8>::new(&[0.0, 0.0], &[1.0, 1.0], &[4, 4], 8);
         for observation in [[0.0, 0.0], [1.0, 1.0], [0.3, 0.9]] {
-            let Ok(active) = tiles.active_rows(&observation) else { unreachable!("it lies in the box") };
+            let Ok(active) = tiles.active_rows(&observation) else { unreachable!("the observation is in the box") };
             let tilings: Vec<u32> = active.as_ref().iter().map(|row| row / 25).collect();
             assert_eq!(tilings, [0, 1, 2, 3, 4, 5, 6, 7]);
         }
@@ -209,7 +209,7 @@ mod tests {
         let tiles = TileCoding::<f64, 8>::new(&[0.0, 0.0], &[1.0, 1.0], &[8, 8], 8);
         let shared = |left: [f64; 2], right: [f64; 2]| match (tiles.active_rows(&left), tiles.active_rows(&right)) {
             (Ok(left), Ok(right)) => left.as_ref().iter().zip(right.as_ref()).filter(|(l, r)| l == r).count(),
-            _ => unreachable!("both lie in the box"),
+            _ => unreachable!("both observations are in the box"),
         };
         assert_eq!(shared([0.5, 0.5], [0.5, 0.5]), 8);
         assert!((1..8).contains(&shared([0.5, 0.5], [0.53, 0.5])));
@@ -221,7 +221,7 @@ mod tests {
         let space = ([0.0; 12], [1.0; 12], [9; 12]);
         let tiles = TileCoding::<f64, 8>::new(&space.0, &space.1, &space.2, 8).hashed(1000);
         assert_eq!(Features::<[f64; 12]>::len(&tiles), 1000);
-        let Ok(active) = tiles.active_rows(&[0.3; 12]) else { unreachable!("it lies in the box") };
+        let Ok(active) = tiles.active_rows(&[0.3; 12]) else { unreachable!("the observation is in the box") };
         assert_eq!(active.as_ref().len(), 8);
         assert!(active.as_ref().iter().all(|&row| row < 1000));
         assert_ne!(tiles.active_rows(&[0.3; 12]), tiles.active_rows(&[0.7; 12]));

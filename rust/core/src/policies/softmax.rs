@@ -49,8 +49,8 @@ impl Softmax {
         &self.probabilities
     }
 
-    /// The gradient of ln π(A) with respect to the values, which are then preferences: (1 - π(A)) / τ for A, and -π(a) / τ
-    /// for any other action (Sutton & Barto, equation 13.9).
+    /// The gradient of ln π(A) with respect to the values, which are then preferences: (1 - π(A)) / τ for A, and -π(a)
+    /// / τ for any other action (Sutton & Barto, equation 13.9).
     pub(super) fn log_gradient(&mut self, values: &[f64], action: usize) -> &[f64] {
         self.probabilities(values);
         for (part, probability) in self.gradient.iter_mut().zip(&self.probabilities) {

@@ -19,7 +19,7 @@ impl TieBreaking {
     /// The greedy action.
     #[expect(
         clippy::inline_always,
-        reason = "where the number of actions is known, a call per step would take a third"
+        reason = "where the number of actions is known, a call per step would take a third of its time"
     )]
     #[inline(always)]
     pub(super) fn greedy(self, values: &[f64], rng: &mut impl Rng) -> usize {

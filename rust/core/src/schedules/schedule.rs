@@ -5,8 +5,8 @@
 pub enum Decay {
     /// The rate does not change.
     Constant,
-    /// Subtracts a constant while the rate is above its minimum. The result is not clamped, as in the article, so rounding
-    /// may leave it a few 1e-14 below the minimum.
+    /// Subtracts a constant while the rate is above its minimum. The result is not clamped, as in the article, so
+    /// rounding may leave it a few 1e-14 below the minimum.
     Linear {
         /// The amount subtracted after each episode.
         reduction: f64,

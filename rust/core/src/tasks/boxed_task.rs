@@ -86,7 +86,9 @@ impl<T: Task, X: From<T::Error>> DynTask<T::Active, X> for StatefulTask<T, X> {
     }
 
     fn active_rows(&self) -> Result<T::Active, X> {
-        let Some(state) = &self.state else { unreachable!("a trainer asks for the rows of an episode that has begun") };
+        let Some(state) = &self.state else {
+            unreachable!("a trainer only asks for the rows of an unfinished episode")
+        };
         Ok(self.task.active_rows(state)?)
     }
 

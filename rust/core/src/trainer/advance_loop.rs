@@ -56,7 +56,7 @@ mod tests {
     fn task<const N: usize>() -> NativeTask<MountainCar, Tilings<N>> {
         let bounds = [[-1.2_f32, -0.07], [0.6, 0.07]].map(|bound| bound.map(f64::from));
         let tiles = TileCoding::<f32, N>::new(&bounds[0], &bounds[1], &[8, 8], N as u32);
-        let features = FixedTileCoding::new(&tiles).expect("the numbers agree");
+        let features = FixedTileCoding::new(&tiles).expect("the numbers of tilings and components match");
         NativeTask::new(MountainCar::default(), features, Some(100), Pcg64::new(&SeedSequence::new(&[3])))
     }
 
@@ -84,10 +84,10 @@ mod tests {
         let mut wide = Trainer::new(task::<8>(), learner, Pcg64::new(&SeedSequence::new(&[3])));
         let mut narrow = wide.clone();
         let budget = Budget { episodes: 20, work: u64::MAX };
-        wide.advance(budget).expect("no bounds are left");
+        wide.advance(budget).expect("no observation is out of bounds");
         narrow.reserve(budget).expect("a few episodes");
         let mut rng = narrow.rng.clone();
-        narrow.advance_with(&mut rng, budget).expect("no bounds are left");
+        narrow.advance_with(&mut rng, budget).expect("no observation is out of bounds");
         assert_eq!(wide.episodes(), narrow.episodes());
         assert_eq!(bits(&wide.learner().agent.table), bits(&narrow.learner().agent.table));
     }
@@ -110,7 +110,7 @@ mod tests {
         let learner = TdLearner { agent: agent(tilings), rule };
         let mut trainer = Trainer::new(task, learner, Pcg64::new(&SeedSequence::new(&[3])));
         while trainer.episodes().lengths.len() < 10 {
-            trainer.advance(Budget { episodes: 10, work }).expect("no bounds are left");
+            trainer.advance(Budget { episodes: 10, work }).expect("no observation is out of bounds");
         }
         (bits(&trainer.learner().agent.table), trainer.take_episodes().lengths)
     }

@@ -36,10 +36,10 @@ where
     let learner = TruncationHandling { learner: TdLearner { agent, rule: rule.clone() }, terminate, bonus: None };
     let mut whole = Trainer::new(task, learner, Pcg64::new(&seed));
     let mut in_parts = whole.clone();
-    whole.advance(Budget { episodes: 2, work: u64::MAX }).expect("no bounds are left");
+    whole.advance(Budget { episodes: 2, work: u64::MAX }).expect("no observation is out of bounds");
     let mut parts = 0;
     while in_parts.episodes().returns.len() < 2 {
-        in_parts.advance(Budget { episodes: 2, work: 1 }).expect("no bounds are left");
+        in_parts.advance(Budget { episodes: 2, work: 1 }).expect("no observation is out of bounds");
         parts += 1;
     }
     assert!(parts > 2 * steps, "every step was done in one part");
@@ -78,6 +78,6 @@ fn the_work_of_long_steps_is_counted() {
     };
     let rule = DynaQ::new(Model::new(ROWS, ACTIONS, &stop).expect("a small model"), 99);
     let mut trainer = Trainer::new(task, TdLearner { agent, rule }, Pcg64::new(&seed));
-    trainer.advance(Budget { episodes: 1, work: 1000 }).expect("no bounds are left");
+    trainer.advance(Budget { episodes: 1, work: 1000 }).expect("no observation is out of bounds");
     assert_eq!(trainer.episode.map(|episode| episode.length), Some(10));
 }

@@ -24,7 +24,8 @@ where
     E::State: Send + PartialEq + std::fmt::Debug,
     S: States<E> + Send,
 {
-    let mut vector = VectorEnv::<_, S>::new(env.clone(), size, Some(limit), autoreset, threads).expect("it fits");
+    let mut vector =
+        VectorEnv::<_, S>::new(env.clone(), size, Some(limit), autoreset, threads).expect("a small vector environment");
     let (mut rngs, mut reference_rngs) = (generators(size), generators(size));
     let mut states: Vec<_> = reference_rngs.iter_mut().map(|rng| env.reset(rng)).collect();
     let mut elapsed = vec![0; size];
@@ -98,7 +99,10 @@ proptest! {
 
 #[test]
 fn a_restored_vector_environment_continues_with_other_threads() {
-    let new = |threads| PoleLanes::new(CartPole::default(), 7, Some(9), Autoreset::NextStep, threads).expect("it fits");
+    let new = |threads| {
+        PoleLanes::new(CartPole::default(), 7, Some(9), Autoreset::NextStep, threads)
+            .expect("a small vector environment")
+    };
     let step = |vector: &mut PoleLanes, rngs: &mut [Pcg64]| {
         let (mut observations, mut rewards) = ([[0.0; 4]; 7], [0.0; 7]);
         let (mut terminated, mut truncated) = ([false; 7], [false; 7]);
@@ -132,7 +136,8 @@ fn a_restored_vector_environment_continues_with_other_threads() {
 
 #[test]
 fn zero_sub_environments_are_allowed() {
-    let mut empty = PoleLanes::new(CartPole::default(), 0, None, Autoreset::NextStep, 2).expect("it fits");
+    let mut empty =
+        PoleLanes::new(CartPole::default(), 0, None, Autoreset::NextStep, 2).expect("a small vector environment");
     let buffers = StepBuffers { observations: &mut [], rewards: &mut [], terminated: &mut [], truncated: &mut [] };
     empty.step(&[], &mut [] as &mut [Pcg64], buffers);
     assert_eq!(empty.states().count(), 0);

@@ -105,8 +105,8 @@ impl<E: Env, S: States<E>> VectorEnv<E, S> {
         self.shards.iter().flat_map(Shard::done)
     }
 
-    /// With [`Autoreset::SameStep`], the index and the last state of each sub-environment whose episode ended in the last
-    /// step.
+    /// With [`Autoreset::SameStep`], the index and the last state of each sub-environment whose episode ended in the
+    /// last step.
     pub fn final_states(&self) -> impl Iterator<Item = (usize, &E::State)> + Clone {
         let shards = self.shards.iter().enumerate();
         shards.flat_map(move |(shard_index, shard)| {

@@ -96,10 +96,11 @@ pub(super) fn tiled_mountain_car<U: UpdateRule<FixedTiles<8>, Agent<3, EpsilonGr
 ) -> SimdTrainer<MountainCar, FixedTileCoding<f32, 2, 8>, 3, LearningRate, U> {
     let tiles = TileCoding::<f32, 8>::new(&[-1.2, -0.07], &[0.6, 0.07], &[4, 3], 8);
     let tiles = hashed.map_or(tiles.clone(), |rows| tiles.hashed(rows));
-    let features = FixedTileCoding::new(&tiles).expect("the numbers agree");
+    let features = FixedTileCoding::new(&tiles).expect("the numbers of tilings and components match");
     let rows = Features::<[f32; 2]>::len(&features);
     let learning_rate = if by_visit_count {
-        LearningRate::by_visit_count(settings.learning_rate, 0.01, 3 * rows, 8, &StopFlag::new()).expect("it fits")
+        LearningRate::by_visit_count(settings.learning_rate, 0.01, 3 * rows, 8, &StopFlag::new())
+            .expect("a small table")
     } else {
         let schedule = Schedule::linear(settings.learning_rate, 0.0, settings.episodes as u64, 1);
         LearningRate::scheduled(schedule, 8)

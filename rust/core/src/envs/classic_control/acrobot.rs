@@ -10,8 +10,8 @@ use crate::random::Rng;
 /// The bounds of each component of the initial state, which is uniform.
 const RESET_BOUNDS: [(&str, f64); 2] = [("low", -0.1), ("high", 0.1)];
 const GRAVITY: f64 = 9.8;
-/// The largest angle that is wrapped. Gymnasium subtracts full turns one by one, which would take too long; the
-/// dynamics never reach such an angle.
+/// The largest angle that is wrapped. Gymnasium subtracts full turns one by one; the dynamics never reach such an
+/// angle.
 const MAX_ANGLE: f64 = 1e6;
 
 /// The parameters, with Gymnasium's names in lower case.
@@ -41,8 +41,8 @@ pub struct Acrobot {
     pub nips: bool,
     /// The torque of each action.
     pub torques: [f64; 3],
-    /// Cosine and sine of a float32 angle, for the observation after a reset. `NumPy` has its own float32 functions, which
-    /// differ from the platform's. The default is the platform's.
+    /// Cosine and sine of a float32 angle, for the observation after a reset. `NumPy` has its own float32 functions,
+    /// which differ from the platform's. The default is the platform's.
     pub f32_cos_sin: fn(f32) -> [f32; 2],
 }
 

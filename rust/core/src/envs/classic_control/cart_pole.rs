@@ -1,5 +1,5 @@
-//! `CartPole-v1`: balance a pole on a cart by pushing the cart left or right (A. Barto, R. Sutton and C. Anderson, 1983).
-//! Gymnasium's dynamics follow R. Florian, "Correct equations for the dynamics of the cart-pole system", 2005.
+//! `CartPole-v1`: balance a pole on a cart by pushing the cart left or right (A. Barto, R. Sutton and C. Anderson,
+//! 1983). Gymnasium's dynamics follow R. Florian, "Correct equations for the dynamics of the cart-pole system", 2005.
 
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::envs::{Env, Flag, Parameters, SimdEnv, Step};

@@ -27,8 +27,8 @@ pub(super) struct IntervalSteps {
 }
 
 impl IntervalSteps {
-    /// The steps of a table with these thresholds, in which `sample` finds the step of a pair for a draw. `None` if there
-    /// are too many different thresholds, or too many steps.
+    /// The steps of a table with these thresholds, in which `sample` finds the step of a pair for a draw. `None` if
+    /// there are too many different thresholds, or too many steps.
     pub(super) fn new(num_pairs: usize, thresholds: &[u64], sample: impl Fn(usize, u64) -> Step<u32>) -> Option<Self> {
         let mut reached = Vec::new();
         for &threshold in thresholds {

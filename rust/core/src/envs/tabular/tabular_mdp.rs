@@ -31,8 +31,8 @@ pub struct TabularMdp {
 }
 
 impl TabularMdp {
-    /// `initial_distribution` is `initial_state_distrib`, a probability for each state. `pairs` holds `P[state][action]`
-    /// for each state-action pair, the actions of state 0 first.
+    /// `initial_distribution` is `initial_state_distrib`, a probability for each state. `pairs` holds
+    /// `P[state][action]` for each state-action pair, the actions of state 0 first.
     ///
     /// # Errors
     /// A probability outside [0, 1], probabilities that do not sum to 1, a next state outside the table, a reward that

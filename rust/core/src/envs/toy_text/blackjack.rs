@@ -9,7 +9,7 @@ use crate::random::Rng;
 pub const DECK: [u32; 13] = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 10, 10, 10];
 /// The dealer hits below this sum.
 pub const DEALER_STICKS: u32 = 17;
-/// The number of suits, from which the picture of the dealer's card is drawn.
+/// The numbers of suits and of face cards, from which the picture of the dealer's card is drawn.
 const SUITS: u32 = 4;
 const FACES: u32 = 3;
 /// The number of actions: stick or hit.

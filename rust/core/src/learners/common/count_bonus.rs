@@ -1,4 +1,5 @@
-//! The count-based exploration bonus (A. Strehl & M. Littman, 2008: model-based interval estimation with exploration bonus).
+//! The count-based exploration bonus (A. Strehl & M. Littman, 2008: model-based interval estimation with exploration
+//! bonus).
 
 use crate::StopFlag;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};

@@ -1,7 +1,7 @@
 //! The macro that forwards the methods of a learner to a wrapped learner.
 
-/// Implements the methods of [`Learner`](crate::Learner) by forwarding to the learner inside a type, within its `impl
-/// Learner<R>`.
+/// Implements the methods of [`Learner`](crate::Learner) by forwarding to the learner inside a type. To be used in
+/// the type's `impl Learner<R>`.
 ///
 /// `$pattern` matches the type and binds `$learner`: a wrapper has one such pattern, an enum one for each variant.
 /// `rest` leaves out the methods that a wrapper may change, `learn`, `resume`, `end_episode` and `persist`; `all`

@@ -8,7 +8,8 @@ use crate::tasks::Next;
 /// A learner, which owns its table, its policy and its schedules. A state is given by its active rows `R`. Each learner
 /// draws from the agent's generator in the order of its Python reference.
 pub trait Learner<R> {
-    /// Whether the trainer's loop is worth compiling for wide vector registers too, because a step passes over many values.
+    /// Whether the trainer's loop is worth compiling for wide vector registers too, because a step passes over many
+    /// values.
     const HAS_VECTOR_PASSES: bool = false;
 
     /// Samples the first action of an episode.
@@ -51,7 +52,8 @@ pub trait Learner<R> {
         false
     }
 
-    /// Continues to learn from the last step, which led to `next`, and returns the next action once the step is finished.
+    /// Continues to learn from the last step, which led to `next`, and returns the next action once the step is
+    /// finished.
     fn resume(&mut self, next: Next<R>, rng: &mut impl Rng) -> usize {
         let (_, _) = (next, rng);
         0

@@ -186,8 +186,8 @@ impl OutcomeTrees {
         node
     }
 
-    /// Adds a leaf at the end of a tree. A new inner node, whose children are the last perfect subtree and the leaf, takes the
-    /// place of that subtree.
+    /// Adds a leaf at the end of a tree. A new inner node, whose children are the last perfect subtree and the leaf,
+    /// takes the place of that subtree.
     fn append(&mut self, root: &mut Root, hash: u32, entry: ModelEntry) -> u32 {
         let leaf = self.leaves.len() as u32;
         self.leaves.push(Leaf { entry, count: 0, parent: NONE, hash, after: NONE });

@@ -29,8 +29,8 @@ impl Planning {
         updates
     }
 
-    /// Calls `update` for the remaining updates, which may differ in work. It returns the work, or `None` if there is
-    /// nothing left to update.
+    /// Calls `update` for the remaining updates, which may differ in work. `update` returns its work, or `None` if
+    /// there is nothing left to update.
     pub(super) fn advance(&mut self, mut update: impl FnMut() -> Option<u64>) {
         self.work = 0;
         while self.remaining > 0 && self.work < MAX_WORK_PER_CALL {

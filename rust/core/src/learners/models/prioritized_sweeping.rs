@@ -1,5 +1,5 @@
-//! Prioritized sweeping for a deterministic environment (A. Moore & C. Atkeson, 1993; J. Peng & R. Williams, 1993; Sutton &
-//! Barto, the box in section 8.4).
+//! Prioritized sweeping for a deterministic environment (A. Moore & C. Atkeson, 1993; J. Peng & R. Williams, 1993;
+//! Sutton & Barto, the box in section 8.4).
 
 use super::{Model, ModelEntry, Planning, Predecessors, PriorityQueue, single_row};
 use crate::StopFlag;

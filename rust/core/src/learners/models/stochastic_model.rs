@@ -10,7 +10,7 @@ use crate::random::Rng;
 /// The outcomes of each pair in the order in which they were first seen, with their counts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StochasticModel {
-    /// The pairs that were tried, in their order.
+    /// The pairs that were tried, in the order of their first trials.
     tried: Model,
     /// The outcomes of each pair.
     roots: Vec<Root>,

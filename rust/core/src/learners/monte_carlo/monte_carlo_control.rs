@@ -1,4 +1,5 @@
-//! First-visit Monte Carlo control, on-policy or with exploring starts (Sutton & Barto, the boxes in sections 5.3 and 5.4).
+//! First-visit Monte Carlo control, on-policy or with exploring starts (Sutton & Barto, the boxes in sections 5.3 and
+//! 5.4).
 
 use super::EpisodeSteps;
 use crate::StopFlag;

@@ -148,7 +148,8 @@ mod tests {
             learner.learn([state], action, reward, Next::NonTerminal([1]), &mut rng());
         }
         learner.learn([1], 0, 8.0, Next::Terminal, &mut rng());
-        // Backwards: 8 with weight 1; -4 + 4 with weight 1 / b; action 1 is not greedy, so nothing before it is learned.
+        // Backwards: 8 with weight 1; -4 + 4 with weight 1 / b; action 1 is not greedy, so nothing before it is
+        // learned.
         assert_eq!(probability, 0.5);
         assert_eq!(learner.agent.table.values(), [1.0, 0.0, 8.0, 0.0]);
         assert_eq!(learner.rule.weights, [0.0, 2.0, 1.0, 0.0]);

@@ -31,8 +31,8 @@ pub trait NStepMethod<R> {
     /// The data to store when an action is chosen, before any value changes.
     fn memo(&self, agent: &mut Agent, rows: R, action: usize) -> Self::Memo;
 
-    /// Updates the oldest pair, the first of the visits. `following` is the pair after the newest reward, or `None` after a
-    /// terminal state.
+    /// Updates the oldest pair, the first of the visits. `following` is the pair after the newest reward, or `None`
+    /// after a terminal state.
     fn update(&self, agent: &mut Agent, visits: &VecDeque<NStepVisit<R, Self::Memo>>, following: Option<(R, usize)>);
 
     /// The work of an update with this many visits.

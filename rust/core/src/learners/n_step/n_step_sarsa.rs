@@ -9,8 +9,8 @@ use crate::learners::Agent;
 /// Q(Sₜ, Aₜ) ← Q(Sₜ, Aₜ) + α [G - Q(Sₜ, Aₜ)] with the n-step return
 /// G = Rₜ₊₁ + γ Rₜ₊₂ + … + γⁿ⁻¹ Rₜ₊ₙ + γⁿ Q(Sₜ₊ₙ, Aₜ₊ₙ).
 ///
-/// The sum runs from left to right, and the powers of γ are a running product. At the end of an episode the last n pairs
-/// are updated with shorter returns.
+/// The sum runs from left to right, and the powers of γ are a running product. At the end of an episode the last n
+/// pairs are updated with shorter returns.
 pub type NStepSarsa<R> = NStep<R, NStepReturn>;
 
 /// The n-step return of Sarsa.

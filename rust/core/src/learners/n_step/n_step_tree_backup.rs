@@ -1,4 +1,5 @@
-//! n-step tree backup (D. Precup, R. Sutton & S. Singh, 2000; Sutton & Barto, equation 7.16, and the box in section 7.5).
+//! n-step tree backup (D. Precup, R. Sutton & S. Singh, 2000; Sutton & Barto, equation 7.16, and the box in section
+//! 7.5).
 
 use std::collections::VecDeque;
 

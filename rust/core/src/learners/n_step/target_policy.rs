@@ -47,8 +47,9 @@ impl TargetPolicy {
         }
     }
 
-    /// The return of the first of these visits, computed from the last one backwards: Gₜ = Rₜ₊₁ + γ [Σₐ π(a|Sₜ₊₁)
-    /// Q(Sₜ₊₁, a) + w (Gₜ₊₁ - Q(Sₜ₊₁, Aₜ₊₁))]. `weight` is w, given π(Aₜ₊₁|Sₜ₊₁) and the memo of the visit.
+    /// The return of the first of these visits, computed from the last one backwards:
+    /// Gₜ = Rₜ₊₁ + γ [Σₐ π(a|Sₜ₊₁) Q(Sₜ₊₁, a) + w (Gₜ₊₁ - Q(Sₜ₊₁, Aₜ₊₁))]. `weight` is w, given π(Aₜ₊₁|Sₜ₊₁) and the
+    /// memo of the visit.
     #[inline]
     pub(in crate::learners) fn backed_up<R: ActiveRows, M>(
         self,

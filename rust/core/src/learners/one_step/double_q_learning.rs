@@ -9,10 +9,11 @@ use crate::random::Rng;
 use crate::schedules::{LearningRate, StepSize};
 use crate::tasks::Next;
 
-/// Q₁(S, A) ← Q₁(S, A) + α [R + γ Q₂(S′, argmaxₐ Q₁(S′, a)) - Q₁(S, A)] with probability 1/2, otherwise the same with Q₁
-/// and Q₂ exchanged.
+/// Q₁(S, A) ← Q₁(S, A) + α [R + γ Q₂(S′, argmaxₐ Q₁(S′, a)) - Q₁(S, A)] with probability 1/2, otherwise the same with
+/// Q₁ and Q₂ exchanged.
 ///
-/// Q₁ is the agent's table. The policy uses Q₁ + Q₂. The argmax takes the first maximum, whatever the policy's tie breaking.
+/// Q₁ is the agent's table. The policy uses Q₁ + Q₂. The argmax takes the first maximum, whatever the policy's tie
+/// breaking.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DoubleQLearning {
     /// The second table, Q₂.

@@ -31,7 +31,7 @@ pub(super) struct EligibleWeights {
     pub(super) cutoff: f64,
     /// The index of the weight at each place in use.
     pub(super) weights: Vec<u32>,
-    /// The number of places in use at which weights with traces of 0 are removed.
+    /// Weights with traces of 0 are removed once this many places are in use.
     pub(super) remove_zeros_at: usize,
     /// The instructions for short passes over traces.
     pub(super) level: SimdLevel,
@@ -47,7 +47,7 @@ pub(super) struct EligibleWeights {
 }
 
 impl EligibleWeights {
-    /// No eligible weights, with room for all of this many weights.
+    /// No eligible weights among `weights` weights, with room for all of them.
     pub(super) fn new(weights: usize, cutoff: f64, stop: &StopFlag<'_>) -> Result<Self, AllocationError> {
         // The indices of a table and as many places must fit into 32 bits.
         if weights > u32::MAX as usize / 2 - BLOCK - MAX_PADDING {

@@ -18,7 +18,7 @@ use crate::tasks::Next;
 pub struct SarsaLambda {
     /// The traces z.
     pub traces: Traces,
-    /// The change of the traces by a visit.
+    /// The effect of a visit on the traces.
     pub kind: TraceKind,
     /// The trace decay λ.
     pub trace_decay: f64,

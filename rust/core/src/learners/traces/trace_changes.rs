@@ -8,8 +8,8 @@ use super::eligible_weights::EligibleWeights;
 use crate::q_table::QTable;
 
 impl EligibleWeights {
-    /// Replaces the traces of some weights, one after the other, by a function of the trace. Returns the sum of the values
-    /// from left to right.
+    /// Replaces the traces of some weights, one after the other, by a function of the trace. Returns the sum of the
+    /// values from left to right.
     #[inline(always)]
     pub(super) fn update<const N: usize>(
         &mut self,

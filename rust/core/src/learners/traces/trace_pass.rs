@@ -8,8 +8,8 @@ use crate::simd::{F64s, LANES, Simd, SimdCode};
 /// of blocks is not.
 pub(super) const BLOCK: usize = 2 * LANES;
 
-/// The number of traces from which a pass gains from AVX-512. A shorter pass gains less than it costs on processors
-/// that lower their clock for such instructions, which slows down the rest of the step.
+/// The smallest number of traces for which a pass gains from AVX-512. A shorter pass gains less than it costs on
+/// processors that lower their clock for such instructions, which slows down the rest of the step.
 pub(super) const LONG_PASS: usize = 256;
 
 /// Adds to each weight a step times its trace if `APPLIES`, then multiplies the trace by a factor if `DECAYS`.

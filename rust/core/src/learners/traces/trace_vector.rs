@@ -16,7 +16,7 @@ use crate::schedules::{LearningRate, StepSize};
 use crate::simd::SimdLevel;
 use crate::tasks::Next;
 
-/// The change of traces by a visit to a state-action pair.
+/// The effect of a visit to a state-action pair on its traces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TraceKind {
     /// Adds 1 to the traces of the pair (Sutton & Barto, section 12.7).
@@ -27,10 +27,10 @@ pub enum TraceKind {
     Clearing,
 }
 
-/// The options of an algorithm with a choice of the kind of its eligibility traces.
+/// The options of an algorithm with eligibility traces of a chosen kind.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TraceOptions {
-    /// The change of traces by a visit.
+    /// The effect of a visit on the traces.
     pub kind: TraceKind,
     /// The trace decay λ.
     pub decay: f64,
@@ -40,8 +40,8 @@ pub struct TraceOptions {
 
 /// The trace vector z, with one trace per weight. A trace whose magnitude falls to the cutoff becomes 0.
 ///
-/// From [`begin_step`](Self::begin_step) until [`complete_table`](Self::complete_table), the values of the weights whose
-/// traces are active are not in the rows of the table, and are read with [`action_values`](Self::action_values).
+/// From [`begin_step`](Self::begin_step) until [`complete_table`](Self::complete_table), the values of the weights
+/// whose traces are active are not in the rows of the table, and are read with [`action_values`](Self::action_values).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Traces {
     eligible: EligibleWeights,
@@ -156,8 +156,8 @@ impl Traces {
         table.value_at(self.eligible.slots(), rows, action)
     }
 
-    /// Samples A′ in the next state S′ and returns it with Q(S′, A′); `None` if S′ is terminal. If the episode is truncated,
-    /// A′ is sampled for its value and never taken.
+    /// Samples A′ in the next state S′ and returns it with Q(S′, A′); `None` if S′ is terminal. If the episode is
+    /// truncated, A′ is sampled for its value and never taken.
     #[inline(always)]
     pub fn sample_next<R: AsRef<[u32]>>(
         &self,
