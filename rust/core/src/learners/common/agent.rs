@@ -42,7 +42,7 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
     #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
     #[inline(always)]
     pub fn choose(&mut self, rows: impl AsRef<[u32]>, rng: &mut impl Rng) -> usize {
-        let values = available::<N>(&mut self.masks, rows.as_ref(), self.table.action_values(&rows));
+        let values = masked_values::<N>(&mut self.masks, rows.as_ref(), self.table.action_values(&rows));
         self.policy.choose_in(rows.as_ref(), values, rng)
     }
 
@@ -50,20 +50,20 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
     #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
     #[inline(always)]
     pub fn action_values(&mut self, rows: impl AsRef<[u32]>) -> &[f64] {
-        available::<N>(&mut self.masks, rows.as_ref(), self.table.action_values(&rows))
+        masked_values::<N>(&mut self.masks, rows.as_ref(), self.table.action_values(&rows))
     }
 
     /// The expected value Σₐ π(a) Q(a) of the state with these active rows.
     #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
     #[inline(always)]
     pub fn expected_value(&mut self, rows: impl AsRef<[u32]>) -> f64 {
-        let values = available::<N>(&mut self.masks, rows.as_ref(), self.table.action_values(&rows));
+        let values = masked_values::<N>(&mut self.masks, rows.as_ref(), self.table.action_values(&rows));
         self.policy.expected_value_in(rows.as_ref(), values)
     }
 
     /// The probability π(a) of an action in the state with these active rows.
     pub fn probability(&mut self, rows: impl AsRef<[u32]>, action: usize) -> f64 {
-        let values = available::<N>(&mut self.masks, rows.as_ref(), self.table.action_values(&rows));
+        let values = masked_values::<N>(&mut self.masks, rows.as_ref(), self.table.action_values(&rows));
         self.policy.probability(values, action)
     }
 
@@ -166,7 +166,7 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
 /// Action values, with -∞ for the actions that are not available in the state with these active rows.
 #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
 #[inline(always)]
-pub(in crate::learners) fn available<'a, const N: usize>(
+pub(in crate::learners) fn masked_values<'a, const N: usize>(
     masks: &'a mut Option<Box<ActionMasks>>,
     rows: &[u32],
     values: &'a [f64],

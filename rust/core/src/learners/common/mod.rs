@@ -14,7 +14,7 @@ mod update_rule;
 
 pub use action_masks::ActionMasks;
 pub use agent::Agent;
-pub(super) use agent::{MAX_WORK_PER_CALL, VALUES_PER_WORK, available, row_work};
+pub(super) use agent::{MAX_WORK_PER_CALL, VALUES_PER_WORK, masked_values, row_work};
 pub use count_bonus::CountBonus;
 pub use learner::Learner;
 pub(crate) use step_in_parts::StepInParts;

@@ -1,7 +1,7 @@
 //! Double Q-learning (H. van Hasselt, 2010; Sutton & Barto, equation 6.10).
 
 use crate::checkpoint::{Checkpoint, CheckpointError};
-use crate::learners::{Agent, UpdateRule, available};
+use crate::learners::{Agent, UpdateRule, masked_values};
 use crate::numeric::argmax;
 use crate::policies::Policy;
 use crate::q_table::QTable;
@@ -67,7 +67,7 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for DoubleQLearning {
         match next {
             Next::NonTerminal(next_state) | Next::Truncated(next_state) => {
                 let rows = next_state.as_ref();
-                let greedy = argmax(available::<0>(masks, rows, updated.action_values(rows)));
+                let greedy = argmax(masked_values::<0>(masks, rows, updated.action_values(rows)));
                 let target = reward + *discount * other.value(rows, greedy);
                 updated.update(state.as_ref(), action, target, learning_rate);
             }

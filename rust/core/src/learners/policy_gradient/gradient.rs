@@ -1,13 +1,13 @@
 //! The gradient of an agent's policy with respect to its table, which then holds preferences.
 
-use crate::learners::{Agent, available};
+use crate::learners::{Agent, masked_values};
 use crate::schedules::StepSize;
 
 impl Agent {
     /// The components of ∇ln π(A | S), one per action. They are the same for each active row.
     #[inline]
     pub(in crate::learners) fn log_gradient(&mut self, rows: impl AsRef<[u32]>, action: usize) -> &[f64] {
-        let values = available::<0>(&mut self.masks, rows.as_ref(), self.table.action_values(&rows));
+        let values = masked_values::<0>(&mut self.masks, rows.as_ref(), self.table.action_values(&rows));
         self.policy.log_gradient(values, action)
     }
 
@@ -16,7 +16,7 @@ impl Agent {
     pub(in crate::learners) fn ascend(&mut self, rows: impl AsRef<[u32]>, action: usize, scale: f64) {
         self.table.check_finite(scale);
         let step = self.step_size() * scale;
-        let values = available::<0>(&mut self.masks, rows.as_ref(), self.table.action_values(&rows));
+        let values = masked_values::<0>(&mut self.masks, rows.as_ref(), self.table.action_values(&rows));
         let gradient = self.policy.log_gradient(values, action);
         for &row in rows.as_ref() {
             for (preference, part) in self.table.row_mut(row).iter_mut().zip(gradient) {

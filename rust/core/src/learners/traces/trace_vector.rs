@@ -6,7 +6,7 @@
 use super::eligible_weights::EligibleWeights;
 use crate::StopFlag;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
-use crate::learners::{Agent, available};
+use crate::learners::{Agent, masked_values};
 use crate::memory::AllocationError;
 use crate::policies::Policy;
 use crate::q_table::QTable;
@@ -169,7 +169,7 @@ impl Traces {
         let values = self.action_values(&mut agent.table, &next_state);
         let next_action = agent.policy.choose_in(
             next_state.as_ref(),
-            available::<0>(&mut agent.masks, next_state.as_ref(), values),
+            masked_values::<0>(&mut agent.masks, next_state.as_ref(), values),
             rng,
         );
         Some((next_action, values[next_action]))

@@ -4,7 +4,7 @@
 
 use super::{TraceKind, Traces};
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
-use crate::learners::{Agent, UpdateRule, VALUES_PER_WORK, available};
+use crate::learners::{Agent, UpdateRule, VALUES_PER_WORK, masked_values};
 use crate::memory::{AllocationError, RunMemory};
 use crate::numeric::maximum;
 use crate::policies::Policy;
@@ -45,7 +45,7 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for WatkinsQLambda {
         let (next_action, target, greedy) = match next {
             Next::NonTerminal(next_state) | Next::Truncated(next_state) => {
                 let values = self.traces.action_values(&mut agent.table, next_state);
-                let values = available::<0>(&mut agent.masks, next_state.as_ref(), values);
+                let values = masked_values::<0>(&mut agent.masks, next_state.as_ref(), values);
                 let next_action = agent.policy.choose_in(next_state.as_ref(), values, rng);
                 let largest = maximum(values);
                 // An action that ties for the maximum is greedy, even if it was chosen by exploring.
