@@ -56,7 +56,7 @@ impl<M: Copy + Default + Persist> EpisodeSteps<M> {
 
     /// Calls `learn` for the steps of a finished episode, the last one first, or for a part of them if there are many.
     /// `learn` updates the return G, takes `work_per_step`, and returns whether to learn from the earlier steps.
-    pub(in crate::learners) fn finish(
+    pub(in crate::learners) fn learn_backwards(
         &mut self,
         work_per_step: u64,
         mut learn: impl FnMut(&mut f64, EpisodeStep<M>) -> bool,

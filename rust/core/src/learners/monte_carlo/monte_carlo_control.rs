@@ -43,9 +43,9 @@ impl MonteCarloControl {
     }
 
     /// Learns from the steps of the episode, or from a part of them if there are many.
-    fn finish(&mut self, agent: &mut Agent) {
+    fn learn_backwards(&mut self, agent: &mut Agent) {
         let Self { steps, occurrences, .. } = self;
-        steps.finish(row_work(agent.table.num_actions()), |following, step| {
+        steps.learn_backwards(row_work(agent.table.num_actions()), |following, step| {
             *following = agent.discount * *following + step.reward;
             let earlier = &mut occurrences[agent.table.weight_index(step.row, step.action as usize)];
             *earlier -= 1;
@@ -78,7 +78,7 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for MonteCarloControl {
         let following = agent.sample_next(next, rng);
         if !matches!(next, Next::NonTerminal(_)) {
             self.steps.following = following.map_or(0.0, |(rows, action)| agent.value(rows, action));
-            self.finish(agent);
+            self.learn_backwards(agent);
         }
         following.map_or(0, |(_, next_action)| next_action)
     }
@@ -98,7 +98,7 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for MonteCarloControl {
     }
 
     fn resume(&mut self, agent: &mut Agent, _next: Next<R>, _rng: &mut impl Rng) -> usize {
-        self.finish(agent);
+        self.learn_backwards(agent);
         0
     }
 

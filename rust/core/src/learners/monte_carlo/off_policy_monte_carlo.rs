@@ -55,9 +55,9 @@ impl OffPolicyMonteCarlo {
     }
 
     /// Learns from the steps of the episode, or from a part of them if there are many.
-    fn finish(&mut self, agent: &mut Agent) {
+    fn learn_backwards(&mut self, agent: &mut Agent) {
         let Self { steps, weights, weight, learning_rate: (rate, least), .. } = self;
-        steps.finish(row_work(agent.table.num_actions()), |following, step| {
+        steps.learn_backwards(row_work(agent.table.num_actions()), |following, step| {
             let action = step.action as usize;
             *following = agent.discount * *following + step.reward;
             let sum = &mut weights[agent.table.weight_index(step.row, action)];
@@ -95,7 +95,7 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for OffPolicyMonteCarlo {
             Next::Terminal => self.steps.following = 0.0,
         }
         self.weight = 1.0;
-        self.finish(agent);
+        self.learn_backwards(agent);
         0
     }
 
@@ -114,7 +114,7 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for OffPolicyMonteCarlo {
     }
 
     fn resume(&mut self, agent: &mut Agent, _next: Next<R>, _rng: &mut impl Rng) -> usize {
-        self.finish(agent);
+        self.learn_backwards(agent);
         0
     }
 

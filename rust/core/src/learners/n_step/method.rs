@@ -70,7 +70,7 @@ impl<R: ActiveRows, M: NStepMethod<R>> NStep<R, M> {
 
     /// Updates the last pairs of an episode, or a part of them if there are many.
     #[inline(never)]
-    fn finish(&mut self, agent: &mut Agent) {
+    fn update_remaining(&mut self, agent: &mut Agent) {
         let Self { method, visits, following, end, .. } = self;
         end.advance(|| {
             let work = M::work(agent, visits.len());
@@ -106,7 +106,7 @@ impl<R: ActiveRows, M: NStepMethod<R>> UpdateRule<R, Agent> for NStep<R, M> {
         }
         if !matches!(next, Next::NonTerminal(_)) {
             self.following = following;
-            self.finish(agent);
+            self.update_remaining(agent);
         } else if self.visits.len() == self.n {
             self.method.update(agent, &self.visits, following);
             self.visits.pop_front();
@@ -136,7 +136,7 @@ impl<R: ActiveRows, M: NStepMethod<R>> UpdateRule<R, Agent> for NStep<R, M> {
     }
 
     fn resume(&mut self, agent: &mut Agent, _next: Next<R>, _rng: &mut impl Rng) -> usize {
-        self.finish(agent);
+        self.update_remaining(agent);
         self.following.map_or(0, |(_, next_action)| next_action)
     }
 

@@ -53,7 +53,7 @@ impl<R: ActiveRows> Reinforce<R> {
 
     /// Learns from the steps of the episode, or from a part of them if there are many.
     #[inline(never)]
-    fn finish(&mut self, agent: &mut Agent) {
+    fn update_remaining(&mut self, agent: &mut Agent) {
         let Self { baseline, steps, learned, power, end } = self;
         end.advance(|| {
             let Some(&PastStep { rows, action, reward: episode_return }) = steps.get(*learned) else {
@@ -86,7 +86,7 @@ impl<R: ActiveRows> UpdateRule<R, Agent> for Reinforce<R> {
         self.steps.push(PastStep { rows: state, action, reward });
         if !matches!(next, Next::NonTerminal(_)) {
             self.sum_rewards(agent.discount);
-            self.finish(agent);
+            self.update_remaining(agent);
         }
         agent.next_action(next, rng)
     }
@@ -108,7 +108,7 @@ impl<R: ActiveRows> UpdateRule<R, Agent> for Reinforce<R> {
 
     /// Only the learning at the end of an episode can be unfinished, so there is no next action.
     fn resume(&mut self, agent: &mut Agent, _next: Next<R>, _rng: &mut impl Rng) -> usize {
-        self.finish(agent);
+        self.update_remaining(agent);
         0
     }
 
