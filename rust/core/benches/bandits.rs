@@ -9,7 +9,7 @@ use std::hint::black_box;
 
 use benchmarks::Benchmarks;
 use qtab_core::features::OutOfBounds;
-use qtab_core::learners::{Agent, GradientBandit, QLearning, TdLearner, TruncationHandling, UpdateRule};
+use qtab_core::learners::{Agent, GradientBandit, QLearning, TdLearner, TransformedSteps, UpdateRule};
 use qtab_core::policies::{AnyPolicy, TieBreaking, Ucb};
 use qtab_core::random::{AgentRng, Pcg64, Rng, SeedSequence};
 use qtab_core::schedules::{LearningRate, Schedule};
@@ -31,7 +31,7 @@ fn run<U: UpdateRule<[u32; 1], Agent>>(policy: AnyPolicy, learning_rate: Learnin
     let seed = SeedSequence::new(&[seed]);
     let task: BoxedTask<[u32; 1], OutOfBounds> = BoxedTask::new(KArmedBandit::new(TESTBED, Pcg64::new(&seed)));
     let agent = agent((1, ACTIONS), 0.0, policy, learning_rate, 1.0);
-    let learner = TruncationHandling { learner: TdLearner { agent, rule }, terminate: false, bonus: None };
+    let learner = TransformedSteps { learner: TdLearner { agent, rule }, terminate: false, bonus: None };
     let rng = AgentRng::pcg64(&seed.child(0));
     train(Trainer::new(task, learner, rng), Budget { episodes: STEPS, work: u64::MAX })
 }

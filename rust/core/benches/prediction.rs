@@ -10,7 +10,7 @@ use std::fmt::Debug;
 use benchmarks::Benchmarks;
 use qtab_core::envs::tabular::{Outcome, TabularMdp};
 use qtab_core::features::{Identity, OutOfBounds};
-use qtab_core::learners::{Agent, QLearning, TdLearner, TruncationHandling};
+use qtab_core::learners::{Agent, QLearning, TdLearner, TransformedSteps};
 use qtab_core::policies::{AnyPolicy, TieBreaking};
 use qtab_core::prediction::{
     FixedPolicy, LinearValues, MonteCarloPrediction, PredictionRule, Predictor, StateRows, TdLambda, TdZero,
@@ -130,12 +130,12 @@ fn compare<const N: usize>(benchmarks: &mut Benchmarks, group: &str, env: Tabula
     });
     bench(benchmarks, group, "Q-learning, boxed", || {
         let learner = problem.q_learning::<0, _>(scheduled());
-        (problem.boxed(), TruncationHandling { learner, terminate: false, bonus: None }, any_rng.clone())
+        (problem.boxed(), TransformedSteps { learner, terminate: false, bonus: None }, any_rng.clone())
     });
     bench(benchmarks, group, "TD(0), boxed", || {
         let rule: Method = Box::new(TdZero);
         let learner = problem.predictor(rule);
-        (problem.boxed(), TruncationHandling { learner, terminate: false, bonus: None }, any_rng.clone())
+        (problem.boxed(), TransformedSteps { learner, terminate: false, bonus: None }, any_rng.clone())
     });
 }
 

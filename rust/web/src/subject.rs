@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use qtab_core::checkpoint::{Checkpoint, CheckpointError};
 use qtab_core::features::{Features, Identity, OutOfBounds};
-use qtab_core::learners::TruncationHandling;
+use qtab_core::learners::TransformedSteps;
 use qtab_core::memory::AllocationError;
 use qtab_core::random::{Pcg64, SeedSequence};
 use qtab_core::tasks::{BoxedTask, NativeTask, TimedState, Transition, VisitCounter};
@@ -156,7 +156,7 @@ where
         let (agent, second_table) = settings.agent(shape, self.n_active, &mut rng)?;
         let algorithm = settings.algorithm;
         let learner = AnyLearner::<F::Active>::new(algorithm, shape, agent, second_table, &stop)?;
-        let learner = TruncationHandling { learner, terminate: settings.terminate_on_truncation, bonus: None };
+        let learner = TransformedSteps { learner, terminate: settings.terminate_on_truncation, bonus: None };
         let run = Box::new(Trainer::new(task, UpdateRecorder::new(learner, watch), rng));
         let env = self.env.clone();
         let observation = move || {

@@ -2,7 +2,7 @@
 
 use qtab_core::checkpoint::{Checkpoint, CheckpointError};
 use qtab_core::features::ActiveRows;
-use qtab_core::learners::TruncationHandling;
+use qtab_core::learners::TransformedSteps;
 use qtab_core::random::Rng;
 use qtab_core::schedules::LoggedUpdate;
 use qtab_core::tasks::Next;
@@ -14,12 +14,12 @@ use crate::updates::{Update, UpdateKind, Watch};
 
 /// A learner, and the state whose updates are watched, if one is.
 pub(crate) struct UpdateRecorder<R: ActiveRows> {
-    learner: TruncationHandling<AnyLearner<R>>,
+    learner: TransformedSteps<AnyLearner<R>>,
     watch: Option<Box<Watch>>,
 }
 
 impl<R: ActiveRows> UpdateRecorder<R> {
-    pub(crate) fn new(learner: TruncationHandling<AnyLearner<R>>, watch: Option<Watch>) -> Self {
+    pub(crate) fn new(learner: TransformedSteps<AnyLearner<R>>, watch: Option<Watch>) -> Self {
         Self { learner, watch: watch.map(Box::new) }
     }
 
@@ -138,7 +138,7 @@ mod tests {
             masks: Some(Box::new(ActionMasks::known(vec![true; 4], 2))),
         };
         let learner = AnyLearner::Sarsa(TdLearner { agent, rule: Sarsa });
-        let learner = TruncationHandling { learner, terminate: false, bonus: None };
+        let learner = TransformedSteps { learner, terminate: false, bonus: None };
         let mut recorder = UpdateRecorder::<[u32; 1]>::new(learner, None);
         recorder.set_action_mask([1], &[false, true]);
         assert_eq!(recorder.action_masks(), Some([true, true, false, true].as_slice()));

@@ -4,7 +4,7 @@ use super::*;
 use crate::envs::classic_control::MountainCar;
 use crate::features::{Axis, Rounding};
 use crate::learners::{
-    Agent, DynaQ, DynaQPlus, Model, NStepSarsa, PrioritizedSweeping, TdLearner, TruncationHandling, UpdateRule,
+    Agent, DynaQ, DynaQPlus, Model, NStepSarsa, PrioritizedSweeping, TdLearner, TransformedSteps, UpdateRule,
 };
 use crate::policies::{AnyPolicy, TieBreaking};
 use crate::q_table::{QTable, TerminalUpdate};
@@ -33,7 +33,7 @@ where
         terminal_update: TerminalUpdate::Target,
         masks: None,
     };
-    let learner = TruncationHandling { learner: TdLearner { agent, rule: rule.clone() }, terminate, bonus: None };
+    let learner = TransformedSteps { learner: TdLearner { agent, rule: rule.clone() }, terminate, bonus: None };
     let mut whole = Trainer::new(task, learner, Pcg64::new(&seed));
     let mut in_parts = whole.clone();
     whole.advance(Budget { episodes: 2, work: u64::MAX }).expect("no observation is out of bounds");

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use pyo3::prelude::*;
 use qtab_core::features::{ActiveRows, MAX_TILINGS};
-use qtab_core::learners::{CountBonus, LearnerVisitor, TruncationHandling};
+use qtab_core::learners::{CountBonus, LearnerVisitor, TransformedSteps};
 use qtab_core::random::AgentRng;
 use qtab_core::tasks::{BoxedTask, EpisodeRecorder, NativeTask, Recordings, RngSnapshot, TimeAware, VisitCounter};
 use qtab_core::{Env, Features, Learner, StopFlag, Task, Trainer, TrainingError};
@@ -228,7 +228,7 @@ impl<R: ActiveRows + Send + 'static> LearnerVisitor<R> for BoxedRun<R> {
     type Output = Box<dyn Run>;
 
     fn visit<L: Learner<R> + Send + 'static>(self, learner: L) -> Box<dyn Run> {
-        let learner = TruncationHandling { learner, terminate: self.terminate, bonus: self.bonus };
+        let learner = TransformedSteps { learner, terminate: self.terminate, bonus: self.bonus };
         Box::new(Trainer::new(self.task, learner, self.rng))
     }
 }

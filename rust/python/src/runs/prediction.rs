@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use pyo3::prelude::*;
 use qtab_core::features::ActiveRows;
-use qtab_core::learners::{LearnerVisitor, TruncationHandling};
+use qtab_core::learners::{LearnerVisitor, TransformedSteps};
 use qtab_core::prediction::{
     FromTask, ObservableTask, ObservationPolicy, Observed, PolicyTask, PredictionRule, Predictor, RowSets,
 };
@@ -136,7 +136,7 @@ impl<R: ActiveRows + Send + 'static> ObservedVisitor for PendingObservedRun<R> {
     where
         S: RowSets + Send + 'static,
     {
-        let learner = TruncationHandling { learner, terminate: self.terminate, bonus: None };
+        let learner = TransformedSteps { learner, terminate: self.terminate, bonus: None };
         Box::new(Trainer::new(self.task, learner, self.rng))
     }
 }

@@ -4,7 +4,7 @@ use super::{ACTIONS, LIMIT, Setup};
 use crate::checkpoint::{Checkpoint, CheckpointError, EpisodeProgress, Persist};
 use crate::envs::classic_control::MountainCar;
 use crate::features::{Axis, Features, Rounding};
-use crate::learners::{Agent, MonteCarloControl, NStepSarsa, QLearning, Reinforce, TdLearner, TruncationHandling};
+use crate::learners::{Agent, MonteCarloControl, NStepSarsa, QLearning, Reinforce, TdLearner, TransformedSteps};
 use crate::policies::AnyPolicy;
 use crate::random::{AgentRng, Pcg64, SeedSequence};
 use crate::tasks::{NativeTask, Next, Task, TimeAware, Transition};
@@ -25,7 +25,7 @@ fn check_at_the_limit<L: Learner<[u32; 1]>>(learner: impl Fn(usize) -> L) {
         let task = NativeTask::new(car, grid.clone(), Some(LONG), Pcg64::new(&seed));
         let task = TimeAware::new(task, rows, LONG).expect("a small table");
         let learner = learner(task.n_rows());
-        Trainer::new(task, TruncationHandling { learner, terminate: true, bonus: None }, AgentRng::pcg64(&seed))
+        Trainer::new(task, TransformedSteps { learner, terminate: true, bonus: None }, AgentRng::pcg64(&seed))
     };
     let (mut whole, mut stopped) = (new_run(), new_run());
     let finish = |run: &mut Trainer<_, _, AgentRng>| {

@@ -9,7 +9,7 @@ mod step_in_parts;
 mod td_learner;
 #[cfg(test)]
 pub(super) mod test_support;
-mod truncation_handling;
+mod transformed_steps;
 mod update_rule;
 
 pub use action_masks::ActionMasks;
@@ -19,5 +19,5 @@ pub use count_bonus::CountBonus;
 pub use learner::Learner;
 pub(crate) use step_in_parts::StepInParts;
 pub use td_learner::TdLearner;
-pub use truncation_handling::TruncationHandling;
+pub use transformed_steps::TransformedSteps;
 pub use update_rule::UpdateRule;

@@ -13,7 +13,7 @@ use crate::tasks::Next;
 /// a bonus to the rewards. Treating truncation as termination is a mistake, because the update then ignores the value
 /// of the next state. The option exists to show the cost of the mistake.
 #[derive(Clone, Debug, PartialEq)]
-pub struct TruncationHandling<L> {
+pub struct TransformedSteps<L> {
     /// The learner.
     pub learner: L,
     /// Whether truncation is treated as termination.
@@ -22,7 +22,7 @@ pub struct TruncationHandling<L> {
     pub bonus: Option<CountBonus>,
 }
 
-impl<L> TruncationHandling<L> {
+impl<L> TransformedSteps<L> {
     /// The next state as the learner receives it.
     #[inline(always)]
     fn as_learned<R>(&self, next: Next<R>) -> Next<R> {
@@ -33,7 +33,7 @@ impl<L> TruncationHandling<L> {
     }
 }
 
-impl<R: AsRef<[u32]>, L: Learner<R>> Learner<R> for TruncationHandling<L> {
+impl<R: AsRef<[u32]>, L: Learner<R>> Learner<R> for TransformedSteps<L> {
     const HAS_VECTOR_PASSES: bool = L::HAS_VECTOR_PASSES;
 
     delegate_learner!(rest R, learner in Self { learner, .. });
@@ -73,7 +73,7 @@ mod tests {
     #[test]
     fn treating_truncation_as_termination_ignores_the_next_state() {
         for (terminate, value) in [(false, 0.75), (true, 0.0)] {
-            let mut learner = TruncationHandling {
+            let mut learner = TransformedSteps {
                 learner: TdLearner { agent: agent(&[1.0, 0.0, 2.0, 3.0]), rule: Sarsa },
                 terminate,
                 bonus: None,
