@@ -24,7 +24,6 @@ trait DynTask<R, X> {
     /// the kind of the next state in registers. A [`Transition`] would be copied from one layout to another, and read
     /// across the words in which it was written. `None` means that the step has failed and the task has stored the
     /// error.
-    /// keeps the error.
     fn step(&mut self, action: usize, active: &mut R) -> (f64, Option<NextKind>);
     /// The error of the failed step.
     fn take_error(&mut self) -> X;

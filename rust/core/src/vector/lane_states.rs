@@ -31,7 +31,7 @@ where
         scatter(&mut self.0[index / LANES], index % LANES, state);
     }
 
-    /// Inactive states are stepped as well, because a step draws no random numbers.
+    /// Inactive states are stepped as well, which is harmless because a step draws no random numbers.
     fn step(
         &mut self,
         env: &E,
