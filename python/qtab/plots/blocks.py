@@ -46,8 +46,3 @@ def common_block(block: int | None, lengths: Sequence[int], units: Sequence[int]
     if block % unit:
         raise ValueError(f"block must be a multiple of the sweep's block, {unit:,}, got {block:,}")
     return block
-
-
-def counted_episodes(block: int) -> str:
-    """Returns ``1 episode`` or, for more, ``100 episodes``."""
-    return f"{block:,} episode{'' if block == 1 else 's'}"

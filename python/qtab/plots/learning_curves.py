@@ -7,8 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils import checks
+from qtab._utils.shown import counted
 from qtab.plots.axes import axes_or_new, check_axes
-from qtab.plots.blocks import common_block, counted_episodes
+from qtab.plots.blocks import common_block
 from qtab.plots.colors import line_style, palette
 from qtab.plots.inputs import Entry, color_keys, entries, only_threshold
 from qtab.plots.labels import episode_ticks, finish, joined
@@ -106,7 +107,7 @@ def learning_curves(
     mark_threshold(ax, threshold, only_threshold(drawn))
     episode_ticks(ax)
     return finish(
-        ax, "Episode", f"Return, mean of {counted_episodes(block)}", title, legend_title=joined(note, heading)
+        ax, "Episode", f"Return, mean of {counted(block, 'episode')}", title, legend_title=joined(note, heading)
     )
 
 

@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils import checks
+from qtab._utils.shown import counted
 from qtab.envs.goals import threshold_of
 from qtab.plots.axes import axes_or_new, check_axes, new_figure, save_figure
-from qtab.plots.blocks import counted_episodes, fitting_block
+from qtab.plots.blocks import fitting_block
 from qtab.plots.colors import palette
 from qtab.plots.labels import earlier_limits, episode_ticks, finish, set_x_limits
 from qtab.plots.marks import check_optimum, check_threshold, mark_optimum, mark_threshold
@@ -96,7 +97,7 @@ def _draw_means(ax: "Axes", means: NDArray[np.float64], block: int, hue: Any) ->
     """Draws the (blocks,) means, each at the end of its block, as in the article."""
     if len(means):
         marker: dict[str, Any] = {"marker": "o", "markersize": 5} if len(means) == 1 else {}
-        episodes, label = block * (np.arange(len(means)) + 1), f"mean of {counted_episodes(block)}"
+        episodes, label = block * (np.arange(len(means)) + 1), f"mean of {counted(block, 'episode')}"
         ax.plot(episodes, means, color=hue, linewidth=2.2, solid_capstyle="round", label=label, **marker)
 
 

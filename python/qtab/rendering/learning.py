@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils.progress import ProgressBar
+from qtab._utils.shown import counted
 from qtab.plots.arrangements import Raster, arrange
 from qtab.plots.arrangements.grid_map import Layout
 from qtab.plots.axes import new_figure
@@ -39,7 +40,7 @@ def runs_at_snapshots(run: Run) -> list[tuple[int, Run]]:
 
 def after_episodes(done: int) -> str:
     """Returns the point in time of a snapshot in words."""
-    return f"after {done:,} {'episode' if done == 1 else 'episodes'}"
+    return f"after {counted(done, 'episode')}"
 
 
 def draw_learning(

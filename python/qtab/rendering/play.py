@@ -15,6 +15,7 @@ from qtab._utils import checks
 from qtab._utils.fields import with_fields
 from qtab._utils.notebook import in_notebook
 from qtab._utils.page import page, paragraph
+from qtab._utils.shown import counted
 from qtab.config.unknown import suggesting
 from qtab.planning.optimum import Optimum
 from qtab.rendering.agent import agent_of
@@ -55,7 +56,7 @@ class Playback:
     def summary(self) -> str:
         """One line: the environment, the seed and the returns."""
         count = len(self.returns)
-        episodes = "1 episode" if count == 1 else f"{count:,} episodes"
+        episodes = counted(count, "episode")
         results = [
             f"return {one:.6g} in {steps:,} steps" for one, steps in zip(self.returns, self.lengths, strict=True)
         ]

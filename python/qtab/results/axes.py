@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from qtab._utils.shown import counted
 from qtab.config import Config
 from qtab.config.origin import trained_on
 from qtab.discretizers.time_aware import TimeAware
@@ -49,7 +50,7 @@ class Axis:
         """One line: the edges are not shown."""
         cells = len(self.edges) - 1
         within = f"from {self.edges[0]:.6g} to {self.edges[-1]:.6g}" if cells else "of one value"
-        return f"<Axis {self.label}: {cells:,} cell{'' if cells == 1 else 's'} {within}>"
+        return f"<Axis {self.label}: {counted(cells, 'cell')} {within}>"
 
 
 def description_of(config: Config, discretizer: "Discretizer") -> Description:

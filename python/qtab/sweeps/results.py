@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from qtab._utils import checks, html, svg
 from qtab._utils.columns import cell_column, integer_column
 from qtab._utils.data_frames import arrow_table, data_frame
+from qtab._utils.shown import counted
 from qtab._utils.suggestions import did_you_mean
 from qtab.sweeps.again import plan_again, trained_again
 from qtab.sweeps.confirm import Confirmation, chosen_settings, other_seeds
@@ -67,8 +68,8 @@ class Sweep:
     """The environments of the settings, as far as they are known: a store of an earlier version does not hold them."""
 
     def __repr__(self) -> str:
-        settings = f"{len(self.settings)} setting{'' if len(self.settings) == 1 else 's'}"
         versions = ", different versions" if different_versions(self.run_versions) else ""
+        settings = counted(len(self.settings), "setting")
         return f"<Sweep of {self.env}: {settings}, {len(self):,} runs, {self.failed} failed{versions}>"
 
     def _repr_html_(self) -> str:

@@ -15,7 +15,7 @@ from qtab._utils.checks import required
 from qtab._utils.data_frames import episode_frame
 from qtab._utils.fields import with_fields
 from qtab._utils.progress import check_progress
-from qtab._utils.shown import shown
+from qtab._utils.shown import counted, shown
 from qtab.config import Config
 from qtab.config.config import replace_checked
 from qtab.config.layers import over
@@ -72,7 +72,7 @@ class Evaluation:
 
     @property
     def _episodes(self) -> str:
-        return "1 episode" if len(self.returns) == 1 else f"{len(self.returns):,} episodes"
+        return counted(len(self.returns), "episode")
 
     @property
     def _mean(self) -> str:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from qtab import _core
 from qtab._utils.fields import with_fields
+from qtab._utils.shown import counted
 from qtab.config import Config
 from qtab.config.schedules import ByVisits, Constant, Schedule, epsilon, learning_rate
 from qtab.results.rates import rates
@@ -128,7 +129,7 @@ class Progress:
         if not self._required.current:
             raise RuntimeError(
                 f"progress.{name} must be read during the call: the run has moved on since its "
-                f"{self.episodes} episode{'' if self.episodes == 1 else 's'}"
+                + counted(self.episodes, "episode")
             )
         return self._required.reader
 

@@ -15,7 +15,7 @@ from qtab._utils import checks, html
 from qtab._utils.arrays import same_bytes
 from qtab._utils.fields import with_fields
 from qtab._utils.memory import check_memory, memory_limit
-from qtab._utils.shown import shown
+from qtab._utils.shown import counted, shown
 from qtab._utils.versions import versions
 from qtab.config import Config
 from qtab.config.unknown import suggesting
@@ -62,7 +62,7 @@ class Verification:
 
     def __repr__(self) -> str:
         """One line: ``print`` shows the whole report."""
-        episodes = "1 episode" if self.episodes == 1 else f"{self.episodes:,} episodes"
+        episodes = counted(self.episodes, "episode")
         found = "equal" if self.equal else "DIFFERENT" + ("" if self.episode is None else f" from {self._place} on")
         return f"<Verification of {self.env}: seed {self.seed}, {episodes}, {found}>"
 
