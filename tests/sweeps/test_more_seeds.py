@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 import qtab
 from qtab.cli import main
+from qtab.sweeps import store as stores
 from qtab.sweeps.store import Store
 from qtab.sweeps.study import plan_study
 from support.sweeps import CAR, GRID, assert_equal
@@ -100,6 +101,25 @@ def test_two_processes_may_add_the_same_seeds(tmp_path):
     with contextlib.closing(Store(path, stored)), contextlib.closing(Store(path, stored)) as second:
         assert second.finished() == 6
         assert second.claim(lambda start: 100) == range(1, 2)
+
+
+def test_a_process_that_finds_the_same_seeds_added_meanwhile_leaves_the_claims_of_the_other(tmp_path, monkeypatch):
+    path = tmp_path / "study.db"
+    qtab.sweep(CAR, GRID, 1, store=path, **SHORT)
+    stored = plan_study(CAR, GRID, 2, 5, {"episodes": 20}).stored
+    check, others = stores.check_study, []
+
+    def add_meanwhile(*arguments):
+        if not others:
+            others.append(None)  # this function is called by the other process, too
+            others[0] = Store(path, stored)
+            assert others[0].claim(lambda start: 2) == range(1, 2)
+        check(*arguments)
+
+    monkeypatch.setattr(stores, "check_study", add_meanwhile)
+    with contextlib.closing(Store(path, stored)) as late, contextlib.closing(others[0]) as early:
+        assert late.claim(lambda start: 2) == range(3, 4)
+        assert early.claim(lambda start: 2) == range(5, 6)
 
 
 def test_the_command_line_adds_seeds(tmp_path, capsys):

@@ -11,7 +11,7 @@ import importlib as _importlib
 from typing import TYPE_CHECKING
 
 _MODULES = {
-    "BaseCallback": "qtab.training.base_callback",
+    "BaseCallback": "qtab.training.callbacks",
     "CSVLogger": "qtab.callbacks.csv_logger",
     "Checkpoint": "qtab.callbacks.checkpoint",
     "EvaluateEvery": "qtab.callbacks.evaluate_every",
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from qtab.callbacks.live_plot import LivePlot as LivePlot
     from qtab.callbacks.stop_at_return import StopAtReturn as StopAtReturn
     from qtab.callbacks.tensorboard_logger import TensorBoardLogger as TensorBoardLogger
-    from qtab.training.base_callback import BaseCallback as BaseCallback
+    from qtab.training.callbacks import BaseCallback as BaseCallback
 else:
     # Hidden from type checkers, which accept any name from a module that has a __getattr__.
     __all__ = list(_MODULES)

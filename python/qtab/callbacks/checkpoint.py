@@ -13,7 +13,7 @@ from qtab._utils import checks
 from qtab._utils.files import check_writable
 from qtab.config import Config
 from qtab.config.config import replace_checked
-from qtab.training.base_callback import BaseCallback
+from qtab.training.callbacks import BaseCallback
 from qtab.training.progress import Progress
 
 if TYPE_CHECKING:

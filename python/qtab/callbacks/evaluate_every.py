@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from qtab._utils import checks
 from qtab.config import Config
-from qtab.training.base_callback import BaseCallback
+from qtab.training.callbacks import BaseCallback
 from qtab.training.evaluate import Evaluation, evaluate
 from qtab.training.progress import Progress
 from qtab.training.run_env import make_run_env

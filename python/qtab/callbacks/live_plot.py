@@ -10,7 +10,7 @@ import gymnasium as gym
 from qtab._utils import checks
 from qtab._utils.notebook import in_notebook
 from qtab.config import Config
-from qtab.training.base_callback import BaseCallback
+from qtab.training.callbacks import BaseCallback
 from qtab.training.progress import Progress
 
 DOTS_PER_INCH = 100

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from qtab._utils.suggestions import did_you_mean
 from qtab.callbacks.evaluate_every import EvaluateEvery
 from qtab.config import Config
-from qtab.training.base_callback import BaseCallback
+from qtab.training.callbacks import BaseCallback
 from qtab.training.progress import Progress
 
 if TYPE_CHECKING:

@@ -4,7 +4,7 @@ import gymnasium as gym
 
 from qtab._utils import checks
 from qtab.config import Config
-from qtab.training.base_callback import BaseCallback
+from qtab.training.callbacks import BaseCallback
 from qtab.training.progress import Progress
 
 

@@ -27,10 +27,9 @@ from qtab.envs.registry import make_env, spec_of
 from qtab.envs.stored import spec_of_run
 from qtab.results.action_values import greedy_table
 from qtab.results.run import Run
-from qtab.training.given_env import check_env, check_spaces
 from qtab.training.options import TrainingOptions
 from qtab.training.resolve import log_python_stepping, resolve
-from qtab.training.run_env import resolve_run
+from qtab.training.run_env import check_env, check_spaces, resolve_run
 from qtab.training.train import train_resolved
 
 if TYPE_CHECKING:

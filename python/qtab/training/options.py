@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from qtab._utils import checks
 from qtab._utils.memory import memory_limit as bytes_limit
-from qtab.training.callback_list import CallbackList, Callbacks
+from qtab.training.callbacks import CallbackList, Callbacks
 
 CALLBACK_EVERY = 100
 

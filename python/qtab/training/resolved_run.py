@@ -1,15 +1,12 @@
 """A run that is completely described: what training takes."""
 
-from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
-from typing import TypeAlias
 
-import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
 from qtab import _core
-from qtab._spec import EnvironmentSpec, NativeEnvSpec, PythonEnvSpec, RunSpec
+from qtab._spec import EnvironmentSpec, RunSpec
 from qtab.config import Config
 from qtab.config.algorithms import AlgorithmSettings
 from qtab.config.config import replace_checked
@@ -19,62 +16,8 @@ from qtab.config.policies import Policy
 from qtab.config.schedules import LearningRate
 from qtab.discretizers import Discretizer
 from qtab.envs.actions import Actions
-from qtab.envs.registry import EnvEntry
-from qtab.training.action_masks import NO_MASKS, ActionMasks
-from qtab.training.exclusive import exclusively
-from qtab.training.observed_env import ObservedEnv
-
-
-@dataclass(frozen=True)
-class NativeEnvironment:
-    """An environment that Rust steps."""
-
-    entry: EnvEntry
-    parameters: _core.NativeEnv
-
-    def spec(self) -> NativeEnvSpec:
-        """Returns the environment as the extension takes it."""
-        return {"type": "native", "env": self.parameters}
-
-    def exclusively(self) -> AbstractContextManager[None]:
-        """Each run has an environment of its own."""
-        return nullcontext()
-
-    def close(self) -> None:
-        """There is nothing to close."""
-
-
-@dataclass(frozen=True)
-class PythonEnvironment:
-    """An environment that is stepped in Python."""
-
-    env: gym.Env
-    actions: Actions
-    owns_env: bool
-    """Whether to close the environment after the run."""
-    masks: ActionMasks = NO_MASKS
-
-    def spec(self) -> PythonEnvSpec:
-        """Returns the environment as the extension takes it."""
-        return {
-            "type": "python",
-            "env": self.env,
-            "first_action": self.actions.first,
-            "actions": self.actions.objects(),
-            "action_mask": self.masks.source,
-        }
-
-    def exclusively(self) -> AbstractContextManager[None]:
-        """Keeps other threads from training in the same environment."""
-        return exclusively(self.env)
-
-    def close(self) -> None:
-        """Closes the environment, unless it is the user's."""
-        if self.owns_env:
-            self.env.close()
-
-
-Environment: TypeAlias = NativeEnvironment | PythonEnvironment
+from qtab.training.action_masks import ActionMasks
+from qtab.training.environment import Environment, NativeEnvironment, ObservedEnv
 
 
 @dataclass(frozen=True, eq=False)

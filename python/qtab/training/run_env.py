@@ -1,4 +1,4 @@
-"""The environment of a run, made again as it was in training, and training in it from the config of the run."""
+"""The environment of a run: made again as it was in training, settings resolved in it, and others compared with it."""
 
 from collections.abc import Callable, Mapping
 from contextlib import closing
@@ -7,19 +7,24 @@ from functools import partial
 from typing import Any, Literal
 
 import gymnasium as gym
+from gymnasium.envs.registration import EnvSpec
 
+from qtab import discretizers
 from qtab._utils import checks
+from qtab._utils.shown import shown
 from qtab.config import Config
 from qtab.config.config import replace_checked
 from qtab.config.layers import Base, collect, over
 from qtab.config.options import is_set
 from qtab.config.origin import copied, trained_on
+from qtab.envs.actions import choose_actions
 from qtab.envs.origin.again import cannot_be_made, make_again, needs_object
 from qtab.envs.origin.describe import describe
 from qtab.envs.origin.description import EnvironmentDescription
 from qtab.envs.origin.differences import differences
 from qtab.envs.registry import ENTRIES, gymnasium_id, make_env, spec_of
 from qtab.envs.stored import spec_of_run
+from qtab.results.run import Run
 from qtab.training.resolve import resolve
 from qtab.training.resolved_run import ResolvedRun
 
@@ -199,3 +204,48 @@ def _with_origin_of(resolved: ResolvedRun, config: Config, names: Mapping[str, A
         return resolved
     origin = replace(ours, derived=ours.derived | theirs.without(names).derived)
     return replace(resolved, config=copied(resolved.config, origin))
+
+
+def check_spaces(run: Run, env: gym.Env) -> None:
+    """Checks that an environment has spaces for which the tables of a run were made.
+
+    Raises:
+        ValueError: if it has others.
+    """
+    try:
+        actions = choose_actions(env.action_space, run.config.actions)
+        cells = discretizers.build(env.observation_space, run.config, len(actions))
+    except ValueError as error:
+        raise ValueError(f"env must have the spaces of the run's {run.config.env}, got {_name(env)}: {error}") from None
+    theirs = run.discretizer
+    if not cells.same_space(theirs) or len(actions) != len(run.actions):
+        raise ValueError(
+            f"env must have the spaces of the run's {run.config.env}, got {_name(env)} with observations "
+            f"{env.observation_space} and actions {env.action_space}"
+        )
+
+
+def check_same(run: Run, env: gym.Env) -> None:
+    """Checks that an environment is the one that a run was trained on, as far as that is known.
+
+    Raises:
+        ValueError: if it is another one; the message says what differs.
+    """
+    check_spaces(run, env)
+    description = trained_on(run.config)
+    if description is not None and (found := differences(description, describe(env))):
+        raise ValueError(f"env must be that of the run, got another one: {'; '.join(found)}")
+
+
+def check_env(env: Any) -> None:
+    """Checks the type of the argument ``env``.
+
+    Raises:
+        TypeError: if it is neither None, an id, an EnvSpec nor an environment.
+    """
+    if env is not None and not isinstance(env, str | EnvSpec | gym.Env):
+        raise TypeError(f"env must be an environment id, an EnvSpec or an environment, got {shown(env)}")
+
+
+def _name(env: gym.Env) -> str:
+    return env.spec.id if env.spec is not None else type(env.unwrapped).__name__

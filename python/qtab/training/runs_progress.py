@@ -14,8 +14,7 @@ from qtab._spec import Results
 from qtab._utils import checks
 from qtab._utils.progress import ProgressBar
 from qtab.results.runs import Runs
-from qtab.training.base_callback import BaseCallback
-from qtab.training.callback_list import as_tuple
+from qtab.training.callbacks import BaseCallback, as_tuple
 from qtab.training.resolved_run import ResolvedRun
 
 SECONDS_PER_PART = 1.0

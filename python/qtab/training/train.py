@@ -22,7 +22,7 @@ from qtab.config.signature import with_settings
 from qtab.results.recording import Recording, generator_states
 from qtab.results.run import Run
 from qtab.results.snapshots import SnapshotCollector
-from qtab.training.callback_list import Callbacks
+from qtab.training.callbacks import Callbacks
 from qtab.training.earlier_run import (
     check_agrees,
     counts_visits,

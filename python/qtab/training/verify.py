@@ -22,10 +22,9 @@ from qtab.config.unknown import suggesting
 from qtab.reference import LEARNERS
 from qtab.results.rates import ONLY_FIRST, repeatable
 from qtab.results.run import Run
-from qtab.training.given_env import check_env, check_same
 from qtab.training.repetition import repeats_itself, wrapper_with_statistics
 from qtab.training.resolve import resolve
-from qtab.training.run_env import make_run_env, resolve_run
+from qtab.training.run_env import check_env, check_same, make_run_env, resolve_run
 
 
 @with_fields
