@@ -141,7 +141,7 @@ impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> Trainer<T, L, R> {
         {
             let episode = match self.episode.take() {
                 Some(episode @ EpisodeState { unfinished: Some(next), .. }) => {
-                    self.finish_step(episode, next, rng);
+                    self.resume_step(episode, next, rng);
                     work -= self.learner.work().cast_signed();
                     continue;
                 }
@@ -194,7 +194,7 @@ impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> Trainer<T, L, R> {
 
     /// Continues learning from a step that the learner left unfinished.
     #[cold]
-    fn finish_step(&mut self, mut episode: EpisodeState<T::State, T::Active>, next: Next<T::Active>, rng: &mut R) {
+    fn resume_step(&mut self, mut episode: EpisodeState<T::State, T::Active>, next: Next<T::Active>, rng: &mut R) {
         episode.action = self.learner.resume(next, rng);
         if self.learner.is_unfinished() {
             self.episode = Some(episode);
