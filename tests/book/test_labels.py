@@ -87,4 +87,4 @@ def test_the_initial_values_of_example_6_2_do_not_hide_behind_those_after_one_ep
 def test_a_figure_with_more_runs_than_the_books_says_so(name: str) -> None:
     experiment = qtab.book.EXPERIMENTS[name]
     assert experiment.runs == 1_000
-    assert "1,000 runs here, as a few that get stuck decide the mean of 100" in experiment.book
+    assert "1,000 runs here, as a few stuck runs dominate the mean of 100" in experiment.book

@@ -7,7 +7,7 @@
     result.plot()
     qtab.book.run_all("figures")
 
-Each experiment is in a module of its chapter in :mod:`qtab.book.figures`, with its settings, and what the book leaves
+Each experiment is a module in :mod:`qtab.book.figures`. It contains the settings, including those that the book leaves
 open.
 """
 

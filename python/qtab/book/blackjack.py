@@ -40,7 +40,7 @@ def single_state() -> PredictionTask:
     )
 
     def policy(state: int) -> int:
-        # The naturals come after the states that observations show; they are 21.
+        # Naturals, which have a sum of 21, come after the states that observations show.
         total = state // (_SHAPE[1] * _SHAPE[2])
         return int(total < 20 and state < _SHAPE[0] * _SHAPE[1] * _SHAPE[2])
 
@@ -48,6 +48,6 @@ def single_state() -> PredictionTask:
 
 
 def index_of(observation: Any) -> int:
-    """Returns the number of a state in the table."""
+    """Returns the state of an observation in the table."""
     total, shown, ace = observation
     return int((total * _SHAPE[1] + shown) * _SHAPE[2] + ace)

@@ -16,9 +16,9 @@ from qtab.book.registry import EXPERIMENTS
 SUFFIXES = (".txt", ".csv", ".png")
 """The files of an experiment: its table, its points, and its picture."""
 SOURCES = Path(__file__).parent
-"""Where the code of the experiments is."""
+"""The folder with the code of the experiments."""
 RECORD = "book.json"
-"""How each experiment in the folder was run: an experiment that was run otherwise is run again."""
+"""The file that records how each experiment was run; one that was run with other arguments is run again."""
 
 
 def run_all(
@@ -32,8 +32,8 @@ def run_all(
 ) -> None:
     """Runs every experiment of the book and writes its table, its points and its picture to a folder.
 
-    An experiment whose files are there already, from a call with the same ``runs`` and ``seed``, the same versions and
-    the same code of the experiments, is not run again: a call that was interrupted continues with what is missing.
+    Skips experiments whose files exist already, from a call with the same ``runs`` and ``seed``, the same versions and
+    the same code of the experiments: if interrupted, call it again and it resumes.
 
     Args:
         folder: The folder, which is created if it does not exist.
@@ -42,10 +42,10 @@ def run_all(
         threads: The number of threads; None means one per core. It does not change the results.
         progress: Whether to show a progress bar for each experiment; None shows one on a terminal if it takes longer
             than a second.
-        on_start: Called before each experiment with it, and whether it is left out because its files are there.
+        on_start: Called before each experiment with the experiment, and whether it is skipped because its files exist.
 
     Raises:
-        KeyboardInterrupt: on Ctrl-C; what was written stays.
+        KeyboardInterrupt: on Ctrl-C; the files that were written stay.
         ModuleNotFoundError: without matplotlib; the message names the ``pip install``.
         OSError: if a file cannot be written.
         TypeError: for an argument of the wrong type.
@@ -78,7 +78,7 @@ def run_all(
 
 
 def _code() -> str:
-    """Returns a fingerprint of the code of all experiments: one may have been edited without another version."""
+    """Returns a fingerprint of the code of all experiments, which can change while the version stays the same."""
     digest = hashlib.sha256()
     for path in sorted(SOURCES.rglob("*.py")):
         digest.update(path.read_bytes())
@@ -86,7 +86,7 @@ def _code() -> str:
 
 
 def _read(path: Path) -> dict[str, Any]:
-    """Returns what is recorded; nothing where there is no record, or one that cannot be read."""
+    """Returns the record, or an empty one if there is none that can be read."""
     try:
         record = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError):

@@ -1,4 +1,4 @@
-"""What an experiment is called, where it comes from, and how its table and figure are laid out."""
+"""The description of an experiment: its name, its settings in the book, and the layout of its table and figure."""
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
@@ -7,20 +7,20 @@ from typing import ClassVar
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class Description:
-    """An experiment in words, with the layout of its table and figure."""
+    """The description of an experiment, with the layout of its table and figure."""
 
     counts_failures: ClassVar[bool] = False
-    """Whether the table says how many episodes were truncated and how many runs diverged."""
+    """Whether the table has the numbers of truncated episodes and of runs that diverged."""
 
     name: str
-    """Its kind and its number in the book: ``"figure-10.4"``."""
+    """The kind of the experiment and its number in the book: ``"figure-10.4"``."""
     title: str
     book: str
     """The settings that the book states."""
     unspecified: str
-    """What the book does not state, and what is used here."""
+    """The settings that the book does not state, with the values used here."""
     runs: int
-    """The number of runs of each setting: as in the book, unless ``book`` gives another one."""
+    """The number of runs of each setting: that of the book, unless ``book`` gives another one."""
     x_label: str
     y_label: str
     table_x: tuple[float, ...] | None = None
@@ -28,7 +28,7 @@ class Description:
     log_x: bool = False
     """Whether the x axis is logarithmic."""
     x_ticks: tuple[float, ...] | None = None
-    """Where the x axis is labeled; None lets matplotlib choose."""
+    """The positions of the labels on the x axis; None lets matplotlib choose."""
     x_tick_labels: tuple[str, ...] | None = None
     """The labels of ``x_ticks``; None writes the numbers."""
     log_y: bool = False
@@ -38,7 +38,7 @@ class Description:
     y_range: tuple[float, float] | None = None
     """The limits of the y axis; None fits the data."""
     y_marks: Mapping[str, float] = field(default_factory=dict)
-    """Heights to mark by a dashed line, each by its text."""
+    """The y coordinates of dashed lines, each by its text."""
 
     @property
     def number(self) -> str:
@@ -47,15 +47,15 @@ class Description:
 
     @property
     def heading(self) -> str:
-        """``"Figure 10.4: ..."``."""
+        """The number and the title: ``"Figure 10.4: ..."``."""
         return f"{self.name.replace('-', ' ').capitalize()}: {self.title}"
 
     def conditions(self, counts: Collection[int], runs: int, seed: int) -> str:
-        """Returns how a result was made, in words.
+        """Describes in words how a result was computed.
 
         Args:
-            counts: The numbers of runs of the lines.
-            runs: The number of runs that was asked for.
+            counts: The number of runs of each line.
+            runs: The requested number of runs.
             seed: The seed of the first run.
         """
         several = sorted(set(counts), reverse=True)
@@ -67,5 +67,5 @@ class Description:
         return f"{text}, seeds from {seed}"
 
     def __repr__(self) -> str:
-        """One line."""
+        """Returns one line: the number and the title."""
         return f"<{type(self).__name__} {self.heading}>"

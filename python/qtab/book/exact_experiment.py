@@ -13,7 +13,7 @@ from qtab.book.result import Draw, Result
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class ComputedExperiment(Experiment):
-    """An experiment whose lines are computed once: the number of runs changes nothing."""
+    """An experiment whose lines are computed once: the number of runs has no effect."""
 
     draw: Draw = field(repr=False)
     """Draws the figure."""
@@ -46,7 +46,7 @@ class ComputedExperiment(Experiment):
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class ExactExperiment(ComputedExperiment):
-    """An experiment whose numbers follow from the settings: the seed changes nothing either."""
+    """An experiment without random numbers: the seed has no effect either."""
 
     compute: Callable[[], Sequence[Line]]
     """Returns the lines."""
@@ -56,5 +56,5 @@ class ExactExperiment(ComputedExperiment):
         return self.compute()
 
     def conditions(self, counts: Collection[int], runs: int, seed: int) -> str:  # noqa: ARG002
-        """Returns how a result was made, in words."""
+        """Describes in words how a result was computed."""
         return "computed, without random numbers"

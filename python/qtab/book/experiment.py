@@ -1,4 +1,4 @@
-"""What all experiments of the book share: a description, a number of runs, and a result with a table and a figure."""
+"""The base class of the book's experiments, which have a description and run many times to give a result."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -36,7 +36,7 @@ class Experiment(Description, ABC):
         return runs, checks.integer("seed", seed, least=0), thread_count(threads)
 
     def _repr_html_(self) -> str:
-        """What the experiment is, for notebooks."""
+        """HTML for notebooks: the description of the experiment."""
         facts = {
             "run it": f"qtab.book.run({self.name!r})",
             "in the book": self.book,

@@ -13,7 +13,7 @@ from qtab.book.runner import FloatArray
 
 @dataclass(frozen=True, kw_only=True)
 class LineStyle:
-    """How a line is drawn."""
+    """The style of a line."""
 
     drawn: bool = True
     """Whether the figure shows the line; the table always does."""
@@ -22,9 +22,9 @@ class LineStyle:
     dashed: bool = False
     """Whether the line is dashed."""
     broad: bool = False
-    """Whether the line is a broad one behind the others, which coincide with it in many points."""
+    """Whether the line is broad and behind the others, which coincide with it at many points."""
     named: bool = True
-    """Whether the figure names the line. Runs that differ by their seeds alone have no names there."""
+    """Whether the figure names the line. Runs that differ only in their seeds have no names in it."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -39,12 +39,12 @@ class Line(LineStyle):
     """The standard error of the mean; NaN with a single run."""
     runs: int
     truncated: "NDArray[np.int64]"
-    """The number of episodes behind the point that the time limit ended."""
+    """The number of truncated episodes among those of each point."""
     diverged: "NDArray[np.int64]"
     """The number of runs of the setting that diverged."""
 
     def __repr__(self) -> str:
-        """One line of text: the points are not shown."""
+        """Returns one line of text, without the points."""
         count = len(self.x)
         points = f"{count:,} point{'' if count == 1 else 's'}"
         if count:
@@ -63,12 +63,12 @@ def line_from_samples(
     """Returns the line through the means of runs.
 
     Args:
-        name: Its name.
+        name: The name of the line.
         x: (points,): the x coordinates.
         samples: (runs, points): the measurements.
         truncated: The number of truncated episodes, for all points or (points,) for each.
         diverged: The number of runs that diverged.
-        style: How it is drawn; None draws it as most lines are.
+        style: The style of the line; None means the default.
     """
     runs, points = samples.shape
     with np.errstate(invalid="ignore", over="ignore"):  # runs that diverged can have infinite errors

@@ -1,4 +1,4 @@
-"""Experiments whose settings are run with many seeds, and measured."""
+"""Experiments that run their settings with many seeds, and measure the runs."""
 
 import time
 from abc import abstractmethod
@@ -18,10 +18,10 @@ from qtab.book.runner import FloatArray
 
 
 class Measured(NamedTuple):
-    """What was measured of some runs of a setting."""
+    """The measurements of some runs of a setting."""
 
     samples: FloatArray
-    """(runs, points)"""
+    """(runs, points): the measurements."""
     truncated: "NDArray[np.int64] | int" = 0
     """The number of truncated episodes, for all points or (points,) for each."""
     diverged: int = 0
@@ -30,10 +30,10 @@ class Measured(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class MeasuredExperiment(Experiment):
-    """An experiment that runs settings with many seeds, and makes lines of the figure from each."""
+    """An experiment that runs settings with many seeds, and makes lines of the figure from them."""
 
     BATCH_RUNS: ClassVar[int] = 5_000
-    """Runs are executed and measured in batches of this size, which bounds the memory and moves the progress bar."""
+    """Runs are executed and measured in batches of this size, which bounds the memory and advances the progress bar."""
 
     settings: Sequence[Any]
     """Each is a :class:`qtab.book.setting.LineSetting`, with the name of its ``line`` and its coordinates ``x``."""
@@ -50,7 +50,7 @@ class MeasuredExperiment(Experiment):
 
     @abstractmethod
     def _measure(self, setting: Any, seeds: range, threads: int) -> Mapping[str, Measured]:
-        """Returns what was measured of a run with each seed, by the name of the line that it belongs to."""
+        """Returns the measurements of a run with each seed, by the name of their line."""
 
     def run(
         self, runs: int | None = None, seed: int = 0, *, threads: int | None = None, progress: bool | None = None
@@ -64,7 +64,7 @@ class MeasuredExperiment(Experiment):
             done = 0
             for setting, count in zip(self.settings, counts, strict=True):
                 batches: dict[str, list[Measured]] = {}
-                # Runs that are lines of their own are long: the bar moves each time every thread has finished one.
+                # Runs that each give a line are long: the bar advances whenever every thread has finished one.
                 size = threads if setting.each_run else self.BATCH_RUNS
                 for first in range(0, count, size):
                     seeds = range(seed + first, seed + min(first + size, count))
@@ -90,7 +90,7 @@ def line_of(setting: Any, measured: Measured, name: str | None = None) -> Line:
 
 
 def _together(batches: Mapping[str, Sequence[Measured]], each_run: bool) -> dict[str, Measured]:
-    """Returns what was measured in all batches, by the names of the lines."""
+    """Returns the measurements of all batches, by the names of the lines."""
     found: dict[str, Measured] = {}
     for name, parts in batches.items():
         samples, truncated, diverged = zip(*parts, strict=True)

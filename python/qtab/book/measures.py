@@ -1,4 +1,4 @@
-"""Measures of runs: from the episodes of many runs to (runs, points)."""
+"""Measures of runs: functions of the episodes of many runs that return (runs, points)."""
 
 import numpy as np
 
@@ -36,7 +36,7 @@ def final_return(log: EpisodeLog) -> FloatArray:
 
 
 def reward_by(times: tuple[int, ...]) -> Measure:
-    """Returns the measure (runs, times): how often the goal was reached, for a reward of 1, by each time step."""
+    """Returns the measure (runs, times): how often the goal, with a reward of 1, was reached by each time step."""
 
     def measure(log: EpisodeLog) -> FloatArray:
         ends = np.where(log.truncated, times[-1] + 1, log.lengths.cumsum(axis=1))
@@ -46,7 +46,7 @@ def reward_by(times: tuple[int, ...]) -> Measure:
 
 
 def episodes_by(times: tuple[int, ...]) -> Measure:
-    """Returns the measure (runs, times): the number of episodes that are over after each number of time steps."""
+    """Returns the measure (runs, times): the number of episodes that ended by each time step."""
 
     def measure(log: EpisodeLog) -> FloatArray:
         ends = log.lengths.cumsum(axis=1)

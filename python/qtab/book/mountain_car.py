@@ -23,4 +23,4 @@ UNSPECIFIED = (
     "how ties are broken (at random here), and what happens to an episode that does not end (truncated here). The "
     "book hashes its tiles; here they are not hashed"
 )
-"""What the book does not state for any of these experiments."""
+"""The settings that the book states for none of these experiments."""

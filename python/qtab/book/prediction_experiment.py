@@ -39,7 +39,7 @@ class PredictionSetting(LineSetting):
     line: str
     """The name of the line that its points belong to."""
     task: Callable[[], PredictionTask]
-    """Returns what is estimated, the same at each call."""
+    """Returns the task, the same at each call."""
     arguments: Mapping[str, Any]
     """The keyword arguments of :func:`qtab.estimate_values`, without the seeds."""
     measure: Measure
@@ -54,7 +54,7 @@ class PredictionExperiment(MeasuredExperiment):
     settings: Sequence[PredictionSetting]
 
     def _measure(self, setting: PredictionSetting, seeds: range, threads: int) -> Mapping[str, Measured]:
-        """Estimates with each seed."""
+        """Estimates the values with each seed."""
         task = setting.task()
         estimates, diverged = _estimate(task, setting.arguments, seeds, threads)
         return {setting.line: Measured(setting.measure(estimates, task.true_values), 0, diverged)}
@@ -63,7 +63,7 @@ class PredictionExperiment(MeasuredExperiment):
 def _estimate(
     task: PredictionTask, arguments: Mapping[str, Any], seeds: range, threads: int
 ) -> tuple[ValueEstimates, int]:
-    """Returns the estimates, and how many runs diverged; of these, the values are infinite from then on."""
+    """Returns the estimates, with infinite values after a run diverged, and the number of runs that diverged."""
     options = dict(arguments)
     behavior, features, record = (options.pop(name, None) for name in ("behavior", "features", "record"))
     settings = PredictionSettings(**options)

@@ -1,4 +1,4 @@
-"""The random walks of the book's figures, and what is measured of estimates on them."""
+"""The random walks of the book's figures, and measures of estimates on them."""
 
 from functools import cache
 
@@ -65,5 +65,5 @@ def values_at(point: int) -> Measure:
 
 
 def exact_values(estimates: ValueEstimates, true_values: PolicyValues) -> FloatArray:
-    """Returns (runs, states): the exact values in every run."""
+    """Returns (runs, states): the exact values, repeated for every run."""
     return np.broadcast_to(true_values.values, (len(estimates.seeds), *true_values.values.shape))

@@ -133,7 +133,7 @@ def find(name: str) -> Experiment:
 
 
 def _choices(wanted: str) -> str:
-    """Returns the names to choose from: those of the chapter, where the name has its number, or all."""
+    """Returns the names to choose from: those of a chapter if ``wanted`` has its number, else all."""
     number = re.search(r"(?:^|-)(\d+)\b", wanted)
     of_chapter = [chapter for chapter in CHAPTERS if number is not None and chapter.number == int(number[1])]
     if not of_chapter:

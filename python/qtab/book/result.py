@@ -36,7 +36,7 @@ class Result:
     experiment: Description
     lines: tuple[Line, ...]
     runs: int
-    """The number of runs of each setting; less for a setting whose ``max_runs`` is smaller."""
+    """The number of runs of each setting; fewer for a setting whose ``max_runs`` is smaller."""
     seed: int
     """The seed of the first run of each setting."""
     seconds: float
@@ -44,17 +44,17 @@ class Result:
     draw: Draw = field(repr=False)
     """Draws the figure."""
     surfaces: Mapping[str, FloatArray] = field(default_factory=dict, repr=False)
-    """The surfaces of a figure that has them, by title."""
+    """The surfaces of the figure by title, if it has any."""
     table: str = field(default="", repr=False)
-    """The table as text, where it is not one of the points of the lines."""
+    """The table as text; empty if it is made from the points of the lines."""
 
     def __repr__(self) -> str:
-        """One line: ``str(result)`` shows the table."""
+        """Returns one line; ``str(result)`` is the table."""
         lines = f"{len(self.lines)} line{'' if len(self.lines) == 1 else 's'}"
         return f"<Result of {self.experiment.heading}: {lines}, {self.runs:,} runs of each setting, seed {self.seed}>"
 
     def _repr_html_(self) -> str:
-        """A table with the lowest and the highest point of each line, and the lines, for notebooks."""
+        """HTML for notebooks: a table with the lowest and the highest point of each line, and the lines."""
         x, y = self.experiment.x_label, self.experiment.y_label
         columns = ("", "points", f"lowest {y}", f"highest {y}", "runs", "diverged")
         rows = []

@@ -1,4 +1,4 @@
-"""Training of many runs of one setting, in which a run that diverges is counted instead of raising."""
+"""Training of many runs of one setting: runs that diverge are counted, and raise no error."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -28,10 +28,10 @@ class EpisodeLog:
 
 
 def train_runs(env: str | MakeEnv, config: Mapping[str, Any], seeds: Sequence[int], threads: int) -> EpisodeLog:
-    """Trains one run per seed, with the numbers of :func:`qtab.train`.
+    """Trains one run per seed, with the same numbers as :func:`qtab.train`.
 
-    Where the action values of a run overflow, :func:`qtab.train` raises an error. Here the episodes that the run did
-    not finish count as truncated, with a reward of -1 per step.
+    If the action values of a run overflow, :func:`qtab.train` raises an error. Here the episodes that the run did not
+    finish count as truncated, with a reward of -1 per step.
     """
     resolved = resolve_template(env, {**config, "seed": seeds[0]})
     max_steps = resolved.max_episode_steps

@@ -1,4 +1,4 @@
-"""One setting of an experiment: what is trained many times, and what is measured of each run."""
+"""One setting of an experiment: a config that is trained many times, and a measure of the runs."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -14,12 +14,12 @@ Measure: TypeAlias = Callable[[EpisodeLog], FloatArray]
 
 @dataclass(frozen=True, kw_only=True)
 class LineSetting(LineStyle):
-    """What the settings of all experiments share."""
+    """The fields that the settings of all experiments have."""
 
     max_runs: int | None = None
     """The maximum number of runs, where the book has fewer runs of this setting than of the others."""
     each_run: bool = False
-    """Whether each run is a line of its own, called by the name and its number."""
+    """Whether each run is a separate line, with the number of the run in its name."""
 
 
 @dataclass(frozen=True)

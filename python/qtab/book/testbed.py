@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 Measure: TypeAlias = Literal["reward", "optimal"]
 ENV = "qtab/KArmedBandit-v0"
 LABELS: Mapping[Measure, str] = {"reward": "average reward", "optimal": "% optimal action"}
-"""What each measure is called."""
+"""The y label of each measure."""
 SAMPLE_AVERAGES = {"learning_rate": 1.0, "learning_rate_schedule": "visits"}
 GREEDY: Mapping[str, Any] = {
     "exploration": "epsilon_greedy",
@@ -42,7 +42,7 @@ class BanditSetting(LineSetting):
     config: Mapping[str, Any]
     """The keyword arguments of :func:`qtab.train`, without the environment."""
     x: float | None = None
-    """Where its point is on the x axis of a parameter study; None for a curve over the steps."""
+    """The x coordinate of its point in a parameter study; None for a curve over the steps."""
 
 
 def draw_measures(result: Result, ax: "Axes | None") -> "Axes":
@@ -71,12 +71,12 @@ def draw_measures(result: Result, ax: "Axes | None") -> "Axes":
 class TestbedExperiment(MeasuredExperiment):
     """An experiment that draws a bandit problem for each seed, and applies each setting to all of them."""
 
-    __test__ = False  # not a test, whatever pytest thinks of its name
+    __test__ = False  # pytest would collect it because of its name
     BATCH_RUNS = 500
 
     settings: Sequence[BanditSetting]
     measures: Sequence[Measure] = ("reward", "optimal")
-    """What is measured: each has a panel of the figure."""
+    """The measures, one for each panel of the figure."""
     mean: float = 0.0
     """The mean of the true values."""
     steps: int = 1000
@@ -89,7 +89,7 @@ class TestbedExperiment(MeasuredExperiment):
         return tuple(self._line_name(name, measure) for measure in self.measures for name in names)
 
     def conditions(self, counts: Collection[int], runs: int, seed: int) -> str:
-        """Returns how a result was made, in words; see :meth:`Description.conditions`."""
+        """Describes in words how a result was computed; see :meth:`Description.conditions`."""
         return f"{super().conditions(counts, runs, seed)}; {self.steps:,} steps of each run"
 
     def config(self, setting: BanditSetting) -> dict[str, Any]:
@@ -109,7 +109,7 @@ class TestbedExperiment(MeasuredExperiment):
         return {self._line_name(setting.line, measure): Measured(found[measure]) for measure in self.measures}
 
     def _line(self, name: str, parts: Sequence[tuple[BanditSetting, Measured]]) -> Line:
-        """Returns the line of a measure of the settings of a name, each a curve or a point."""
+        """Returns the line of a measure for the settings of a name, each a curve or a point."""
         first, _ = parts[0]
         x = [setting.x for setting, _ in parts if setting.x is not None] or np.arange(1, self.steps + 1)
         samples = np.concatenate([measured.samples for _, measured in parts], axis=1)
@@ -120,7 +120,7 @@ class TestbedExperiment(MeasuredExperiment):
 
 
 def run_testbeds(config: Mapping[str, Any], seeds: Sequence[int], threads: int) -> tuple[FloatArray, FloatArray]:
-    """Trains one run per seed, each on the problem of its seed, with the numbers of :func:`qtab.train`.
+    """Trains one run per seed, each on the problem of its seed, with the same numbers as :func:`qtab.train`.
 
     Returns:
         (runs, steps) rewards, and (runs, steps): 100 where the action was optimal, else 0.
@@ -129,6 +129,6 @@ def run_testbeds(config: Mapping[str, Any], seeds: Sequence[int], threads: int) 
     shape = (len(seeds), resolved.config.episodes)
     rewards, optimal = np.empty(shape), np.empty(shape, np.bool_)
     _core.run_testbeds(resolved.spec(), list(seeds), rewards, optimal, threads)
-    # One array: the time of a large array is that of its memory pages.
+    # One array, as most of the time of a large array goes into its memory pages.
     percentages: FloatArray = np.multiply(optimal, 100.0)
     return rewards, percentages

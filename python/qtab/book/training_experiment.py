@@ -9,7 +9,7 @@ from qtab.book.measured_experiment import Measured, MeasuredExperiment
 from qtab.book.setting import Setting
 
 MAX_EPISODE_STEPS = 5_000
-"""The time limit of an experiment that does not set another one."""
+"""The default time limit of an experiment."""
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -23,7 +23,7 @@ class TrainingExperiment(MeasuredExperiment):
     """Episodes are truncated after this many steps. The book has no time limit."""
 
     def conditions(self, counts: Collection[int], runs: int, seed: int) -> str:
-        """Returns how a result was made, in words; see ``Description.conditions``."""
+        """Describes in words how a result was computed; see ``Description.conditions``."""
         limit = f"episodes are truncated at {self.max_episode_steps:,} steps"
         return f"{super().conditions(counts, runs, seed)}; {limit}"
 

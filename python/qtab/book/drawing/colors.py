@@ -43,7 +43,7 @@ METHOD_COLORS: Mapping[str, str] = {
     "REINFORCE": _RED,
     "REINFORCE with baseline": _GREEN,
 }
-"""The color of each method that is not an algorithm of :func:`qtab.train`; those have the colors of all plots."""
+"""The color of each method that is not an algorithm of :func:`qtab.train`; algorithms have the colors of all plots."""
 
 _PARAMETER = re.compile(r"(.+?)(?: =)? (-?[\d.,]+)(?:/(\d+))?([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]*)(?: episodes?)?")
 """A parameter and its value: ``"n = 4"``, ``"sweep 32"``, ``"α = 0.5/8"``, ``"α = 2⁻¹²"``, ``"after 10 episodes"``."""
@@ -53,8 +53,8 @@ _EXPONENTS = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 def line_colors(lines: Sequence[Line], ax: "Axes") -> list[Any]:
     """Returns a color for each line.
 
-    Three or more values of one parameter, such as ``"n = 4"``, have sequential colors in their order. Methods have a
-    color each, the same in every figure. Other lines have the colors that are left, also those without a name there.
+    Three or more values of one parameter, such as ``"n = 4"``, have sequential colors in their order. Each method has
+    the same color in every figure. All other lines, including unnamed ones, take the remaining colors.
     """
     names = list(dict.fromkeys(line.method or line.name for line in lines))
     chosen: dict[str, Any] = _of_parameter([line.method or line.name for line in lines if line.named], ax)
@@ -70,7 +70,7 @@ def line_colors(lines: Sequence[Line], ax: "Axes") -> list[Any]:
 
 
 def _of_parameter(names: Sequence[str], ax: "Axes") -> dict[str, Any]:
-    """Returns the colors of the values of a parameter, if there are at least three of one."""
+    """Returns a color for each value of the commonest parameter; none if it has fewer than three values."""
     found = {name: match for name in names if (match := _PARAMETER.fullmatch(name))}
     common = Counter(match[1] for match in found.values()).most_common(1)
     if not common or common[0][1] < 3:

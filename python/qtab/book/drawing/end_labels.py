@@ -11,19 +11,19 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 MAX_LABELS = 8
-"""More lines than this have a legend."""
+"""The largest number of labels; more lines get a legend."""
 SIZE = 9.0
 """The font size, in points."""
 LINE_HEIGHT = 1.25
-"""The least distance of two labels, in font sizes."""
+"""The smallest distance between two labels, in font sizes."""
 MAX_SHIFT = 3.0
-"""If a label had to move further from its line than this, in font sizes, all lines have a legend."""
+"""The largest distance of a label from its line, in font sizes; if one has to move further, all lines get a legend."""
 
 
 def label_ends(ax: "Axes", lines: Sequence[Line], colors: Sequence[Any]) -> bool:
     """Writes the name of each line beside its last point inside the axes, in the color of the line.
 
-    Returns False, having written nothing, where the labels would not fit: then a legend is needed.
+    Returns False and writes nothing if the labels do not fit, so that a legend is needed.
     """
     ends = [end for line in lines if (end := _last_point(ax, line)) is not None]
     if not 0 < len(ends) == len(lines) <= MAX_LABELS:
@@ -60,9 +60,9 @@ def _last_point(ax: "Axes", line: Line) -> "tuple[float, float] | None":
 
 
 def _spread(wanted: Any, distance: float, limits: tuple[float, float]) -> Any:
-    """Returns heights at least a distance apart, in the same order, and half of it inside the limits.
+    """Returns heights in the same order, at least a distance apart and at least half of it inside the limits.
 
-    The middle of each cluster stays where it was, unless that were outside: below the axes are the labels of the ticks.
+    The middle of each cluster stays in place unless it is outside the limits: the tick labels are below the axes.
     """
 
     def inside(middle: float, count: int) -> float:

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 LEFT = 0.02
-"""Where the title begins, as a part of the width."""
+"""The x position of the title, as a fraction of the width."""
 DOTS_PER_INCH = 100
 
 
@@ -22,8 +22,8 @@ def figure_of_several(result: Result, ax: "Axes | None", width: float, height: f
     Args:
         result: The result to draw.
         ax: Must be None.
-        width: In inches.
-        height: In inches.
+        width: The width in inches.
+        height: The height in inches.
 
     Raises:
         ModuleNotFoundError: without matplotlib; the message names the ``pip install``.
@@ -41,7 +41,7 @@ def figure_of_several(result: Result, ax: "Axes | None", width: float, height: f
 
 
 def save_plot(result: Result, path: Path) -> None:
-    """Draws a result to a file, completely or not at all; the suffix of the path determines the format.
+    """Writes the figure of a result to a file, completely or not at all, in the format of the path's suffix.
 
     Raises:
         ModuleNotFoundError: without matplotlib; the message names the ``pip install``.

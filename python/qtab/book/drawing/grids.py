@@ -26,7 +26,7 @@ CELL = 0.55
 
 @dataclass(frozen=True, eq=False)
 class CellMap:
-    """A picture of a grid: values as numbers, or else arrows for the actions of a policy."""
+    """A picture of a grid, with values as numbers or the actions of a policy as arrows."""
 
     title: str
     layout: Sequence[str]
@@ -34,11 +34,11 @@ class CellMap:
     values: FloatArray | None = None
     """(rows, columns): the numbers."""
     best: NDArray[np.bool_] | None = None
-    """(rows, columns, 4): which actions the policy takes."""
+    """(rows, columns, 4): whether the policy takes each action."""
 
 
 def greedy_actions(q_values: FloatArray, tolerance: float = 1e-9) -> NDArray[np.bool_]:
-    """Returns (..., actions): which actions have the largest value, up to rounding errors."""
+    """Returns (..., actions): whether each action has the largest value, up to rounding errors."""
     best: NDArray[np.bool_] = q_values >= q_values.max(axis=-1, keepdims=True) - tolerance
     return best
 

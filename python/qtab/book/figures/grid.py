@@ -1,4 +1,4 @@
-"""The numbers of square grids in tables."""
+"""Values of square grids, as arrays and as text."""
 
 import math
 from collections.abc import Sequence
@@ -13,7 +13,7 @@ def as_grid(line: Line) -> FloatArray:
 
 
 def grid_text(lines: Sequence[Line]) -> str:
-    """Returns the values of each line as they lie in the grid."""
+    """Returns the values of each line as text, one line for each row of the grid."""
     return "\n\n".join(f"{line.name}\n{_rows(as_grid(line))}" for line in lines)
 
 

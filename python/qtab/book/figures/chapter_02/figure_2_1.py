@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 VALUES = "true value"
 SPREAD = 3.0
-"""How many standard deviations of the rewards a distribution is drawn to, on each side."""
+"""The width of a distribution on each side, in standard deviations of the rewards."""
 HALF_WIDTH = 0.4
 """The largest half width of a distribution, where actions are 1 apart."""
 
@@ -36,7 +36,7 @@ class ExemplaryProblem(ComputedExperiment):
         return [exact_line(VALUES, np.arange(1, len(values) + 1), values)]
 
     def conditions(self, counts: Collection[int], runs: int, seed: int) -> str:  # noqa: ARG002
-        """Returns how a result was made, in words."""
+        """Describes in words how a result was computed."""
         return f"the problem of seed {seed}; the distributions are exact"
 
 
@@ -65,7 +65,7 @@ EXPERIMENT = ExemplaryProblem(
     name="figure-2.1",
     title="an exemplary bandit problem from the 10-armed testbed",
     book="ten actions; true values of mean 0 and variance 1, rewards normal with mean q*(a) and variance 1",
-    unspecified="the true values of the book's problem (here those of the seed); actions are numbered from 1, as there",
+    unspecified="the true values (drawn with the seed here); actions are numbered from 1, as in the book",
     x_label="action",
     y_label="reward distribution",
     names=[VALUES],

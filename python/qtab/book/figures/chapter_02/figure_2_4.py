@@ -6,7 +6,7 @@ EXPERIMENT = TestbedExperiment(
     name="figure-2.4",
     title="UCB action selection on the 10-armed testbed",
     book="c = 2 against ε = 0.1, sample averages; 2,000 runs of 1,000 steps",
-    unspecified="ties (broken at random here); t in ln t (the number of the step, from 1)",
+    unspecified="ties (broken at random here); t in ln t (the number of the step here, from 1)",
     settings=(
         BanditSetting(
             "UCB, c = 2",

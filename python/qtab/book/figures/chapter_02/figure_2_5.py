@@ -7,7 +7,7 @@ EXPERIMENT = TestbedExperiment(
     title="the gradient bandit algorithm with and without a baseline",
     book="α = 0.1 and 0.4, with the average reward as the baseline or without one; true values of mean 4; 1,000 steps",
     unspecified="the number of runs (2,000 here, as elsewhere in the chapter). The baseline is the average of the "
-    "rewards before, as in equation 2.12; a footnote says that the book's figures include the current one",
+    "previous rewards, as in equation 2.12; a footnote says that the book's figures include the current one",
     settings=tuple(
         BanditSetting(
             f"{'with' if baseline else 'without'} baseline, α = {alpha:g}",

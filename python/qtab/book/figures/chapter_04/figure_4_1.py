@@ -25,7 +25,7 @@ _MOVES = ((-1, 0), (0, 1), (1, 0), (0, -1))
 
 def _compute() -> list[Line]:
     env = grid_world_4x4()
-    # The book's sweeps take the old values of all states.
+    # Each of the book's sweeps uses the old values of all states.
     after = list(islice(policy_evaluation(env, "random", in_place=False), SWEEPS[-1] + 1))
     values = {f"k = {k}": after[k] for k in SWEEPS} | {"k = ∞": policy_values(env, "random").values}
     return [exact_line(name, range(SIZE * SIZE), one) for name, one in values.items()]

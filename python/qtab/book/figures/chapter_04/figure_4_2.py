@@ -88,8 +88,7 @@ EXPERIMENT = ExactExperiment(
     title="policy iteration for Jack's car rental",
     book="at most 20 cars at each location, at most 5 moved overnight for $2 each, $10 for each car rented; requests "
     "have means of 3 and 4 a day, returns of 3 and 2; γ = 0.9; the first policy never moves a car",
-    unspecified="which of several best actions is taken (the first here, from moving five cars to the first location "
-    "on)",
+    unspecified="which of several best actions is taken (the first here, from five cars to the first location on)",
     compute=_compute,
     draw=_draw,
     names=(*POLICIES, VALUES),

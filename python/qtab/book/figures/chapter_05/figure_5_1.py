@@ -32,7 +32,7 @@ def draw_values(result: Result, ax: "Axes | None") -> "Axes":
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class BlackjackValues(PredictionExperiment):
-    """The surfaces of the first run, beside the errors of all."""
+    """Errors of the estimates of all runs, with the values of the first run as surfaces."""
 
     def run(
         self, runs: int | None = None, seed: int = 0, *, threads: int | None = None, progress: bool | None = None

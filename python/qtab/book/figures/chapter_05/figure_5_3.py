@@ -24,7 +24,7 @@ EXPERIMENT = PredictionExperiment(
     title="ordinary and weighted importance sampling",
     book="episodes begin in one blackjack state (13 with a usable ace against a two) and hit or stick at random; the "
     "target policy sticks on 20 and 21; true value -0.27726; 100 runs of 10,000 episodes",
-    unspecified="whether first or every visit (the state cannot return)",
+    unspecified="whether first-visit or every-visit (no episode visits the state twice)",
     settings=tuple(
         PredictionSetting(
             f"{name} importance sampling",

@@ -11,8 +11,8 @@ EXPERIMENT = PredictionExperiment(
     title="TD(0) and Monte Carlo under batch training",
     book="the random walk of Example 6.2; after each episode all episodes so far are presented until the values "
     "converge; errors averaged over the states and 100 runs",
-    unspecified="the initial values, which states keep that no episode has visited (0.5 here, as in Example 6.2); α "
-    "(without effect on the limit)",
+    unspecified="the initial values, which unvisited states keep (0.5 here, as in Example 6.2); α (without effect on "
+    "the limit)",
     settings=tuple(
         PredictionSetting(
             line,

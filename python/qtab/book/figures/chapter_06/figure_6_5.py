@@ -5,9 +5,9 @@ from qtab.book.setting import Setting
 from qtab.book.training_experiment import TrainingExperiment
 
 FINAL = 20
-"""The table's value at the end is the mean of so many episodes."""
+"""The number of last episodes whose mean is the final value in the table."""
 OPTIMAL = 5.0
-"""The percentage of left actions of the ε-greedy policy that knows the values."""
+"""The percentage of left actions of an ε-greedy policy that knows the true values."""
 _BOOK = {"preset": "book", "learning_rate": 0.1, "discount": 1.0, "epsilon": 0.1, "ties": "random", "episodes": 300}
 
 

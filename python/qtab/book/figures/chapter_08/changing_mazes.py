@@ -1,4 +1,4 @@
-"""What Figures 8.4 and 8.5 share: Dyna-Q and Dyna-Q+ on a maze that changes."""
+"""The settings of Figures 8.4 and 8.5: Dyna-Q and Dyna-Q+ on a maze that changes."""
 
 from typing import Any
 
@@ -17,12 +17,12 @@ UNSPECIFIED = (
 
 
 def settings(env: str, steps: int, episodes: int) -> tuple[Setting, ...]:
-    """Returns the two lines: the cumulative reward by every 50 time steps.
+    """Returns the settings of the two lines: the cumulative reward every 50 time steps.
 
     Args:
         env: The environment's id.
         steps: The number of time steps.
-        episodes: As many as are sure to take so many steps. What comes after them does not count.
+        episodes: The number of episodes, which must suffice for ``steps``. Later steps do not count.
     """
     times = tuple(range(50, steps + 1, 50))
     measure, x = reward_by(times), tuple(map(float, times))

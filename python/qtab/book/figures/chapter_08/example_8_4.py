@@ -23,9 +23,9 @@ from qtab.training.resolve import resolve
 ENV = "qtab/DynaMaze-v0"
 PLANNING_STEPS = 5
 EPISODES = 20_000
-"""As many as are waited for. In a run that has not found a shortest way by then, exploration hardly ever will."""
+"""The largest number of episodes. If a run has not found a shortest path by then, exploration hardly ever will."""
 PRECISION = 1.02
-"""The greedy policy is looked at again after so many times the updates: looking costs more than learning."""
+"""The factor between the numbers of updates at two checks of the greedy policy: checks cost more than learning."""
 METHODS = {"Dyna-Q": "dyna_q", "prioritized sweeping": "prioritized_sweeping"}
 """The algorithm of each line."""
 CONFIG: dict[str, Any] = {
@@ -43,12 +43,12 @@ CONFIG: dict[str, Any] = {
 
 
 class Maze:
-    """A maze, and whether a table solves it."""
+    """A maze that checks whether a table solves it."""
 
     def __init__(self, doublings: int) -> None:
         self.doublings = doublings
         env: Any = gym.make(ENV, doublings=doublings).unwrapped
-        assert isinstance(env, DynaMazeEnv)  # noqa: S101 - what the id stands for
+        assert isinstance(env, DynaMazeEnv)  # noqa: S101 - the class behind the id
         self.states = sum(row.count(".") + row.count("S") + row.count("G") for row in env.layout)
         self.start = int(np.argmax(env.initial_state_distrib))
         self.next_states = np.array(
@@ -59,7 +59,7 @@ class Maze:
         self._specs: dict[str, Any] = {}
 
     def _shortest(self) -> int:
-        """The number of steps of the shortest way, by breadth-first search."""
+        """Returns the number of steps of the shortest path, by breadth-first search."""
         reached = np.zeros(len(self.is_goal), np.bool_)
         reached[self.start] = True
         steps = 0
@@ -69,14 +69,14 @@ class Maze:
         return steps
 
     def spec(self, algorithm: str) -> Any:
-        """Returns a run in the maze as the extension takes it, with any seed."""
+        """Returns the run spec of an algorithm in the maze; its seed is not used."""
         if algorithm not in self._specs:
             options = {**CONFIG, "algorithm": algorithm, "env_kwargs": {"doublings": self.doublings}, "seed": 0}
             self._specs[algorithm] = resolve(ENV, options).spec()
         return self._specs[algorithm]
 
     def is_solved(self, table: FloatArray) -> bool:
-        """Whether the greedy policy takes a shortest way. Of several greedy actions it takes the first."""
+        """Returns whether the greedy policy, which takes the first of several best actions, takes a shortest path."""
         state, greedy = self.start, table.reshape(-1, 4).argmax(axis=1)
         for _ in range(self.shortest):
             state = int(self.next_states[state, greedy[state]])
@@ -84,10 +84,9 @@ class Maze:
 
 
 def updates_to_optimum(maze: Maze, algorithm: str, seed: int) -> tuple[int, bool]:
-    """Returns the number of updates, to within 2 %, after which the greedy policy is first seen to be optimal.
+    """Returns the number of updates, to within 2 %, until the greedy policy is optimal, and whether it ever was.
 
-    The second is whether it is. If not, exploration has not found a shortest way in so many episodes, and all updates
-    are counted.
+    If not, exploration has not found a shortest path in ``EPISODES`` episodes, and all updates are counted.
     """
     trainer = _core.Trainer(maze.spec(algorithm), seed)
     updates, steps, seen = 0, 0, 0
@@ -95,9 +94,9 @@ def updates_to_optimum(maze: Maze, algorithm: str, seed: int) -> tuple[int, bool
         trainer.advance(episode)
         before, planned = updates, trainer.planning_updates()
         steps += int(trainer.episodes(episode - 1)[1][0])
-        # Each step of Dyna-Q makes an update of its own, and all that are planned.
+        # Each step of Dyna-Q makes a direct update and all planning updates.
         updates = steps * (1 + PLANNING_STEPS) if planned is None else planned
-        # The queue of prioritized sweeping can be empty for thousands of episodes, in which the policy stays as it is.
+        # The queue of prioritized sweeping can be empty for thousands of episodes, in which the policy does not change.
         rests = updates == before != seen
         if updates >= PRECISION * seen > 0 or rests or episode == 1:
             if maze.is_solved(trainer.tables()):
@@ -108,7 +107,7 @@ def updates_to_optimum(maze: Maze, algorithm: str, seed: int) -> tuple[int, bool
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class UpdatesToOptimum(Experiment):
-    """How many updates both methods need on each maze."""
+    """The number of updates that each method needs on each maze."""
 
     @property
     def line_names(self) -> Sequence[str]:
@@ -142,7 +141,7 @@ class UpdatesToOptimum(Experiment):
 
 
 def _table(lines: Sequence[Line], missed: Mapping[tuple[str, int], int]) -> str:
-    """Returns the numbers of updates, and how many runs never became optimal, which count with all their updates."""
+    """Returns the numbers of updates, and of the runs that never became optimal, which count with all their updates."""
     rows = [["", "states", "updates", "std. error", "never optimal"]]
     for line in lines:
         for states, mean, error in zip(line.x.tolist(), line.mean, line.error, strict=True):
@@ -156,11 +155,11 @@ def _table(lines: Sequence[Line], missed: Mapping[tuple[str, int], int]) -> str:
 EXPERIMENT = UpdatesToOptimum(
     name="example-8.4",
     title="prioritized sweeping and Dyna-Q on mazes",
-    book=f"mazes of the same structure and of more and more cells; at most n = {PLANNING_STEPS} updates per step",
+    book=f"mazes of the same structure with more and more cells; at most n = {PLANNING_STEPS} updates per step",
     unspecified="all other settings: here α = 1, ε = 0.1, γ = 0.95, θ = 0.0001, ties are broken at random, and there "
-    "are 10 runs. The greedy policy is looked at between episodes, with every 2 % of updates; it is optimal if it "
-    "takes a shortest way. A run that takes none after 20,000 episodes counts with all of its updates. The update that "
-    "Dyna-Q makes from each real step counts",
+    "are 10 runs. The greedy policy is checked between episodes, after every 2 % more updates; it is optimal if it "
+    "takes a shortest path. A run that takes none after 20,000 episodes counts with all of its updates. The update "
+    "that Dyna-Q makes from each real step counts",
     runs=10,
     x_label="number of states",
     y_label="updates until the policy is optimal",

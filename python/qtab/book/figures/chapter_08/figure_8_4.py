@@ -5,12 +5,12 @@ from qtab.book.training_experiment import TrainingExperiment
 
 STEPS = 3_000
 SHORTEST = 10
-"""The steps of the shortest way, before the change."""
+"""The number of steps of the shortest path before the change."""
 
 EXPERIMENT = TrainingExperiment(
     name="figure-8.4",
     title="Dyna agents on a blocking task",
-    book="the way along the right side is blocked after 1,000 time steps, and a longer one along the left side opens; "
+    book="the path along the right side is blocked after 1,000 time steps, and a longer one along the left side opens; "
     "3,000 time steps",
     unspecified=UNSPECIFIED,
     settings=settings("qtab/BlockingMaze-v0", STEPS, STEPS // SHORTEST),

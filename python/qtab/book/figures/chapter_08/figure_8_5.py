@@ -5,12 +5,12 @@ from qtab.book.training_experiment import TrainingExperiment
 
 STEPS = 6_000
 SHORTEST = 10
-"""The steps of the shortest way, after the change."""
+"""The number of steps of the shortest path after the change."""
 
 EXPERIMENT = TrainingExperiment(
     name="figure-8.5",
     title="Dyna agents on a shortcut task",
-    book="a shorter way along the right side opens after 3,000 time steps; 6,000 time steps",
+    book="a shorter path along the right side opens after 3,000 time steps; 6,000 time steps",
     unspecified=UNSPECIFIED,
     settings=settings("qtab/ShortcutMaze-v0", STEPS, STEPS // SHORTEST),
     runs=100,

@@ -9,7 +9,7 @@ from qtab.book.line import Line, exact_line
 BRANCHING = (2, 10, 100, 1_000, 10_000)
 EXPECTED = "expected updates"
 POINTS = 200
-"""The most points of a line."""
+"""The largest number of points of a line."""
 
 
 def _compute() -> list[Line]:
@@ -19,7 +19,7 @@ def _compute() -> list[Line]:
 
 
 def _sample_updates(branching: int) -> Line:
-    """The error after t sample updates, √((b - 1) / (b t)); before the first one it is 1."""
+    """Returns the error after t sample updates, √((b - 1) / (b t)), or 1 before the first one."""
     updates = np.unique(np.rint(np.linspace(1, 2 * branching, min(POINTS, 2 * branching))))
     errors = np.sqrt((branching - 1) / (branching * updates))
     return exact_line(f"b = {branching:,}", np.append(0.0, updates / branching), np.append(1.0, errors))
@@ -28,8 +28,8 @@ def _sample_updates(branching: int) -> Line:
 EXPERIMENT = ExactExperiment(
     name="figure-8.7",
     title="the error of expected and sample updates",
-    book="b equally likely next states, whose values are correct; the first error is 1; sample updates with step sizes "
-    "1/t have an error of √((b - 1) / (b t)) after t of them",
+    book="b equally likely next states, whose values are correct; the initial error is 1; sample updates with step "
+    "sizes 1/t have an error of √((b - 1) / (b t)) after t of them",
     unspecified="",
     compute=_compute,
     draw=draw_lines,

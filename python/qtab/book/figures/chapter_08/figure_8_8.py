@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 DISTRIBUTIONS = {"on-policy": "on_policy", "uniform": "uniform"}
 STYLES = {1: "-", 3: "--", 10: ":"}
-"""How the lines of each number of next states are drawn."""
+"""The line style for each number of next states."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Tasks:
     states: int
     branching: int
     updates: int
-    """How many updates are made."""
+    """The number of updates."""
 
     def line_name(self, distribution: str) -> str:
         """Returns the name of the line of a distribution."""
@@ -45,11 +45,11 @@ class Tasks:
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class UpdateDistributions(Experiment):
-    """The value of the greedy policy as the updates go on, for two distributions of the updates."""
+    """The value of the greedy policy after more and more updates, for two distributions of the updates."""
 
     tasks: Sequence[Tasks]
     parts: Sequence[float]
-    """After which parts of all updates the greedy policy is evaluated."""
+    """The fractions of all updates after which the greedy policy is evaluated."""
 
     @property
     def line_names(self) -> Sequence[str]:
@@ -95,7 +95,7 @@ class UpdateDistributions(Experiment):
 
 
 def _in_threads(threads: int, measure: Callable[[int], T], seeds: range) -> Iterator[T]:
-    """Yields what a function returns for each seed, in their order. After Ctrl-C nothing more is begun."""
+    """Yields the result of a function for each seed, in order. After Ctrl-C no further call starts."""
     with ThreadPoolExecutor(threads) as pool:
         try:
             yield from pool.map(measure, seeds)
@@ -105,7 +105,7 @@ def _in_threads(threads: int, measure: Callable[[int], T], seeds: range) -> Iter
 
 
 def draw_two_sizes(result: Result, ax: "Axes | None") -> "Axes":
-    """Draws the tasks of each number of states on axes of their own; returns the last.
+    """Draws the tasks of each number of states on separate axes; returns the last axes.
 
     Raises:
         ValueError: if ``ax`` is not None.

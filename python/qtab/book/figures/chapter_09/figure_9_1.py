@@ -29,12 +29,12 @@ _ONE = {"method": "monte_carlo", "learning_rate": 0.0, "episodes": 1}
 
 
 def state_distribution(estimates: ValueEstimates, true_values: PolicyValues) -> FloatArray:
-    """Returns (runs, states): the exact on-policy distribution in every run."""
+    """Returns (runs, states): the exact on-policy distribution, repeated for every run."""
     return np.broadcast_to(true_values.state_distribution, (len(estimates.seeds), 1000))
 
 
 def draw_with_distribution(result: Result, ax: "Axes | None") -> "Axes":
-    """Draws the values, and below them the distribution on an axis of its own; returns the axes of the values."""
+    """Draws the values, and below them the distribution on a second axis; returns the axes of the values."""
     for line in result.lines:
         if line.name == _DISTRIBUTION:
             distribution = line
@@ -45,7 +45,7 @@ def draw_with_distribution(result: Result, ax: "Axes | None") -> "Axes":
     ax.legend(loc="upper left", frameon=False)
     other = ax.twinx()
     other.fill_between(distribution.x, 0, distribution.mean, color="0.5", alpha=0.35, linewidth=0)
-    # Only the start, with 1.4 %, is above the figure.
+    # Only the start state, with 1.4 %, is outside the figure.
     other.set(ylim=(0, 5 * np.sort(distribution.mean)[-2]), ylabel=_DISTRIBUTION)
     return ax
 

@@ -44,7 +44,7 @@ def cost_to_go(run: Run) -> FloatArray:
 
 
 def draw_cost_to_go(result: Result, ax: "Axes | None") -> "Axes":
-    """Draws each surface, (positions, velocities), in 3D axes of its own in a new figure; returns the last axes.
+    """Draws each surface, (positions, velocities), in separate 3D axes of a new figure; returns the last axes.
 
     Raises:
         ModuleNotFoundError: without matplotlib; the message names the ``pip install``.
