@@ -17,13 +17,13 @@ _OF_SHAPES = {"discretizer", *(name for name, option in OPTIONS.items() if optio
 
 
 def change(config: Config, **settings: Any) -> Mapping[str, Any] | None:
-    """Returns settings to try, with what has to change along with them, or None where the config refuses them.
+    """Returns settings to try, completed by those that have to change with them, or None if the config refuses them.
 
     Options that no longer apply are reset, and the lower limit of a rate stays the same fraction of it.
 
     Args:
         config: The config of a run.
-        **settings: What to change, as keyword arguments of :func:`qtab.train`.
+        **settings: The settings to change, as keyword arguments of :func:`qtab.train`.
     """
     given = dict(settings)
     fields = {**vars(config), **given}
@@ -35,7 +35,7 @@ def change(config: Config, **settings: Any) -> Mapping[str, Any] | None:
         if name not in settings and is_set(fields[name]) and mismatch(name, fields[name], fields):
             given[name] = fields[name] = DEFAULTS[name]
     if isinstance(config.initial_q, np.ndarray) and not given.keys().isdisjoint(_OF_SHAPES):
-        return None  # the initial table has the shape of the last one
+        return None  # the initial table would no longer fit
     try:
         changed = config.replace(**given)
     except (TypeError, ValueError):
@@ -44,10 +44,10 @@ def change(config: Config, **settings: Any) -> Mapping[str, Any] | None:
 
 
 def changes(config: Config, *candidates: Mapping[str, Any]) -> tuple[Mapping[str, Any], ...]:
-    """Returns those of some changes that the config of a run accepts, completed as by :func:`change`."""
+    """Returns the candidates that the config of a run accepts, completed as by :func:`change`."""
     return given(change(config, **settings) for settings in candidates)
 
 
 def given(candidates: Iterable[Mapping[str, Any] | None]) -> tuple[Mapping[str, Any], ...]:
-    """Returns the changes that there are."""
+    """Returns the candidates that are not None."""
     return tuple(candidate for candidate in candidates if candidate is not None)

@@ -23,17 +23,17 @@ from qtab.diagnosis.unlucky_seed import unlucky_seed
 
 @dataclass(frozen=True)
 class Check:
-    """A check, and when it can be made."""
+    """A check, and the conditions under which it can be made."""
 
     find: Callable[[Facts], Finding | Unchecked | None]
-    """Returns the finding, None if there is nothing to report, or why the check could not be made."""
+    """Returns the finding, None if there is nothing to report, or the reason why the check could not be made."""
     repeats: bool = False
     """Whether it repeats the run, for which Rust must step the environment."""
     if_solved: bool = False
     """Whether it is also made for a run that solved its environment."""
     reads_values: bool = False
-    """Whether it reads action values, or advises on exploration that compares them: not for a run that learned
-    preferences, whose policy is their softmax."""
+    """Whether it reads action values, or advises on exploration that compares them. It is then not made for a run that
+    learned preferences, whose policy is their softmax."""
 
 
 CHECKS: Mapping[str, Check] = {

@@ -43,7 +43,7 @@ def coarse_grid(facts: Facts) -> Finding | Unchecked | None:
 
 
 def mixed_cells(facts: Facts) -> float | None:
-    """Returns the share of visited states in whose cell another action is best more often; None without an optimum."""
+    """Returns the share of visited states with another best action than most of their cell; None without an optimum."""
     best, sample = facts.optimum, facts.sample
     if best is None or best.search is None or sample is None:
         return None

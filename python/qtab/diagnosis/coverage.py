@@ -12,7 +12,7 @@ from qtab.diagnosis.finding import Finding, Unchecked, percent
 MOST_UNTRIED = 0.2
 """A larger share of untried actions in visited states is reported."""
 MOST_UPDATES = 100.0
-"""With more updates for each action that was tried, others are untried because the agent avoids them."""
+"""With more updates per tried action, the other actions are untried because the agent avoids them."""
 SHOWN = 3
 
 

@@ -23,9 +23,9 @@ def diagnose(run: Run, optimum: Optimum | None = None, seeds: int | None = None)
 
     Args:
         run: The run.
-        optimum: What :func:`qtab.optimum` returned for the run. None computes that of small tables, and takes the best
-            known return of MountainCar-v0.
-        seeds: How many other seeds to train for comparison. None takes as many as fit into a fraction of a second.
+        optimum: The result of :func:`qtab.optimum` for the run. None computes the optimum of small tables, and uses
+            the best known return of MountainCar-v0.
+        seeds: The number of other seeds to train for comparison; None trains for a fraction of a second.
 
     Returns:
         The findings; they print as text. Its ``what_if()`` tries the changes that they advise.
@@ -72,9 +72,9 @@ def diagnose(run: Run, optimum: Optimum | None = None, seeds: int | None = None)
 
 
 def _unchecked(check: Check, facts: Facts, findings: Iterable[Finding]) -> Unchecked | None:
-    """Returns why a check cannot be made; None if it can."""
+    """Returns the reason why a check cannot be made; None if it can."""
     if any(finding.name == "divergence" for finding in findings):
-        return Unchecked("the values diverged")  # which the other checks would misread
+        return Unchecked("the values diverged")  # the other checks would misread such values
     if check.reads_values and facts.config.algorithm in PREFERENCES:
         return Unchecked("it learned preferences instead of action values")
     if check.repeats and not facts.can_repeat:

@@ -1,4 +1,4 @@
-"""``qtab.Diagnosis``: the findings of the checks, and what they advise to try."""
+"""``qtab.Diagnosis``: the findings of the checks, and the changes that they advise."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
@@ -28,14 +28,14 @@ class Diagnosis:
     not_made: tuple[str, ...]
     """The checks that could not be made, such as those that repeat the run where Rust does not step the environment."""
     reasons: Mapping[str, str]
-    """Why each of these could not be made."""
+    """The reason why each check of ``not_made`` could not be made."""
     facts: Facts = field(repr=False)
-    """The run and what follows from it."""
+    """The run and the facts computed from it."""
     seconds: float = field(repr=False)
-    """How long the diagnosis took."""
+    """The wall-clock time of the diagnosis."""
 
     def __repr__(self) -> str:
-        """The whole report, so that it appears where Python is used interactively."""
+        """Returns the whole report, so that interactive Python shows it."""
         return str(self)
 
     def __str__(self) -> str:
@@ -44,7 +44,7 @@ class Diagnosis:
         return "\n".join([*lines, *(f"\n{line}" for line in self._footer())])
 
     def _repr_html_(self) -> str:
-        """The findings as a table, for notebooks."""
+        """HTML for notebooks: the findings as a table."""
         rows = [finding.cells() for finding in self.findings]
         return html.sentences(self.heading, COLUMNS, rows, self._footer())
 
@@ -55,7 +55,7 @@ class Diagnosis:
         return iter(self.findings)
 
     def __getitem__(self, name: str) -> Finding:
-        """Returns the finding of a name.
+        """Returns a finding by its name.
 
         Raises:
             KeyError: if there is none.
@@ -81,7 +81,7 @@ class Diagnosis:
 
     @property
     def verdict(self) -> Verdict:
-        """Whether the run solved its environment, and what was measured."""
+        """Whether the run solved its environment, with the measured returns."""
         return self.facts.verdict
 
     def what_if(self, seeds: "int | Iterable[int]" = SEEDS, *, progress: bool | None = None) -> WhatIf:
@@ -104,7 +104,7 @@ class Diagnosis:
         if self.solved:
             lines.append(f"Solved: {self.verdict}.")
         elif self.solved is None:
-            lines.append(f"Whether it solved its environment is not known: {self.verdict.why_unknown}.")
+            lines.append(f"It is not known whether the run solved its environment: {self.verdict.why_unknown}.")
         if not self.findings:
             lines.append("There is nothing to advise." if self.solved else "No check found anything to advise.")
         elif self.unremarkable:

@@ -7,7 +7,7 @@ from qtab.diagnosis.facts import Facts
 from qtab.diagnosis.finding import Finding
 
 FACTOR = 10.0
-"""Values so many times larger than updates that do not overshoot can make them are reported."""
+"""Values are reported if they are this many times larger than updates without overshoot can make them."""
 
 
 def divergence(facts: Facts) -> Finding | None:
@@ -33,7 +33,7 @@ def divergence(facts: Facts) -> Finding | None:
 
 
 def _largest_possible(facts: Facts) -> float:
-    """The largest value that updates reach which move a value towards its target, never beyond it.
+    """Returns the largest value that updates can reach if none of them moves a value beyond its target.
 
     With rewards of at most r it is r / (1 - discount); and as each update adds at most r to the largest value, also r
     times the number of steps, which bounds it without a discount.

@@ -11,9 +11,9 @@ from qtab.diagnosis.finding import Finding, Unchecked, as_keywords, percent
 from qtab.diagnosis.learning_rate import overwrites
 
 LEAST_REACHED = 0.01
-"""A smaller share of the first half's episodes that reach the goal is reported,"""
+"""A smaller share of the first half's episodes that reach the goal is reported, unless ``ENOUGH_REACHED`` do."""
 ENOUGH_REACHED = 20
-"""unless this many episodes reach it."""
+"""The number of episodes that reach the goal from which on nothing is reported."""
 
 
 def exploration(facts: Facts) -> Finding | Unchecked | None:
@@ -47,7 +47,7 @@ def exploration(facts: Facts) -> Finding | Unchecked | None:
         changed = change(facts.config, exploration="epsilon_greedy", **_optimistic(facts))
         how, meaning = "by optimism", f"{when}. Random actions hardly ever find it, so more of them do not help."
     if changed is None:
-        return None  # it explores like this already: something else is wrong
+        return None  # the advised exploration is in use already
     shown = {name: value for name, value in changed.items() if getattr(facts.config, name) != value}
     return Finding(
         name="exploration",
@@ -60,11 +60,11 @@ def exploration(facts: Facts) -> Finding | Unchecked | None:
 
 
 def _optimistic(facts: Facts) -> Mapping[str, Any]:
-    """Initial values above every possible return: 0 where steps cost, else the best return."""
+    """Returns initial values above every possible return: 0 if steps cost, else the best return."""
     best = max(0.0, float(facts.run.episode_returns.max()))
     return {"epsilon": 0.0, "initial_q": (best or _reward_scale(facts)) / facts.run.discretizer.n_active}
 
 
 def _reward_scale(facts: Facts) -> float:
-    """0 where all rewards are costs; 1 where nothing was ever paid."""
+    """Returns 0 if there are costs, else 1."""
     return 0.0 if facts.run.episode_returns.min() < 0 else 1.0

@@ -1,4 +1,4 @@
-"""What the checks look at: a run, its repetition, and its environment. Each fact is computed when it is first used."""
+"""The facts that the checks read: a run, its repetition, and its environment. Each is computed on first use."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -25,15 +25,15 @@ from qtab.training.verdict import Verdict, judge
 
 RANDOM_EPISODES = 500
 SHORTEST_MOUNTAIN_CAR, LONGEST_MOUNTAIN_CAR = 83, 104
-"""The lengths of its routes: from the best and from the worst start."""
+"""The numbers of steps of the shortest routes in MountainCar-v0, from the best and from the worst start."""
 OTHER_SEEDS_STEPS = 10**7
-"""How many steps, times the number of active rows, training with other seeds may take."""
+"""The largest number of steps, times the number of active rows, to train with other seeds."""
 FEWEST_SEEDS, MOST_SEEDS = 8, 40
 
 
 @dataclass(frozen=True)
 class Facts:
-    """A run and what follows from it."""
+    """A run and the facts computed from it."""
 
     run: Run
     given_optimum: Optimum | None = None
@@ -67,7 +67,7 @@ class Facts:
 
     @cached_property
     def verdict(self) -> Verdict:
-        """Whether the run solved its environment, and what was measured."""
+        """Whether the run solved its environment, with the measured returns."""
         return judge(self.run, self.optimum)
 
     @property
@@ -77,15 +77,15 @@ class Facts:
 
     @property
     def goal_return(self) -> float | None:
-        """The return from which on a run counts as solved; None where none is known."""
+        """The smallest return that counts as solved; None if it is not known."""
         return self.verdict.goal.least
 
     @cached_property
     def random(self) -> Run | None:
-        """Episodes of a policy that chooses all actions at random; None where they cannot be played quickly."""
+        """Episodes of a policy that acts at random; None if they cannot be played quickly."""
         if not self.can_repeat:
             return None
-        # These algorithms do not take all of the settings below; what chooses at random does not depend on its values.
+        # These algorithms do not accept all of the settings below; random actions do not depend on the algorithm.
         special = self.config.algorithm in (*PREFERENCES, *MONTE_CARLO, *AVERAGE_REWARD)
         return train(
             config=self.config,
@@ -103,26 +103,26 @@ class Facts:
 
     @cached_property
     def optimum(self) -> Optimum | None:
-        """The optimum that was given, or that of a small table."""
+        """The given optimum, or the computed one of a small table."""
         if self.given_optimum is not None:
             return self.given_optimum
         return quick_optimum(self.config, self.run.discretizer.n_rows, len(self.run.actions))
 
     @cached_property
     def is_usual_mountain_car(self) -> bool:
-        """Whether the run is on MountainCar-v0 with its own constants and time limit."""
+        """Whether the run is on MountainCar-v0 with the default constants and time limit."""
         return is_usual_mountain_car(self.config)
 
     @cached_property
     def best_return(self) -> float | None:
-        """The expected return of the optimum, or the best known; None where neither is known."""
+        """The expected return of the optimum, or the best known return; None if neither is known."""
         if self.optimum is not None:
             return self.optimum.expected_return
         return BEST_KNOWN_MOUNTAIN_CAR if self.is_usual_mountain_car else None
 
     @cached_property
     def failure_return(self) -> float | None:
-        """The return of most episodes of a random policy, where most have the same: those that reach no goal."""
+        """The lowest return of a random policy if most of its episodes have it: those that do not reach the goal."""
         if self.random is None:
             return None
         returns, counts = np.unique(self.random.episode_returns, return_counts=True)
@@ -131,12 +131,12 @@ class Facts:
 
     @cached_property
     def reached(self) -> NDArray[np.bool_] | None:
-        """(episodes,): whether each episode did better than most of a random policy; None where returns are mixed."""
+        """(episodes,): whether the return of each episode is above ``failure_return``; None if that is None."""
         return None if self.failure_return is None else self.run.episode_returns > self.failure_return
 
     @cached_property
     def shortest_route(self) -> int | None:
-        """The fewest steps to the goal that are known; None where none is, or an episode is better the longer it is."""
+        """The smallest known number of steps to the goal; None if none is known, or if longer episodes are better."""
         if self.is_usual_mountain_car:
             return SHORTEST_MOUNTAIN_CAR
         run = self.run
@@ -158,15 +158,15 @@ class Facts:
 
     @cached_property
     def tried(self) -> NDArray[np.bool_]:
-        """(rows, actions): whether the action was taken there: by the visits, or else whether its value changed.
+        """(rows, actions): whether the action was taken in the state, by its visits, or else by a changed value.
 
-        Without visits, an update that leaves the value as it was goes unnoticed, such as one of 0 towards 0.
+        Without visits, an update that does not change the value goes unnoticed, such as one of 0 towards 0.
         """
         return self.changed if self.visits is None else self.visits > 0
 
     @cached_property
     def visits(self) -> NDArray[np.int64] | None:
-        """(rows, actions): how often the action was taken there; None where that is not known."""
+        """(rows, actions): the number of times that the action was taken in the state; None if it is not known."""
         visits = self.run.visits
         if visits is None and self.repeated is not None:
             visits = self.repeated.visits
@@ -174,23 +174,23 @@ class Facts:
 
     @cached_property
     def repeated(self) -> Run | None:
-        """The run, repeated with its visits and the last episodes recorded; None where that would take long."""
+        """The run, repeated with its visits and the last episodes recorded; None if that would take long."""
         return repeat(self.run) if self.can_repeat and self.is_finite else None
 
     @cached_property
     def visited(self) -> NDArray[np.bool_]:
-        """(rows,): whether any action was taken there."""
+        """(rows,): whether any action was taken in the state."""
         return np.asarray(np.any(self.tried, axis=1))
 
     @cached_property
     def q_values(self) -> NDArray[np.float64]:
-        """(rows, actions): the values; the mean of two tables."""
+        """(rows, actions): the action values; for two tables their mean."""
         mean: NDArray[np.float64] = self.run.tables.mean(axis=0)
         return np.where(self.has_action, mean, -np.inf)
 
     @cached_property
     def has_action(self) -> NDArray[np.bool_]:
-        """(rows, actions): which actions each state has."""
+        """(rows, actions): whether each state has each action."""
         not_missing: NDArray[np.bool_] = np.asarray(np.isfinite(self.initial_tables).all(axis=0))
         masks = self.run.action_masks
         return not_missing if masks is None else not_missing & masks.reshape(not_missing.shape)
@@ -206,7 +206,7 @@ class Facts:
         count = self._other_seeds()
         if not self.can_repeat or count == 0 or not self.run.completed:
             return None
-        numbers = seed_sequence(count + 1, memory_limit(None))  # refuses too many before there is a list of them
+        numbers = seed_sequence(count + 1, memory_limit(None))  # raises for too many before making a list of them
         seeds = [seed for seed in numbers if seed != self.config.seed][:count]
         return train_many(config=self.config, seeds=seeds, tables=True)
 
@@ -215,5 +215,5 @@ class Facts:
             return self.given_seeds
         work = int(self.run.episode_lengths.sum()) * self.run.discretizer.n_active
         affordable = min(OTHER_SEEDS_STEPS // max(work, 1), MOST_SEEDS)
-        # Fewer seeds than this say little: they may take up to twice as long.
+        # Fewer seeds tell little, so that FEWEST_SEEDS may take up to twice as long.
         return max(affordable, FEWEST_SEEDS) if 2 * affordable >= FEWEST_SEEDS else 0

@@ -1,4 +1,4 @@
-"""What a check returns: the evidence, what it means, and what to change."""
+"""The result of a check: the evidence, its meaning, and the advice."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -15,7 +15,7 @@ class Unchecked:
     """A check that could not be made, which is not the same as one that found nothing."""
 
     reason: str
-    """Why, to follow the word "as"."""
+    """The reason, to follow the word "as"."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -27,16 +27,16 @@ class Finding:
     title: str
     """The finding in one sentence."""
     evidence: Mapping[str, float]
-    """The numbers behind it, by what they are."""
+    """The numbers behind the finding, each by its name."""
     meaning: str
-    """What the numbers mean for learning."""
+    """The meaning of the numbers for learning."""
     advice: str
-    """What to change."""
+    """The advised change, in words."""
     changes: tuple[Mapping[str, Any], ...] = field(default=())
     """Settings to try, each as keyword arguments of :func:`qtab.train`; :meth:`qtab.Diagnosis.what_if` tries them."""
 
     def __repr__(self) -> str:
-        """One line: ``print`` shows the whole finding."""
+        """Returns one line; ``print`` shows the whole finding."""
         return f"<Finding {self.name!r}: {self.title}>"
 
     def cells(self) -> tuple[str, str, str]:
@@ -45,11 +45,11 @@ class Finding:
         return f"{self.title}\n{self.meaning}", evidence, self.advice
 
     def _repr_html_(self) -> str:
-        """A table of one row, for notebooks."""
+        """HTML for notebooks: a table of one row."""
         return html.sentences(f"Finding {self.name!r}", COLUMNS, [self.cells()])
 
     def __str__(self) -> str:
-        """A few lines: the title, the evidence, the meaning and the advice."""
+        """Returns a few lines: the title, the evidence, the meaning and the advice."""
         evidence = ", ".join(f"{name} {number_text(value)}" for name, value in self.evidence.items())
         return f"{self.title}\n  evidence  {evidence}\n  meaning   {self.meaning}\n  change    {self.advice}"
 

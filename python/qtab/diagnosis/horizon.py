@@ -8,15 +8,15 @@ from qtab.diagnosis.facts import LONGEST_MOUNTAIN_CAR, Facts
 from qtab.diagnosis.finding import Finding, Unchecked, as_keywords, percent
 
 LEAST_WEIGHT = 0.05
-"""With less of its weight left at the start, a goal is hard to tell from no goal."""
+"""A smaller weight of the goal at the start is reported: with it, a goal is hard to tell from no goal."""
 SHORT_SIGHTED = 0.5
-"""With such a discount the agent looks at most two steps ahead: it is reported in any task of long episodes."""
+"""A discount up to this one lets the agent look at most two steps ahead, and is reported if episodes are long."""
 OTHER_ALGORITHM = "q_learning"
-"""What is advised instead of an algorithm without a discount."""
+"""The algorithm that is advised instead of one without a discount."""
 
 
 def horizon(facts: Facts) -> Finding | Unchecked | None:
-    """Finds that of the goal's value almost nothing is left after the shortest route to it."""
+    """Finds that almost nothing of the goal's value is left at the start of the shortest route to it."""
     discount = facts.config.discount
     if discount == 1.0:
         return None

@@ -13,13 +13,13 @@ from qtab.results.rates import epsilons
 MOST_EPSILON = 0.2
 """A larger exploration rate at the end is reported."""
 MOST_RANDOM = 0.35
-"""Of softmax and upper confidence bounds: a policy that is closer to a random one at the end is reported."""
+"""For softmax and upper confidence bounds, a policy that is closer to a random one at the end is reported."""
 
 
 def lasting_exploration(facts: Facts) -> Finding | Unchecked | None:
     """Finds exploration that is still strong at the end."""
     if facts.config.algorithm in PREFERENCES:
-        return Unchecked("its policy is what it learned")
+        return Unchecked("it learned the policy itself")
     if facts.config.exploration == "epsilon_greedy":
         return _of_epsilon(facts)
     return _of_values(facts)
@@ -32,7 +32,7 @@ def lasting_bonus(facts: Facts) -> Finding | Unchecked | None:
         return None
     if facts.visits is None:
         return Unchecked("the visits are not known")
-    # The mean bonus of a step, of those that visit a state and action for the n-th time with their final n.
+    # The mean bonus of a step at the end, weighted by the visits n of each state and action.
     counts = facts.visits[facts.visits > 0].astype(np.float64)
     bonus = config.count_bonus * float(np.average(1.0 / np.sqrt(counts), weights=counts))
     length = float(run.episode_lengths.mean())
@@ -71,7 +71,7 @@ def _of_epsilon(facts: Facts) -> Finding | None:
 
 
 def _of_values(facts: Facts) -> Finding | Unchecked | None:
-    """Of softmax and upper confidence bounds: how often the last steps take an action with a lower value."""
+    """Finds that many of the last steps of softmax or upper confidence bounds take an action with a lower value."""
     sample, config = facts.sample, facts.config
     if sample is None:
         return Unchecked("its last steps cannot be replayed")

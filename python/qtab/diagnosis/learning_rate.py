@@ -11,14 +11,14 @@ from qtab.results.rates import learning_rates
 from qtab.training.train import train
 
 MOST_LEFT = 0.3
-"""A larger share of the initial values that is still in the values is reported."""
+"""A larger share of the initial values left in the values is reported."""
 ENOUGH_LEFT = 0.05
 MOST_NOISE = 0.12
 """A larger change of the values over the last tenth of the episodes, relative to their spread, is reported."""
 MOST_DRIFT = 0.95
-"""Where nearly all values still move in one direction, they are not noisy: they are not yet learned."""
+"""If a larger share of the change is in one direction, the values are not noisy but not yet learned."""
 LEAST_CHANCE = 0.05
-"""Where fewer steps than this share have a result that varies, any learning rate is fine."""
+"""If the results of a smaller share of steps vary, any learning rate is fine."""
 LEAST_RATE = 0.05
 """A smaller learning rate does not cause noise."""
 OVERWRITING_RATE = 0.5
@@ -30,7 +30,7 @@ def slow_learning(facts: Facts) -> Finding | Unchecked | None:
     episodes, rates = learning_rates(facts.run)
     updated = int(facts.tried.sum())
     if facts.config.learning_rate_schedule == "visits":
-        return None  # it averages
+        return None  # such rates average the targets
     if updated == 0:
         return Unchecked("no value changed")
     updates = float(facts.run.episode_lengths.sum()) * facts.run.discretizer.n_active / updated
@@ -38,10 +38,10 @@ def slow_learning(facts: Facts) -> Finding | Unchecked | None:
     left = (1.0 - min(rate, 1.0)) ** updates
     if left <= MOST_LEFT:
         return None
-    # So large that little of the initial value is left, at the same schedule.
+    # The rate that leaves little of the initial value, with the same schedule.
     needed = (1.0 - ENOUGH_LEFT ** (1.0 / updates)) * facts.config.learning_rate / rate if rate > 0 else 1.0
     faster = min(float(f"{1.2 * needed:.1g}"), 1.0)
-    # Where results vary, such a rate would keep the last of them only.
+    # If results vary, such a rate would keep only the last of them.
     is_faster = facts.config.learning_rate < faster and not (faster >= OVERWRITING_RATE and _varies(facts))
     longer = {"episodes": 5 * facts.config.episodes}
     return Finding(
@@ -65,7 +65,7 @@ def overwrites(facts: Facts) -> bool:
 
 
 def _varies(facts: Facts) -> bool:
-    """Whether the same action in the same state has different results."""
+    """Returns whether the same action in the same state has different results."""
     return facts.sample is not None and facts.sample.mixed_outcomes >= LEAST_CHANCE
 
 
@@ -109,7 +109,7 @@ def noisy_values(facts: Facts) -> Finding | Unchecked | None:
 
 
 def _movement(facts: Facts) -> tuple[float, float, float]:
-    """How far the values moved in the last tenth of the episodes, their spread, and how far they moved on average."""
+    """Returns the mean size of changes in the last tenth of the run, the spread of the values, and the net change."""
     before = len(facts.run.episode_returns) * 9 // 10
     earlier = train(
         config=facts.config, callback=lambda done: done.episodes < before, callback_every=before, progress=False
@@ -123,6 +123,6 @@ def _movement(facts: Facts) -> tuple[float, float, float]:
 
 
 def _spread(values: NDArray[np.float64]) -> float:
-    """The range of the middle 90 % of the values."""
+    """Returns the range of the middle 90 % of the values."""
     low, high = np.percentile(values, [5, 95])
     return float(high - low)

@@ -13,13 +13,13 @@ from qtab.diagnosis.finding import Finding, Unchecked, as_keywords, percent
 MOST_OUTSIDE = 0.2
 """A larger share of steps outside the limits is reported."""
 ROOM_OUTSIDE = 0.25
-"""How far outside the limits, as a fraction of their distance, values of a component without bounds may lie."""
+"""The distance outside the limits, relative to their width, at which values of an unbounded component may lie."""
 FEWEST_CELLS = 2.0
-"""Where fewer bins or tiles cover the range of a component, they hardly tell its values apart."""
+"""If fewer bins or tiles cover the range of a component, they hardly tell its values apart."""
 UNBOUNDED = 1e30
 """Spaces of float32 without bounds have infinity, or the largest number of the dtype."""
 ROOM = 2.0
-"""Of a component without bounds, values are expected within so many times the range that was seen."""
+"""The expected range of an unbounded component, in multiples of the range that was seen."""
 
 
 def narrow_limits(facts: Facts) -> Finding | Unchecked | None:
@@ -28,7 +28,7 @@ def narrow_limits(facts: Facts) -> Finding | Unchecked | None:
     if isinstance(found, Unchecked):
         return found
     low, high, observed = found
-    # Outermost bins of a component without bounds are meant to hold some more.
+    # The outermost bins of an unbounded component are meant to hold some values outside the limits.
     room = np.where(_bounds(facts)[2], 0.0, ROOM_OUTSIDE * (high - low))
     outside = (observed < low - room) | (observed > high + room)
     share = float(outside.any(axis=1).mean())
@@ -46,8 +46,8 @@ def narrow_limits(facts: Facts) -> Finding | Unchecked | None:
             "lowest value seen": float(observed[:, component].min()),
             "highest value seen": float(observed[:, component].max()),
         },
-        meaning=f"In {percent(share)} of the last steps the outermost bin or tile holds the state: there the agent "
-        "cannot tell one from another.",
+        meaning=f"In {percent(share)} of the last steps the outermost bin or tile holds the state: the agent cannot "
+        "tell these states apart.",
         advice=f"use wider limits: {as_keywords(wide)}",
         changes=changes(facts.config, wide),
     )
@@ -71,7 +71,7 @@ def wide_limits(facts: Facts) -> Finding | Unchecked | None:
         title="The limits of the discretizer are too wide to tell states apart.",
         evidence={
             f"bins or tiles of component {component}": int(counts[component]),
-            "of which its values cover": float(covered[component]),
+            "of these, covered by its values": float(covered[component]),
         },
         meaning=f"The values of component {component} lie within {covered[component]:.2g} of its {counts[component]} "
         "bins or tiles, so that states which need different actions share them.",
@@ -81,7 +81,7 @@ def wide_limits(facts: Facts) -> Finding | Unchecked | None:
 
 
 def _limits(facts: Facts) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]] | Unchecked:
-    """The limits of each component, and (steps, components): the observations."""
+    """Returns the limits of each component, and (steps, components): the observations."""
     config, sample = facts.config, facts.sample
     if config.discretizer not in ("bins", "tiles") or config.low is None or config.high is None:
         return Unchecked("the discretizer has no limits")
@@ -97,7 +97,7 @@ def _counts(facts: Facts) -> Sequence[int]:
 
 
 def _bounds(facts: Facts) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]:
-    """The bounds of the observation space, and which components have them."""
+    """Returns the bounds of the observation space, and whether each component has them."""
     space: Any = None if facts.sample is None else facts.sample.space
     low, high = (np.array([float(str(bound)) for bound in np.ravel(limit)]) for limit in (space.low, space.high))
     return low, high, (np.abs(low) < UNBOUNDED) & (np.abs(high) < UNBOUNDED)
@@ -110,7 +110,7 @@ def _range(facts: Facts, observed: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _covering(facts: Facts, observed: NDArray[np.float64]) -> dict[str, Any]:
-    """Limits that hold all states: the bounds of the space, or what was seen with some room."""
+    """Returns limits that hold all states: the bounds of the space, or the range that was seen with some room."""
     low, high, bounded = _bounds(facts)
     least, most = observed.min(axis=0), observed.max(axis=0)
     room = (most - least) / 10
@@ -121,7 +121,7 @@ def _covering(facts: Facts, observed: NDArray[np.float64]) -> dict[str, Any]:
 
 
 def _rounded(limits: NDArray[np.float64], outwards: Any) -> NDArray[np.float64]:
-    """Limits rounded outwards to two digits."""
+    """Rounds limits outwards to two digits."""
     exponents = np.floor(np.log10(np.maximum(np.abs(limits), 1e-12))).astype(int) - 1
     scaled = outwards(limits / 10.0**exponents)
     return np.array([float(f"{value:.0f}e{exponent}") for value, exponent in zip(scaled, exponents, strict=True)])

@@ -1,4 +1,4 @@
-"""The length of the way to a goal, as the best policy of an environment takes it."""
+"""The length of the best policy's way to a goal."""
 
 from qtab.config import Config
 from qtab.planning.optimum import Optimum
@@ -6,7 +6,7 @@ from qtab.training.run_env import make_run_env
 
 EPISODES = 20
 MOST_STEPS = 20_000
-"""Playing so many steps in Python takes tens of milliseconds."""
+"""The largest number of steps to play, which takes tens of milliseconds in Python."""
 
 
 def shortest_best_episode(config: Config, optimum: Optimum) -> int | None:

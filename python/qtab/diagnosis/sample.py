@@ -13,7 +13,7 @@ from qtab.training.run_env import make_run_env
 from qtab.training.train import train
 
 SAMPLE_STEPS = 20_000
-"""Replaying so many steps takes tens of milliseconds."""
+"""The number of steps to replay, which takes tens of milliseconds."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class Sample:
 
     @property
     def mixed_outcomes(self) -> float:
-        """The share of steps whose state and action led elsewhere, or paid otherwise, at another step."""
+        """The share of steps whose state and action had another next state or reward at another step."""
         _, pairs = np.unique(np.column_stack([self.rows, self.columns]), axis=0, return_inverse=True)
         _, ends = np.unique(np.column_stack([self.next_rows, self.rewards]), axis=0, return_inverse=True)
         kinds = np.unique(np.column_stack([pairs, ends]), axis=0)[:, 0]

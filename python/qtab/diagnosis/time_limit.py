@@ -5,7 +5,7 @@ from qtab.diagnosis.finding import Finding, percent
 from qtab.envs.goals import own_time_limit
 
 MOST_TIMED_OUT = 0.99
-"""A larger share of episodes that time out is reported, where the limit is below the environment's own."""
+"""A larger share of episodes that time out is reported if the limit is below the environment's own."""
 
 
 def time_limit(facts: Facts) -> Finding | None:
@@ -25,7 +25,7 @@ def time_limit(facts: Facts) -> Finding | None:
             "share of episodes that time out": timed_out,
         },
         meaning=f"{percent(timed_out)} of the episodes end by the time limit, after fewer steps than the environment "
-        "gives.",
-        # Returns under different limits cannot be compared: what_if does not try it.
+        "allows.",
+        # Returns under different limits cannot be compared, so that what_if does not try this.
         advice=f"use the environment's own limit, max_episode_steps={own}",
     )

@@ -13,9 +13,9 @@ PARTS = 3
 LEAST_EPISODES = 20
 STANDARD_ERRORS = 3.0
 LEAST_SHARE = 0.1
-"""With an improvement by a smaller share of what is missing, training would take too long."""
+"""If the returns improve by a smaller share of the gap to the goal, training would take too long."""
 MOST_EPSILON = 0.1
-"""With more exploration in the last parts, returns also rise because it falls."""
+"""With a larger epsilon in the last parts, returns also rise because it falls."""
 
 
 def too_short(facts: Facts) -> Finding | Unchecked | None:
@@ -51,7 +51,7 @@ def still_improving(facts: Facts) -> bool:
             return False
     error = float(np.sqrt((before.var() + last.var()) / len(last)))
     improvement = float(last.mean() - before.mean())
-    # Without a goal, it is compared with what the run has gained so far.
+    # Without a known goal, the improvement is compared with the gain of the whole run.
     gained = float(last.mean() - facts.run.episode_returns[: len(last)].mean())
     missing = gained if facts.goal_return is None else facts.goal_return - float(before.mean())
     return improvement > STANDARD_ERRORS * error and improvement > LEAST_SHARE * missing

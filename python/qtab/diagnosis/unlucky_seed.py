@@ -18,7 +18,7 @@ def unlucky_seed(facts: Facts) -> Finding | Unchecked | None:
     if facts.others is None:
         return Unchecked("no other seeds were trained")
     verdicts = [judge(run, facts.optimum) for run in facts.others]
-    # Training returns include exploration: they only rank the seeds where the greedy policy's is not exact.
+    # Training returns include exploration: they rank the seeds only if the greedy policy's return is not exact.
     if facts.verdict.greedy_is_exact:
         own, returns = facts.verdict.greedy_return, np.array([verdict.greedy_return for verdict in verdicts])
     else:

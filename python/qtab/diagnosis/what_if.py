@@ -34,12 +34,12 @@ class Trial:
     returns: NDArray[np.float64]
     """(seeds,): the mean return of the last 100 episodes, for each seed."""
     comparison: "Comparison | None"
-    """The change against the run's settings, paired by seed; None where those diverge."""
+    """The comparison with the run's settings, paired by seed; None if those diverge."""
     solved: int | None
     """The number of seeds that solved the environment; None where neither threshold nor optimum is known."""
 
     def __repr__(self) -> str:
-        """One line: the change, and what it gained."""
+        """Returns one line: the change and its gain."""
         gained = "" if self.comparison is None else f", difference {_interval(self.comparison)}"
         solved = "" if self.solved is None else f", {self.solved} of {len(self.returns)} seeds solved"
         change = as_keywords(self.change)
@@ -69,7 +69,7 @@ class WhatIf:
         return self.results[0]
 
     def __repr__(self) -> str:
-        """The whole table, so that it appears where Python is used interactively."""
+        """Returns the whole table, so that interactive Python shows it."""
         return str(self)
 
     def __str__(self) -> str:
@@ -82,7 +82,7 @@ class WhatIf:
         return "\n".join([self._heading(), *lines, *self._failures()])
 
     def _repr_html_(self) -> str:
-        """The changes as a table, for notebooks."""
+        """HTML for notebooks: the changes as a table."""
         columns, *rows = self._rows()
         return html.sentences(self._heading(), columns, rows, self._failures())
 
@@ -155,7 +155,7 @@ def try_changes(facts: Facts, findings: Sequence[Finding], seeds: int | Iterable
 
 
 def _train(facts: Facts, change: Mapping[str, Any], seeds: Sequence[int], bar: ProgressBar, done: int) -> Runs:
-    """Trains with a change, and moves the bar, on which the runs of some changes are done.
+    """Trains with a change, and advances the bar, on which ``done`` changes are finished.
 
     A preset replaces all settings except for those of the environment.
     """
@@ -178,7 +178,7 @@ def _interval(comparison: "Comparison") -> str:
 
 
 def _solved(facts: Facts, runs: Runs) -> int | None:
-    """The number of runs that solved the environment, as :func:`qtab.training.verdict.judge` decides it."""
+    """Returns the number of runs that solved the environment, as :func:`qtab.training.verdict.judge` decides it."""
     if facts.goal_return is None or runs.tables is None:
         return None
     return sum(judge(run, facts.optimum).solved is True for run in runs)

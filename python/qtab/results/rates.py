@@ -56,7 +56,7 @@ def rates_of(run: Run, schedule: Schedule, episodes: NDArray[np.int64]) -> NDArr
 
 
 def learning_rates(run: Run) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-    """Returns (n,) evenly spaced episodes, the last one included, and (n,) learning rates; by visits the first one."""
+    """Returns (n,) evenly spaced episodes, the last one included, and (n,) learning rates; by visits, the first."""
     points, rate = _evenly_spaced(len(run.episode_returns)), learning_rate(run.config)
     if isinstance(rate, ByVisits):
         return points, np.full(len(points), rate.value)
