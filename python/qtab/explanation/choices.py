@@ -1,4 +1,4 @@
-"""Why a policy chose an action: what it drew, and the values that it compared."""
+"""The reasons for a policy's choices: the random numbers that it drew, and the values that it compared."""
 
 from collections.abc import Callable
 
@@ -11,7 +11,7 @@ from qtab.reference.streams import AgentStream
 
 
 class ObservedStream:
-    """An agent's random numbers, of which the last float is kept."""
+    """An agent's random numbers, with a record of the last float."""
 
     def __init__(self, stream: AgentStream, kept: list[float]) -> None:
         self._kept = kept
@@ -48,7 +48,7 @@ class ObservedPolicy:
 
 
 def exploring_start(policy: Policy, values: NDArray[np.float64], action: int, valid: int) -> Choice:
-    """Returns why the first action of an episode was taken that is drawn among all valid ones."""
+    """Returns the record of an exploring start: the first action of an episode, drawn among all valid ones."""
     return Choice(
         action=action,
         reason="exploring start",
@@ -65,7 +65,7 @@ def exploring_start(policy: Policy, values: NDArray[np.float64], action: int, va
 def explained(
     policy: Policy, values: NDArray[np.float64], state: list[int], bounds: list[float], action: int, drawn: float
 ) -> Choice:
-    """Returns why a policy chose an action.
+    """Returns the record of a policy's choice, with its reason.
 
     Args:
         policy: The policy.

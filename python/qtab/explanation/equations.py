@@ -50,7 +50,7 @@ def bootstrap_symbol(algorithm: str, table: int) -> str:
 def target_equation(
     symbol: str, rewards: Sequence[float], discount: float, bootstrap: float | None, target: float, reward_name: str
 ) -> tuple[str, str]:
-    """Returns the equation of a target and its numbers: discounted rewards, and the value of what follows."""
+    """Returns the equation of a target and its numbers: discounted rewards, and the value of the next state."""
     symbols, numbers = [], []
     if len(rewards) > SHOWN_REWARDS:
         symbols.append("Σ γ^(k-1) Rk")
@@ -86,14 +86,14 @@ def differential_equations(
 
 
 def power(base: str, exponent: int, times: str = " ") -> str:
-    """Returns a factor to a power in front of something; nothing for a power of 0."""
+    """Returns a power as a factor in front of a term; an empty string for an exponent of 0."""
     if exponent == 0:
         return ""
     return f"{base}{times}" if exponent == 1 else f"{base}^{exponent}{times}"
 
 
 def gain(rows: Sequence[int], step_sizes: Sequence[float], traces: Sequence[float]) -> float:
-    """Returns by how much Q(S, A) changes for an error of 1. With hashing a row can be active several times."""
+    """Returns the change of Q(S, A) for an error of 1. With hashing a row can be active several times."""
     if traces:  # a value changes once, however often its row is active
         return sum(size * trace for size, trace in zip(step_sizes, traces, strict=True))
     return sum(rows.count(row) * size for row, size in zip(rows, step_sizes, strict=True))

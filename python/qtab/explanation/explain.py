@@ -43,24 +43,24 @@ def explain(
     """Explains steps of an episode: what the agent saw, why it chose its action, and how it learned from the result.
 
     The reference learner in plain NumPy repeats the episode, with the same numbers to the last bit. Rust trains up to
-    its start, and the agent's random numbers are drawn up to there; values and actions are compared with Rust's. Where
-    only the steps before tell what was drawn or counted (ties broken at random, missing actions, a learning rate by
+    its start, and the agent's random numbers are skipped up to that point; values and actions are compared with Rust's.
+    If random numbers or counts depend on the earlier steps (ties broken at random, missing actions, a learning rate by
     visits, methods with a model, Monte Carlo and differential methods, environments in Python), the reference also
-    repeats all episodes before, which takes tens of microseconds per step, with traces over many tiles hundreds.
+    repeats all earlier episodes, which takes tens of microseconds per step, or hundreds with traces over many tiles.
 
     Args:
         run: The run.
         episode: The number of the episode, from 0.
-        steps: How many steps to explain; fewer where the episode ends before.
+        steps: The number of steps to explain; fewer if the episode ends before.
         start: The first of these steps, from 0.
-        env: The environment, where that of the run cannot be made again. It must be the one that was trained on.
+        env: The environment, if that of the run cannot be made again. It must be the one that was trained on.
         progress: Whether to show a progress bar. None shows one on a terminal if it takes more than a second.
 
     Raises:
         RuntimeError: if the reference does not repeat the run's episodes, so that nothing can be explained.
         TypeError: for an argument of the wrong type.
-        ValueError: for an argument out of range. Of a run that was resumed with more episodes while a rate fell, only
-            the episodes before can be explained.
+        ValueError: for an argument out of range. If a run was resumed with more episodes while a rate fell, only the
+            episodes before can be explained.
     """
     checks.instance("run", run, Run)
     finished = len(run.episode_returns)
@@ -107,7 +107,7 @@ def explain(
 
 @dataclass(frozen=True)
 class _Repeated:
-    """What the reference repeated: an episode, and those before it unless it started from there."""
+    """The repetition by the reference: an episode, and all earlier ones unless it started from that one."""
 
     watcher: Watcher
     table: NDArray[np.float64]
@@ -116,10 +116,10 @@ class _Repeated:
     map_columns: int | None
 
     def agrees_with(self, start: Start, run: Run) -> bool:
-        """Whether the actions, the return, and every value after the episode are those of Rust.
+        """Returns whether the actions, the return, and every value after the episode are those of Rust.
 
-        An environment that keeps a state from its first episode, such as a bandit problem, is not the same when it is
-        made again. With a learning rate of 0 the values do not show that, but the return does.
+        An environment that keeps a state from its first episode, such as a bandit problem, differs when it is made
+        again. With a learning rate of 0 the values do not show this, but the return does.
         """
         actions = tuple(choice.action for choice in self.watcher.choices[: len(self.watcher.steps)])
         returned = run.episode_returns[start.episode : start.episode + 1]
@@ -131,7 +131,7 @@ class _Repeated:
 
 
 def _repeat(run: Run, episode: int, env: gym.Env | None, start: Start | None, progress: bool | None) -> _Repeated:
-    """Repeats a run with the reference up to the end of an episode, from its first one or from the one itself."""
+    """Repeats a run with the reference up to the end of an episode, from the first episode or from that one."""
     watcher = Watcher(run.config, lambda row: _cell(run, row), start)
     if env is None:
         stepped = make_run_env(run.config)
@@ -155,7 +155,7 @@ def _cell(run: Run, row: int) -> tuple[int, ...] | None:
 
 
 def _learning_rate(config: Config, episode: int) -> float:
-    """The learning rate after so many episodes."""
+    """Returns the learning rate after ``episode`` episodes."""
     schedule = LearningRate(config, (1, 1), 1).schedule
     for _ in range(episode):
         schedule.end_episode()
@@ -198,7 +198,7 @@ def _explained(run: Run, watcher: Watcher, index: int, columns: int | None) -> E
 
 
 def _note(algorithm: str, step: SeenStep) -> str:
-    """Returns why a step changed no value, where it changed none."""
+    """Returns the reason why a step changed no value."""
     if any(update.step != -1 for update in step.updates) or step.policy_updates:
         return ""
     if algorithm in N_STEP:
@@ -213,7 +213,7 @@ def _note(algorithm: str, step: SeenStep) -> str:
 
 
 class _Watched(gym.Wrapper[Any, Any, Any, Any]):
-    """Shows the watcher the steps of the last of so many episodes."""
+    """Reports the steps of the last of ``episodes`` episodes to the watcher."""
 
     def __init__(
         self, env: gym.Env, run: Run, watcher: Watcher, episodes: int, progress: Callable[[int], None]

@@ -16,15 +16,15 @@ class Explanation:
     episode: int
     """The number of the episode, from 0."""
     steps: tuple[ExplainedStep, ...]
-    """The steps, in their order."""
+    """The steps, in order."""
     episode_length: int
-    """The number of steps that the whole episode has."""
+    """The number of steps of the whole episode."""
     episode_return: float
     """The return of the whole episode."""
     learning_rate: float
     """The learning rate in this episode, before it is shared by the active rows or divided by the visits."""
     seconds: float = field(repr=False)
-    """How long it took to repeat the run up to the end of the episode."""
+    """The wall-clock time to repeat the run up to the end of the episode."""
 
     def __repr__(self) -> str:
         shown = f"step {self.steps[0].step}"
@@ -42,11 +42,11 @@ class Explanation:
         return self.steps[index]
 
     def __str__(self) -> str:
-        """The steps as aligned text."""
+        """Returns the steps as aligned text."""
         return text(self.heading, self.steps)
 
     def _repr_html_(self) -> str:
-        """The steps as a table, for notebooks."""
+        """HTML for notebooks: the steps as a table."""
         return html(self.heading, self.steps)
 
     @property

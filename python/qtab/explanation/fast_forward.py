@@ -1,7 +1,7 @@
-"""The start of a later episode, from Rust: the tables and the generators as the reference would have them there.
+"""The start of a later episode, from Rust: the tables and generators that the reference would have at that point.
 
-Rust trains up to the episode, which gives the tables and the environment's generator. The agent's generator is brought
-there by drawing what the policy drew: where neither values nor a model decide how much that is, no step must be taken.
+Rust trains up to the episode, which gives the tables and the environment's generator. The agent's generator skips the
+numbers that the policy drew, without taking steps, if their count depends neither on values nor on a model.
 """
 
 from dataclasses import dataclass
@@ -36,11 +36,11 @@ class Start:
     columns: tuple[int, ...]
     """The columns of the actions of the episode."""
     stream: AgentStream
-    """The agent's random numbers from there on."""
+    """The agent's random numbers from the episode on."""
 
 
 def start_of(run: Run, episode: int) -> Start | None:
-    """Returns the start of an episode; None where only the steps before it tell what the agent drew or counted."""
+    """Returns the start of an episode; None if the agent's random numbers or counts depend on the steps before it."""
     config = run.config
     by_values = (
         config.ties == "random"
@@ -74,7 +74,7 @@ def start_of(run: Run, episode: int) -> Start | None:
 
 
 def _agent_stream(run: Run, episode: int) -> AgentStream:
-    """The agent's random numbers after so many episodes: those that the tables and the policy drew are left out."""
+    """Returns the agent's random numbers after ``episode`` episodes, without those that tables and policy drew."""
     config, n_actions = run.config, len(run.actions)
     stream = agent_stream(config.seed or 0, config.bit_generator)
     if isinstance(config.initial_q, tuple):

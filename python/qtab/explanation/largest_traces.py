@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from qtab.explanation.records import Trace
 
 SHOWN_TRACES = 8
-"""The largest traces of a step are kept."""
+"""The number of traces of a step that are kept, the largest ones."""
 
 Table = NDArray[np.float64]
 
@@ -19,7 +19,7 @@ def largest_traces(
     values: Table,
     cell: Callable[[int], tuple[int, ...] | None],
 ) -> tuple[tuple[Trace, ...], int]:
-    """Returns the largest traces before an update, whose ``after`` is NaN, and the number of all that are not zero.
+    """Returns the largest traces before an update, whose ``after`` is NaN, and the number of all nonzero traces.
 
     Args:
         z: (rows, actions): the traces.

@@ -1,4 +1,4 @@
-"""How a policy gradient method changed its preferences and its state values in an update."""
+"""The updates of policy gradient methods, which change preferences and state values."""
 
 from dataclasses import dataclass
 
@@ -14,16 +14,16 @@ ERROR = {
     "actor_critic": "δ = R + γ v(S') - v(S)",
     "actor_critic_lambda": "δ = R + γ v(S') - v(S)",
 }
-"""What an action was worth, compared with what was expected."""
+"""The error of each method in symbols: the target minus the reference."""
 SYMBOL = {"gradient_bandit": "(R - R̄)", "reinforce": "G"}
-"""How the update names it, where that is not δ."""
+"""The symbol of the error in the update, where it is not δ."""
 
 
 @dataclass(frozen=True)
 class PolicyUpdate:
     """A change of the preferences of S along the gradient of ln π(A | S).
 
-    Its numbers are exact: from them follow the preferences, bit for bit.
+    Its numbers are exact: they give the preferences bit for bit.
     """
 
     step: int
@@ -39,9 +39,9 @@ class PolicyUpdate:
     bootstrap: float | None
     """v(S') in the target of an actor-critic method; None where the next state is terminal, and for others."""
     target: float
-    """What the action was worth: the reward of a bandit, the return G, or R + γ v(S')."""
+    """The reward of a bandit, the return G, or R + γ v(S')."""
     reference: float
-    """What that is compared with: the average reward R̄ of a bandit, or v(S); 0 without a baseline."""
+    """The value to compare the target with: the average reward R̄ of a bandit, or v(S); 0 without a baseline."""
     error: float
     """The target minus the reference."""
     power: float
@@ -71,7 +71,7 @@ class PolicyUpdate:
 
     @property
     def policy(self) -> str:
-        """The probabilities of all actions before and after the update."""
+        """The probabilities of all actions before and after the update, as text."""
         before, after = (
             ", ".join(f"{one:.4g}" for one in probabilities)
             for probabilities in (self.probabilities_before, self.probabilities_after)
@@ -80,7 +80,7 @@ class PolicyUpdate:
 
 
 def equations_of(config: Config, update: PolicyUpdate) -> list[tuple[str, str]]:
-    """Returns the equations of an update and their numbers. These two fields of ``update`` are not read."""
+    """Returns the equations of an update and their numbers, the two fields of ``update`` that are not read."""
     algorithm, action = config.algorithm, update.action
     if update.traces:
         # A preference changes once, however often its row is active.

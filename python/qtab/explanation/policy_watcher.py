@@ -1,4 +1,4 @@
-"""Watches the updates of policy gradient methods: what an action was worth, and how the preferences changed."""
+"""Records the updates of policy gradient methods: the error of an action, and the change of the preferences."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -22,7 +22,7 @@ Cell = tuple[int, ...] | None
 
 
 class PolicyWatcher:
-    """Makes a :class:`PolicyUpdate` from what an update shows at its beginning and at its end."""
+    """Makes a :class:`PolicyUpdate` from the values at the beginning and at the end of an update."""
 
     def __init__(self, config: Config, cell: Callable[[int], Cell]) -> None:
         self.config, self.cell = config, cell
@@ -32,7 +32,7 @@ class PolicyWatcher:
         """The reward, target and error of the next update, by the names of the fields of PolicyUpdate."""
         self._begun: PolicyUpdate
         self._largest: tuple[tuple[Trace, ...], int]
-        """The largest traces, and the number of all."""
+        """The largest traces, and the number of all traces."""
 
     def advantage(
         self,
@@ -43,7 +43,7 @@ class PolicyWatcher:
         reference: float,
         power: float,
     ) -> None:
-        """Keeps what an action was worth."""
+        """Keeps the target and the reference of an action, and their difference."""
         known = value(tables[1], list(state), 0) if self.config.algorithm in WITH_STATE_VALUES else None
         assert reported.step is not None  # noqa: S101 - no policy gradient method plans
         reward = reported.rewards[0] if reported.rewards else None
@@ -88,7 +88,7 @@ class PolicyWatcher:
         )
 
     def end(self, tables: Sequence[Table]) -> tuple[PolicyUpdate, tuple[Trace, ...], int]:
-        """Returns the update, the largest traces with what they changed, and the number of traces."""
+        """Returns the update, the largest traces with the values that they changed, and the number of traces."""
         begun, preferences = self._begun, tables[0]
         update = replace(
             begun,

@@ -1,4 +1,4 @@
-"""What an explanation holds of each step: the choice of the action, the updates, the traces."""
+"""The records of each step in an explanation: the choice of the action, the updates, the traces."""
 
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -11,7 +11,7 @@ Reason = Literal["greedy", "tie broken", "explored", "exploring start", "softmax
 
 @dataclass(frozen=True)
 class Choice:
-    """An action, and why it was chosen."""
+    """An action, and the reason why it was chosen."""
 
     action: int
     """The column of the action in the table."""
@@ -24,16 +24,16 @@ class Choice:
     """(actions,): the values that the policy compared; the sum of both tables for Double Q-learning, the bounds for
     upper confidence bounds."""
     probability: float
-    """How likely the policy was to choose this action."""
+    """The probability with which the policy chooses this action."""
     drawn: float
-    """The random number in [0, 1) that decided; NaN where none is compared: for upper confidence bounds and
-    exploring starts."""
+    """The random number in [0, 1) that decided; NaN for upper confidence bounds and exploring starts, which compare
+    none."""
     tied: int
     """The number of actions with the largest value."""
     epsilon: float | None
     """The exploration rate; None for other policies than epsilon-greedy."""
     temperature: float | None
-    """The temperature of softmax; None for others."""
+    """The temperature of softmax; None for other policies than softmax."""
     random_ties: bool
     """Whether ties are broken at random, instead of for the first action."""
 
@@ -67,13 +67,13 @@ def _told_apart(one: float, other: float) -> tuple[str, str]:
 
 @dataclass(frozen=True)
 class Update:
-    """A change of Q(S, A) towards a target. Its numbers are exact: from them follows the table, bit for bit."""
+    """A change of Q(S, A) towards a target. Its numbers are exact: they give the table bit for bit."""
 
     step: int | None
     """The step of S and A, counted from 0 in the episode: for n-step methods an earlier one. -1 is the last step of the
-    episode before, whose update differential methods make when the next one begins. None in planning."""
+    previous episode, which differential methods update when the next one begins. None in planning."""
     table: int
-    """Which table changed: 0, or 1 for the second one of Double Q-learning."""
+    """The number of the table that changed: 0, or 1 for the second one of Double Q-learning."""
     rows: tuple[int, ...]
     """(n_active,): the active rows of S."""
     cell: tuple[int, ...] | None
@@ -145,7 +145,7 @@ class ExplainedStep:
     """The action as ``env.step`` takes it."""
     action_name: str
     choice: Choice
-    """Why the action was chosen."""
+    """The choice of the action, with its reason."""
     reward: float
     """The reward of the environment."""
     bonus: float
@@ -165,10 +165,10 @@ class ExplainedStep:
     For Monte Carlo methods the update of this step, if it has one: they are made after the episode, from its last step
     to its first."""
     policy_updates: tuple[PolicyUpdate, ...]
-    """How a policy gradient method changed the preferences of the step's state: one. REINFORCE makes them after the
-    episode, from its first step to its last."""
+    """The update of a policy gradient method, which changes the preferences of the step's state. REINFORCE makes its
+    updates after the episode, from its first step to its last."""
     planning: tuple[Update, ...]
-    """The planning updates of Dyna-Q and Dyna-Q+ and those of prioritized sweeping, in their order."""
+    """The planning updates of Dyna-Q and Dyna-Q+ and those of prioritized sweeping, in order."""
     traces: tuple[Trace, ...]
     """The largest eligibility traces when the values changed, at most eight."""
     n_traces: int
@@ -179,11 +179,11 @@ class ExplainedStep:
     """G: the discounted rewards from this step on, for Monte Carlo methods and REINFORCE; None for others, and with
     off-policy Monte Carlo control before the last action that is not greedy."""
     note: str
-    """Why no value changed, where none did."""
+    """The reason why no value changed; empty if one did."""
 
     @property
     def reward_text(self) -> str:
-        """The reward, and R if a count bonus makes it differ from the reward."""
+        """The reward as text, with R if a count bonus makes it differ from the reward."""
         if not self.bonus:
             return f"{self.reward:.6g}"
         bonus = f"({self.bonus:.6g})" if self.bonus < 0 else f"{self.bonus:.6g}"
@@ -192,7 +192,7 @@ class ExplainedStep:
         )
 
     def _repr_html_(self) -> str:
-        """The step as a table, for notebooks."""
+        """HTML for notebooks: the step as a table."""
         rows: list[tuple[str, object]] = [
             ("state", self.state),
             ("action", self.action_name),
@@ -212,25 +212,25 @@ class ExplainedStep:
 
     @property
     def first_update(self) -> Update | None:
-        """The first update that is not one of the episode before; None where there is none."""
+        """The first update that does not belong to the previous episode; None if there is none."""
         return next((update for update in self.updates if update.step != -1), None)
 
     @property
     def target(self) -> float | None:
-        """The target of the first update; None where there is none."""
+        """The target of the first update; None without an update."""
         return None if self.first_update is None else self.first_update.target
 
     @property
     def td_error(self) -> float | None:
-        """The TD error of the first update; None where there is none."""
+        """The TD error of the first update; None without an update."""
         return None if self.first_update is None else self.first_update.error
 
     @property
     def before(self) -> float | None:
-        """The value before the first update; None where there is none."""
+        """The value before the first update; None without an update."""
         return None if self.first_update is None else self.first_update.before
 
     @property
     def after(self) -> float | None:
-        """The value after the first update; None where there is none."""
+        """The value after the first update; None without an update."""
         return None if self.first_update is None else self.first_update.after

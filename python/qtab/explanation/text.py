@@ -10,7 +10,7 @@ from qtab.explanation.records import ExplainedStep, Update
 SHOWN_ROWS = 4
 """With more active rows, only the first ones are listed."""
 SHOWN_PLANNING = 10
-"""Of more planning updates, only the first ones are listed."""
+"""With more planning updates, only the first ones are listed."""
 COLUMNS = ("step", "state", "action", "why", "reward", "target", "TD error", "before", "after", "equation")
 
 
@@ -30,7 +30,7 @@ def html(heading: str, steps: Sequence[ExplainedStep]) -> str:
 
 
 def details(step: ExplainedStep) -> list[tuple[str, str]]:
-    """Returns the lines of a step: what each shows, and the text."""
+    """Returns the lines of a step, each with its label."""
     lines = [
         ("state", f"{step.state}; {place(step.rows, step.cell)}"),
         ("action", f"{step.action_name}; values {', '.join(number(value) for value in step.choice.values)}"),
@@ -103,7 +103,7 @@ def place(rows: Sequence[int], cell: tuple[int, ...] | None) -> str:
 
 
 def ending(step: ExplainedStep) -> str:
-    """Returns where the step led, and whether the episode ended there."""
+    """Describes the kind of the next state, and whether the episode ended."""
     if step.terminated:
         return "a terminal state"
     where = place(step.next_rows, step.next_cell)
@@ -113,13 +113,13 @@ def ending(step: ExplainedStep) -> str:
 
 
 def steps_waiting(step: ExplainedStep) -> str:
-    """Returns which steps an n-step method has not updated yet."""
+    """Describes the steps that an n-step method has not updated yet."""
     first, last = step.pending[0], step.pending[-1]
     return f"step {first}" if first == last else f"steps {first} to {last}"
 
 
 def _cells(step: ExplainedStep) -> list[str]:
-    """The cells of a step's row in the HTML table. The equation's cell also has traces and planning updates."""
+    """Returns the cells of a step's row in HTML. The equation's cell also has traces and planning updates."""
     update = step.first_update
     numbers = ["", "", "", ""]
     if update is not None:

@@ -1,4 +1,4 @@
-"""An update from its beginning to its end."""
+"""Updates in the making: the reported target, the values before, and the finished record."""
 
 from dataclasses import dataclass
 
@@ -25,9 +25,9 @@ class Target:
     step: int | None
     """The step of S and A; None in planning."""
     rewards: tuple[float, ...]
-    """The rewards in the target; none where it is a return."""
+    """The rewards in the target; empty if the target is a return."""
     following: float | None
-    """The value that follows them; None where nothing does."""
+    """The value of the next state in the target; None if there is none."""
 
 
 @dataclass

@@ -1,4 +1,4 @@
-"""Watches a reference learner: the choices and updates of one episode."""
+"""Records the choices and updates of a reference learner in one episode."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -28,7 +28,7 @@ Cell = tuple[int, ...] | None
 
 @dataclass
 class SeenStep:
-    """What happened in a step."""
+    """The events of a step."""
 
     observation: Any
     rows: tuple[int, ...]
@@ -38,7 +38,7 @@ class SeenStep:
     terminated: bool
     truncated: bool
     bonus: float = 0.0
-    """What the learner added to the reward."""
+    """The bonus that the learner added to the reward."""
     terminal: bool = False
     """Whether the learner treated the next state as terminal, so that its value is zero."""
     updates: list[Update] = field(default_factory=list)
@@ -73,12 +73,12 @@ class Watcher(Observer):
         self._policy_watcher.masks = masks
 
     def stream(self, stream: AgentStream) -> AgentStream:
-        """Returns a stream that keeps the last number that decided."""
+        """Returns a stream that records its last random number."""
         self._stream = ObservedStream(stream, self._draws)
         return self._stream
 
     def policy(self, policy: Policy) -> Policy:
-        """Returns a policy that keeps what it chooses."""
+        """Returns a policy that records its choices."""
         self._policy = self._policy_watcher.policy = policy
         self._skip(policy)
         return ObservedPolicy(policy, self._chose)
@@ -129,7 +129,7 @@ class Watcher(Observer):
             self.choices.append(exploring_start(self._policy, values, action, valid))
 
     def advantage(self, state: Sequence[int], target: float, reference: float, power: float) -> None:
-        """Keeps what an action was worth."""
+        """Keeps the target and the reference of an action."""
         if self.active:
             self._policy_watcher.advantage(self._reported(), self.tables, state, target, reference, power)
 
@@ -147,7 +147,7 @@ class Watcher(Observer):
             self._policy_watcher.begin(H, state, action, step_size, gradient, z)
 
     def after_ascent(self, H: Table) -> None:  # noqa: N803, ARG002
-        """Ends it."""
+        """Ends the update of preferences."""
         if self.active:
             update, traces, n_traces = self._policy_watcher.end(self.tables)
             seen = self.steps[update.step]
@@ -171,7 +171,7 @@ class Watcher(Observer):
             seen.traces, seen.n_traces = largest_traces(z, self.tables[0], self.cell)
 
     def after_update(self, Q: Table, step_sizes: Sequence[float] | None) -> None:  # noqa: N803
-        """Ends it."""
+        """Ends the update."""
         if not self.active:
             return
         unfinished, seen = self._unfinished, self.steps[-1] if self.steps else None

@@ -1,4 +1,4 @@
-"""Observations in words, for the environments whose meaning is known."""
+"""Observations in words, for environments with a known meaning."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -12,7 +12,7 @@ _PLACES = ("red", "green", "yellow", "blue")
 
 
 def state_in_words(known: Description, observation: Any, columns: int | None = None) -> str:
-    """Returns an observation in words: its components by name, or a place on a map of so many columns."""
+    """Returns an observation in words: its components by name, or a place on a map with ``columns`` columns."""
     if columns is not None:
         return f"row {int(observation) // columns}, column {int(observation) % columns}"
     if isinstance(observation, Mapping) or (isinstance(observation, tuple) and any(map(_has_parts, observation))):
@@ -39,7 +39,7 @@ def map_columns(env: gym.Env) -> int | None:
 
 
 def _taxi(state: int) -> str:
-    """Taxi's encoding: ((row * 5 + column) * 5 + passenger) * 4 + destination."""
+    """Describes a state of Taxi, encoded as ((row * 5 + column) * 5 + passenger) * 4 + destination."""
     place, passenger, destination = state // 20, state // 4 % 5, state % 4
     where = f"at {_PLACES[passenger]}" if passenger < len(_PLACES) else "in the taxi"
     return f"taxi in row {place // 5}, column {place % 5}, passenger {where}, destination {_PLACES[destination]}"
