@@ -1,7 +1,7 @@
 """Statistics of scores on several environments, as in rliable (Agarwal et al., 2021).
 
-All of them let every environment count the same, also one with fewer runs: a run has the weight 1 / (number of runs on
-its environment). With equal numbers of runs, which rliable requires, this makes no difference.
+Every environment has the same weight, even one with fewer runs: a run has the weight 1 / (number of runs on its
+environment). With equal numbers of runs, which rliable requires, this makes no difference.
 """
 
 from collections.abc import Callable, Mapping
@@ -34,7 +34,7 @@ def _iqm(*samples: NDArray[np.float64]) -> float:
     order = np.argsort(values, kind="stable")
     values, weights = values[order], weights[order]
     most = TRIM_FRACTION * len(samples) + ROUNDING
-    # As without weights, a value on the border of a quarter is kept whole.
+    # As without weights, all of a value on the border of a quarter is kept.
     is_kept = (np.cumsum(weights) > most) & (np.cumsum(weights[::-1])[::-1] > most)
     return float(np.average(values[is_kept], weights=weights[is_kept]))
 
@@ -55,11 +55,11 @@ def aggregate(
 ) -> Interval:
     """Returns an aggregate over environments with its stratified bootstrap interval.
 
-    Every environment counts the same, whatever its number of runs. The interquartile mean leaves out the lowest and the
-    highest quarter of the runs of all environments, weighted in this way.
+    Every environment has the same weight, whatever its number of runs. The interquartile mean leaves out the lowest and
+    the highest quarter of the runs of all environments, weighted in this way.
 
     The bootstrap is stratified: it resamples the runs of each environment separately. With few runs of few
-    environments it is too narrow, as every bootstrap interval: see :func:`mean` and :func:`iqm` for measured figures.
+    environments it is too narrow, like every bootstrap interval: see :func:`mean` and :func:`iqm` for measured figures.
 
     Args:
         scores: The normalized scores of each environment by name, (runs,) each, or an array (runs, environments); at
@@ -87,7 +87,7 @@ def optimality_gap(
 ) -> Interval:
     """Returns the mean amount by which scores fall short of ``best``, with its stratified bootstrap interval.
 
-    Scores above ``best`` count as ``best``, and every environment counts the same, whatever its number of runs. See
+    Scores above ``best`` count as ``best``, and every environment has the same weight, whatever its number of runs. See
     :func:`aggregate` for the other arguments.
 
     Raises:

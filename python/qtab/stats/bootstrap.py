@@ -14,7 +14,7 @@ from qtab.stats.interval import Interval
 MAX_RESAMPLES = 1_000_000
 """The maximum number of resamples: more would not change the first three digits of a bound."""
 BATCH_VALUES = 2**22
-"""The number of resampled values that are in memory at a time."""
+"""The number of resampled values to hold in memory at a time."""
 
 
 def as_sample(name: str, values: ArrayLike) -> NDArray[np.float64]:
@@ -83,7 +83,7 @@ def stratified_bootstrap(
 
     Args:
         samples: (runs,) each: at least two numbers.
-        statistic: Maps as many samples to a number.
+        statistic: Maps the samples to a number.
         confidence: The coverage probability of the interval, between 0 and 1.
         resamples: The number of resamples.
         seed: Seeds the resampling.

@@ -25,27 +25,27 @@ class Comparison:
     better: float
     """The proportion of pairs in which ``a`` is larger; ties count half."""
     p_value: float
-    """The p-value of the two-sided permutation test: how often randomly swapping the values within the pairs gives a
-    mean difference at least as large."""
+    """The p-value of the two-sided permutation test: the proportion of random swaps within the pairs that give a mean
+    difference at least as large."""
     pairs: int
     """The number of pairs."""
     resamples: int = RESAMPLES
-    """The number of permutations that the test drew at random; with fewer than that in all, it tried each of them."""
+    """The number of permutations that the test drew at random; if there are no more in all, it tried each of them."""
 
     @property
     def smallest_p_value(self) -> float:
-        """The smallest p-value that the test can give: that of differences which all have the same sign.
+        """The smallest p-value that the test can give, which is that of differences with the same sign.
 
         It is 2 / 2**pairs if the test tried all permutations, else 2 / (resamples + 1).
         """
         return 2.0 / min(1 << self.pairs, self.resamples + 1)
 
     def __repr__(self) -> str:
-        """One line."""
+        """Returns one line."""
         return f"<Comparison: {self}>"
 
     def _repr_html_(self) -> str:
-        """A table, for notebooks."""
+        """HTML for notebooks: a table."""
         effect = "none: all differences are equal" if self.effect_size is None else f"{self.effect_size:.3g}"
         facts = {
             "mean difference, a - b": f"{self.difference}",
@@ -69,7 +69,7 @@ class Comparison:
 
     @property
     def _limit(self) -> str:
-        """What bounds the p-value from below."""
+        """The number of pairs or permutations that limits the p-value, as text."""
         return f"{self.pairs} pairs" if 2**self.pairs <= self.resamples else f"{self.resamples} permutations"
 
 
@@ -83,7 +83,7 @@ def compare(
         b: (runs,): the same for the second setting; ``b[i]`` has the same seed as ``a[i]``.
         confidence: The coverage probability of the interval, between 0 and 1.
         resamples: The number of permutations that the test draws, at most a million; it tries all of them if there are
-            not more.
+            no more.
         seed: Seeds the test.
 
     Raises:

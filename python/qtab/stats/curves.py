@@ -32,12 +32,12 @@ def episodes_to_threshold(returns: ArrayLike, threshold: float, *, window: int =
     """Returns (runs,): the number of episodes after which the mean of the last ``window`` returns reaches a threshold.
 
     It is infinite for a run that never reaches the threshold: ``np.median`` then treats it as the slowest, and
-    ``stats.rate(np.isfinite(episodes).sum(), len(episodes))`` tells how many reach it.
+    ``stats.rate(np.isfinite(episodes).sum(), len(episodes))`` is the proportion of runs that reach it.
 
     Args:
         returns: (runs, episodes), such as ``runs.episode_returns``.
         threshold: The mean return to reach.
-        window: The number of episodes that the mean is taken over.
+        window: The number of episodes in the mean.
 
     Raises:
         TypeError: for an argument of the wrong type.
@@ -69,7 +69,7 @@ def curve(
 
     Args:
         returns: (runs, episodes), such as ``runs.episode_returns``; at least two runs.
-        block: The number of episodes in a block. A run enters with its mean return in the block.
+        block: The number of episodes in a block. A run counts with its mean return in the block.
         statistic: ``"mean"``, ``"median"`` or ``"iqm"``.
         confidence: The coverage probability of the intervals, between 0 and 1.
         resamples: The number of bootstrap resamples, at most a million.

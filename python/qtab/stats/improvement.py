@@ -21,7 +21,7 @@ def probability_of_improvement(
     resamples: int = AGGREGATE_RESAMPLES,
     seed: int = 0,
 ) -> Interval:
-    """Returns how probable it is that a run of ``a`` scores higher than a run of ``b``, averaged over environments.
+    """Returns the probability that a run of ``a`` scores higher than a run of ``b``, averaged over environments.
 
     All runs of ``a`` are compared with all runs of ``b`` on the same environment; ties count half. 0.5 means that
     neither is better. The interval is the stratified bootstrap's, as in rliable. Unlike :func:`compare`, it does not

@@ -11,14 +11,14 @@ class Interval:
     low: float
     high: float
     confidence: float
-    """The coverage probability: how often such an interval is meant to contain the true value."""
+    """The nominal coverage: the probability with which such an interval contains the true value."""
     method: str
     """``"t"`` (Student's), ``"BCa"``, ``"percentile"`` (where BCa has no finite bounds), ``"stratified percentile"``,
-    ``"constant"`` (all values equal: the width of zero only says that the sample shows no variation), ``"Wilson"`` or
+    ``"constant"`` (all values equal: the width of zero only means that the sample shows no variation), ``"Wilson"`` or
     ``"order statistics"``."""
 
     def __repr__(self) -> str:
-        """One line, with six digits."""
+        """Returns one line, with six digits."""
         return f"<Interval {self}, {100 * self.confidence:g} %, {self.method}>"
 
     def __str__(self) -> str:

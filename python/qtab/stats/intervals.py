@@ -19,8 +19,8 @@ TRIM_FRACTION = 0.25
 def mean(values: ArrayLike, *, confidence: float = CONFIDENCE, resamples: int = RESAMPLES, seed: int = 0) -> Interval:
     """Returns the mean with Student's t interval.
 
-    The interval assumes that means of so many runs are about normally distributed. The bootstrap's does not, and is too
-    narrow. Measured coverage of 95 % intervals with t, and with the BCa bootstrap in brackets:
+    The interval assumes that the mean of the runs is about normally distributed. The bootstrap interval does not, and
+    is too narrow. Measured coverage of 95 % intervals with t, and with the BCa bootstrap in parentheses:
 
     ====================================================  ============  ============  ============  ============
     runs                                                  5             10            30            50
@@ -31,8 +31,8 @@ def mean(values: ArrayLike, *, confidence: float = CONFIDENCE, resamples: int = 
     exponential (2)                                       88.3 (79.7)   90.1 (87.5)   92.7 (92.2)   93.5 (93.5)
     ====================================================  ============  ============  ============  ============
 
-    With two or three runs the interval is wide, and rightly so. No interval can tell of a kind of run, such as a rare
-    failure, that the sample does not contain.
+    With two or three runs the interval is wide, as it should be. No interval can account for a kind of run, such as a
+    rare failure, that the sample does not contain.
 
     Args:
         values: (runs,): one number per run, such as ``runs.final_returns()``; at least two.
@@ -64,7 +64,7 @@ def t_intervals(samples: NDArray[np.float64], confidence: float) -> list[Interva
     """
     confidence, runs = as_confidence(confidence), len(samples)
     half_widths = stats.t.ppf((1 + confidence) / 2, runs - 1) * samples.std(axis=0, ddof=1) / np.sqrt(runs)
-    is_constant = np.ptp(samples, axis=0) == 0  # of equal numbers, the computed deviation may differ from 0
+    is_constant = np.ptp(samples, axis=0) == 0  # the computed deviation of equal numbers may differ from 0
     return [
         Interval(estimate, estimate, estimate, confidence, "constant")
         if constant
@@ -87,8 +87,8 @@ def iqm(values: ArrayLike, *, confidence: float = CONFIDENCE, resamples: int = R
     """Returns the interquartile mean, which is the mean of the middle half, with its bootstrap interval.
 
     See :func:`mean` for the arguments. Source: Agarwal et al., "Deep reinforcement learning at the edge of the
-    statistical precipice" (2021). Measured coverage of 95 % intervals, for the
-    distributions listed there: 88 % to 90 % with 5 runs, and 93 % to 95 % with 10 or more.
+    statistical precipice" (2021). Measured coverage of 95 % intervals, for the distributions listed there: 88 % to 90 %
+    with 5 runs, and 93 % to 95 % with 10 or more.
     """
     return bootstrap(as_sample("values", values), interquartile_mean, confidence, resamples, seed)
 
@@ -101,19 +101,18 @@ def interquartile_mean(values: NDArray[np.float64], axis: int | None = None) -> 
 def tolerance_interval(values: ArrayLike, *, coverage: float = 0.9, confidence: float = CONFIDENCE) -> Interval:
     """Returns bounds that, with the given confidence, contain at least the fraction ``coverage`` of all runs.
 
-    The interval makes no assumption on the distribution. Its bounds are two values of the sample, whose ranks follow
+    The interval makes no assumption about the distribution. Its bounds are two values of the sample, whose ranks follow
     from the beta distribution of the probability between two order statistics (Wilks, 1941). ``estimate`` is the
     median of the sample.
 
     Args:
         values: (runs,): one number per run.
-        coverage: The fraction of runs that the interval is to contain, in [0, 1].
+        coverage: The fraction of runs that the interval should contain, in [0, 1].
         confidence: The probability that it does, between 0 and 1.
 
     Raises:
         TypeError: for an argument of the wrong type.
-        ValueError: for an argument out of range, or a sample that is too small; the message says how many values are
-            needed.
+        ValueError: for an argument out of range, or a sample that is too small; the message names the size needed.
     """
     ordered = np.sort(arrays.sample("values", values))
     coverage = checks.real("coverage", coverage, 0, 1)
@@ -135,7 +134,7 @@ def tolerance_interval(values: ArrayLike, *, coverage: float = 0.9, confidence: 
 
 
 def _sample_size(coverage: float, confidence: float) -> str:
-    """Returns the smallest sample size that has such an interval."""
+    """Returns the smallest sample size for which the interval exists."""
     counts = np.arange(2, 100_000)
     is_enough = stats.beta.sf(coverage, counts - 1, 2) >= confidence
     return str(counts[np.argmax(is_enough)]) if is_enough.any() else "more than 100,000"

@@ -63,8 +63,8 @@ def profile(
     samples = as_samples("scores", scores, least=2)
     confidence, resamples = as_confidence(confidence), as_resamples(resamples)
     rng = np.random.default_rng(checks.integer("seed", seed, least=0))
-    # All resamples of a threshold are needed at once for its quantiles, so that few thresholds at a time bound the
-    # memory. The same resamples are drawn again each time.
+    # The quantiles of a threshold need all of its resamples at once, so thresholds are processed in small batches to
+    # bound the memory. The same resamples are drawn again for each batch.
     state = rng.bit_generator.state
     columns = max(1, BATCH_VALUES // max(resamples, *map(len, samples)))
     tails = [(1 - confidence) / 2, (1 + confidence) / 2]
@@ -87,7 +87,7 @@ def _resampled(above: list[NDArray[np.float64]], resamples: int, rng: np.random.
     block = max(1, _BLOCK_OPERATIONS // (max(map(len, above)) * max(above[0].shape[1], 512)))
     for first in range(0, resamples, block):
         count = min(block, resamples - first)
-        # How often each run is drawn: in all as often as there are runs.
+        # The number of times that each run is drawn; in total, the number of runs.
         drawn = (
             rng.multinomial(len(environment), np.full(len(environment), 1 / len(environment)), count) @ environment
             for environment in above

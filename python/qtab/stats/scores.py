@@ -1,4 +1,4 @@
-"""Scores on several environments: how functions take them."""
+"""Scores on several environments, as arguments of functions."""
 
 from collections.abc import Mapping
 from typing import TypeAlias
@@ -18,7 +18,7 @@ def as_samples(name: str, scores: Scores, least: int = 1) -> list[NDArray[np.flo
     Args:
         name: The name of the argument.
         scores: Its value.
-        least: The smallest number of runs of each environment; 2 where an interval is wanted.
+        least: The smallest number of runs of each environment; 2 for an interval.
 
     Raises:
         TypeError: if the scores are not numbers.
