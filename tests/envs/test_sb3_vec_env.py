@@ -144,7 +144,7 @@ def test_frames():
         ({"env": "CartPole"}, ValueError, r"name must be one of .*, got 'CartPole' \(did you mean"),
         ({"env": "Taxi-v4", "num_envs": 0}, ValueError, "num_envs must be"),
         ({"env": "Taxi-v4", "seed": -1}, ValueError, "seed must be"),
-        ({"env": "Taxi-v4", "autoreset_mode": "Disabled"}, TypeError, "autoreset_mode must be left out: .* decides it"),
+        ({"env": "Taxi-v4", "autoreset_mode": "Disabled"}, TypeError, "autoreset_mode must be left out: .* sets it"),
         ({"env": "Taxi-v4", "copy": False}, TypeError, "copy must be left out"),
     ],
 )

@@ -4,8 +4,8 @@
 
     model = PPO("MlpPolicy", qtab.sb3.VecEnv("CartPole-v1", num_envs=8), seed=0).learn(100_000)
 
-The other direction needs nothing from here: ``evaluate_policy(run, env)`` of Stable-Baselines3 takes a
-:class:`qtab.Run`, whose ``predict`` has the signature of its models.
+The other direction needs no adapter: ``evaluate_policy(run, env)`` of Stable-Baselines3 accepts a :class:`qtab.Run`,
+whose ``predict`` has the signature of Stable-Baselines3's models.
 """
 
 from typing import TYPE_CHECKING

@@ -14,7 +14,7 @@ from qtab.envs.vector import RustVectorEnv
 from qtab.sb3.infos import info_rows
 
 _CONSTANT = ("action_space", "metadata", "observation_space", "render_mode", "spec")
-"""Attributes that all sub-environments share, whose reading leaves the sub-environments in Rust."""
+"""Attributes that all sub-environments share; reading them does not switch to Python stepping."""
 
 
 class VecEnv(StableBaselines3VecEnv):  # type: ignore[misc]
@@ -22,10 +22,10 @@ class VecEnv(StableBaselines3VecEnv):  # type: ignore[misc]
 
     It equals ``DummyVecEnv([lambda: gymnasium.make(id)] * num_envs)`` bit for bit: observations, float32 rewards, dones
     and infos, with ``terminal_observation`` and ``TimeLimit.truncated``, seeds and ``reset_infos``. ``VecMonitor`` and
-    the other wrappers of Stable-Baselines3 go around it.
+    the other wrappers of Stable-Baselines3 can wrap it.
 
     ``env_method``, ``set_attr`` and attributes that differ between sub-environments switch to Python stepping. Unlike
-    ``DummyVecEnv``, ``set_attr`` sets an attribute where it is, instead of on the outermost wrapper.
+    ``DummyVecEnv``, ``set_attr`` sets an attribute on the layer that has it, not on the outermost wrapper.
 
     Args:
         env: The id of the environment, Gymnasium's or the one with the prefix ``qtab/``.
@@ -52,7 +52,7 @@ class VecEnv(StableBaselines3VecEnv):  # type: ignore[misc]
     ) -> None:
         for name in ("autoreset_mode", "copy"):
             if name in kwargs:
-                raise TypeError(f"{name} must be left out: Stable-Baselines3 decides it, got {kwargs[name]!r}")
+                raise TypeError(f"{name} must be left out: Stable-Baselines3 sets it, got {kwargs[name]!r}")
         self.venv = RustVectorEnv(
             env, num_envs, max_episode_steps, autoreset_mode=AutoresetMode.SAME_STEP, threads=threads, **kwargs
         )
@@ -79,7 +79,7 @@ class VecEnv(StableBaselines3VecEnv):  # type: ignore[misc]
         return observations
 
     def _reset_one_by_one(self) -> tuple[Any, dict[str, Any]]:
-        """Resets each sub-environment with its own options; all of them must have been reset for that."""
+        """Resets each sub-environment with its own options; all of them must have been reset before."""
         missing = np.isin(np.arange(self.num_envs), self.venv.not_reset())
         if missing.any():
             self.venv.reset(options={"reset_mask": missing})
@@ -102,7 +102,7 @@ class VecEnv(StableBaselines3VecEnv):  # type: ignore[misc]
 
         Returns:
             Observations (num_envs, …), rewards (num_envs,) float32, dones (num_envs,) bool, and an info for each.
-            Where an episode ended, the observation is the first of the next, and the info that of the last step.
+            Where an episode ended, the observation is the first of the next one, and the info is that of the last step.
         """
         observations, rewards, terminated, truncated, infos = self.venv.step(self._actions)
         last_observations = infos.pop("final_obs", None)
@@ -123,7 +123,7 @@ class VecEnv(StableBaselines3VecEnv):  # type: ignore[misc]
         self.venv.close()
 
     def get_images(self) -> Sequence[NDArray[Any] | None]:
-        """Returns a frame of each sub-environment, where ``render_mode`` is "rgb_array"."""
+        """Returns a frame of each sub-environment if ``render_mode`` is "rgb_array"."""
         if self.render_mode != "rgb_array":
             warnings.warn(f"frames need render_mode='rgb_array', got {self.render_mode!r}", stacklevel=2)
             return [None] * self.num_envs
@@ -137,7 +137,7 @@ class VecEnv(StableBaselines3VecEnv):  # type: ignore[misc]
         """
         example = self.venv.example
         if self.venv.is_native and not example.has_wrapper_attr(attr_name):
-            # Only a reset makes some attributes. Stable-Baselines3 asks for others to learn whether they are there.
+            # Some attributes exist only after a reset; Stable-Baselines3 asks for others to see whether they exist.
             attributes, *_ = self.venv.snapshots()[0]
             if attr_name not in attributes or self.venv.not_reset():
                 raise AttributeError(f"{self.venv} has no attribute {attr_name!r}")
