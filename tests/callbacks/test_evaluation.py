@@ -43,7 +43,7 @@ def test_an_environment_of_ones_own_is_evaluated_in_another_one():
         qtab.train(Walk(), callback=EvaluateEvery(), **chosen)
     trained, other = Walk(), Walk()
     same = gym.wrappers.TimeLimit(trained, 5)
-    with pytest.raises(ValueError, match=r"^env must be another environment than the one that is trained in"):
+    with pytest.raises(ValueError, match=r"^env must not be the environment that is trained in"):
         qtab.train(trained, callback=KeepBest(env=same), **chosen)
     evaluation = EvaluateEvery(episodes=2, every=3, env=other)
     qtab.train(trained, callback=evaluation, **chosen)

@@ -1,10 +1,10 @@
-"""Callbacks for :func:`qtab.train`: they save, log, evaluate, stop and draw, and leave the run's numbers as they are.
+"""Callbacks for :func:`qtab.train`: they save, log, evaluate, stop and draw, and do not change the run's numbers.
 
     from qtab.callbacks import Checkpoint, CSVLogger, StopAtReturn
 
     qtab.train("MountainCar-v0", callback=[Checkpoint("run.npz"), CSVLogger("log.csv"), StopAtReturn(-110)])
 
-One class in each file; they load when they are first used.
+Each class is in a separate file, which loads on first use.
 """
 
 import importlib as _importlib
@@ -22,7 +22,7 @@ _MODULES = {
 }
 
 if TYPE_CHECKING:
-    # The table again, in the only form that editors and type checkers read. A test compares the two.
+    # The same table in the only form that editors and type checkers read. A test compares the two.
     from qtab.callbacks.checkpoint import Checkpoint as Checkpoint
     from qtab.callbacks.csv_logger import CSVLogger as CSVLogger
     from qtab.callbacks.evaluate_every import EvaluateEvery as EvaluateEvery

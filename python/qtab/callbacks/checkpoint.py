@@ -30,11 +30,11 @@ class Checkpoint(BaseCallback):
         every: The number of episodes between two checkpoints; None takes ``callback_every``.
         numbered: Whether to keep the earlier ones too, with the number of episodes in the name:
             ``run-1000.npz``, ``run-2000.npz``.
-        keep: How many of the numbered files to keep, the last ones; None keeps all. Those of the earlier part of a
-            resumed run count.
+        keep: The number of numbered files to keep, the last ones; None keeps all. Files of the earlier part of a
+            resumed run count too.
 
     Attributes:
-        saved: The files of this run that are there, oldest first.
+        saved: The existing files of this run, oldest first.
 
     Raises:
         TypeError: for an argument of the wrong type.
@@ -60,7 +60,7 @@ class Checkpoint(BaseCallback):
         self.saved: list[Path] = []
 
     def on_start(self, config: Config, env: gym.Env | None) -> None:  # noqa: ARG002
-        """Begins anew.
+        """Starts without saved files.
 
         Raises:
             OSError: if the file cannot be written.
@@ -86,7 +86,7 @@ class Checkpoint(BaseCallback):
                 yield int(number), path
 
     def __call__(self, progress: Progress) -> None:
-        """Saves the run, and removes the files that are too many."""
+        """Saves the run, and removes the oldest files beyond ``keep``."""
         target = self._target(progress)
         progress.run.save(target)
         self.saved = [path for path in self.saved if path != target] + [target]
@@ -106,7 +106,7 @@ def first_part(path: Path, run: "Run") -> "Run | None":
     """Returns the run in a file if it holds the first episodes of a run; None for any other file."""
     from qtab.results.loading import load
 
-    # A file does not hold the functions of its run.
+    # A file does not store the functions of its run.
     functions: dict[str, Any] = {
         name: setting for name in ("discretizer", "action_mask") if callable(setting := getattr(run.config, name))
     }

@@ -14,20 +14,20 @@ from qtab.training.progress import Progress
 
 
 class CSVLogger(MetricsLogger):
-    """Writes a line of numbers at intervals and at the end, each of which can be read at once.
+    """Writes a line of numbers at intervals and at the end, and flushes the file after each.
 
-    The first line has the names: ``episodes``, the number of finished ones, and the metrics. Numbers have all their
-    digits; a cell without a value is empty. A file that is there already is replaced; when a run is resumed, its
-    lines for the episodes that the run had finished are kept.
+    The first line has the names of the columns: ``episodes``, the number of finished episodes, and the metrics. Numbers
+    have all their digits; a cell without a value is empty. An existing file is replaced; when a run is resumed, the
+    lines for the episodes that it had finished are kept.
 
     Args:
         path: The file, such as ``"log.csv"``.
         every: The number of episodes between two lines; None takes ``callback_every``.
-        metrics: The names of what to write, in this order: among ``"steps"`` and ``"seconds"`` since the run began,
+        metrics: The names of the metrics to write, in this order: ``"steps"`` and ``"seconds"`` since the run began,
             ``"mean_return"`` and ``"mean_length"`` of the episodes since the last line, and ``"epsilon"`` and
             ``"learning_rate"`` of the last episode. None writes all of them.
         evaluation: A callback that evaluates the run, whose mean returns are the column ``evaluation_return``. It
-            belongs before the logger in the list of callbacks.
+            must come before the logger in the list of callbacks.
 
     Raises:
         TypeError: for an argument of the wrong type.
@@ -69,7 +69,7 @@ class CSVLogger(MetricsLogger):
         return ["episodes", *self.metrics, *([EVALUATION] if self.evaluation else [])]
 
     def _lines(self, finished: int) -> list[list[str]]:
-        """The lines of the file up to a number of finished episodes, without the names; none if there is no file."""
+        """Returns the lines of the file up to ``finished`` episodes, without the names; none if there is no file."""
         if not self.path.is_file():
             return []
         # The last line may have been cut off when the process was killed.

@@ -1,4 +1,4 @@
-"""``EvaluateEvery``: how good the greedy policy is, again and again during a run."""
+"""``EvaluateEvery``: evaluates the greedy policy at intervals during a run."""
 
 from bisect import bisect_right
 from typing import TYPE_CHECKING
@@ -21,21 +21,20 @@ if TYPE_CHECKING:
 class EvaluateEvery(BaseCallback):
     """Plays episodes with the greedy policy, without exploration and without learning, at intervals and at the end.
 
-    They take place in an environment of their own with a random generator of its own: the run is, bit for bit, the
-    one that it would be without them.
+    They use a separate environment with a separate random generator: the run is the same as without them, bit for bit.
 
-    Where a run is resumed with the object that evaluated its earlier part, the evaluations are continued. Another
-    object has those of the resumed part only.
+    If a run is resumed with the object that evaluated its earlier part, the evaluations continue. A new object has
+    only those of the resumed part.
 
     Args:
         episodes: The number of episodes of each evaluation.
         every: The number of training episodes between two evaluations; None takes ``callback_every``.
-        seed: The seed of the environment, the same in every evaluation, so that they differ by the policy alone. None
+        seed: The seed of the environment, the same in every evaluation, so that only the policy differs. None
             derives one from the seed of the run.
         env: The environment to evaluate in; None makes the run's again, with its wrappers and changed attributes.
 
     Attributes:
-        evaluated_at: For each evaluation the number of finished training episodes.
+        evaluated_at: The number of finished training episodes at each evaluation.
         evaluations: The evaluations, in the same order.
 
     Raises:
@@ -60,7 +59,7 @@ class EvaluateEvery(BaseCallback):
         self.evaluated_at: list[int] = []
         self.evaluations: list[Evaluation] = []
         self._config: Config | None = None
-        """That of the run that was evaluated last."""
+        """The config of the run that was evaluated last."""
 
     @property
     def mean_returns(self) -> NDArray[np.float64]:
@@ -68,16 +67,16 @@ class EvaluateEvery(BaseCallback):
         return np.array([evaluation.mean_return for evaluation in self.evaluations], dtype=np.float64)
 
     def on_start(self, config: Config, env: gym.Env | None) -> None:
-        """Begins anew.
+        """Discards the evaluations of an earlier run.
 
         Raises:
-            ValueError: if there is no environment to evaluate in other than the one that is trained in.
+            ValueError: if there is no environment to evaluate in except the one that is trained in.
         """
         self.evaluated_at, self.evaluations, self._config = [], [], config
         if self.env is None:
             _require_another(config)
         elif env is not None and self.env.unwrapped is env.unwrapped:
-            raise ValueError("env must be another environment than the one that is trained in, got the same one")
+            raise ValueError("env must not be the environment that is trained in, got the same one")
 
     def on_resume(self, config: Config, env: gym.Env | None, earlier: "Run") -> None:
         """Continues the evaluations of the earlier part, up to its last episode, if this object made them.
@@ -112,6 +111,6 @@ def _require_another(config: Config) -> None:
 
 
 def _evaluation_seed(config: Config) -> int:
-    """A seed that depends on the run's, whose bits are unrelated to it."""
+    """Returns a seed that is derived from the run's seed, with unrelated bits."""
     child = np.random.SeedSequence(config.seed).spawn(1)[0]
     return int(child.generate_state(1)[0])

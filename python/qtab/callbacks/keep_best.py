@@ -1,4 +1,4 @@
-"""``KeepBest``: the table of the best evaluation."""
+"""``KeepBest``: keeps the run as it was at the best evaluation."""
 
 import os
 from pathlib import Path
@@ -22,15 +22,15 @@ class KeepBest(EvaluateEvery):
     The mean return of the best of many evaluations is too optimistic: report that of a new :func:`qtab.evaluate`.
 
     Args:
-        path: A file to save it to, whenever there is a better one; None does not save it.
+        path: The file to save the run to, whenever there is a better one; None does not save it.
         episodes: The number of episodes of each evaluation.
         every: The number of training episodes between two evaluations; None takes ``callback_every``.
         seed: The seed of the environment, as for :class:`EvaluateEvery`.
         env: The environment to evaluate in, as for :class:`EvaluateEvery`.
 
     Attributes:
-        run: The run as it was at the evaluation with the highest mean return, the first of several; its ``q_table``
-            and :func:`qtab.evaluate` are those of that time. None before the first evaluation.
+        run: The run as it was at the evaluation with the highest mean return, the first if several are equal; its
+            ``q_table`` and :func:`qtab.evaluate` are those of that time. None before the first evaluation.
         best_return: The mean return of that evaluation; None before the first one.
 
     Raises:
@@ -53,11 +53,11 @@ class KeepBest(EvaluateEvery):
         self.best_return: float | None = None
 
     def on_start(self, config: Config, env: gym.Env | None) -> None:
-        """Begins anew.
+        """Discards the evaluations and the best run of an earlier run.
 
         Raises:
             OSError: if the file cannot be written.
-            ValueError: if there is no environment to evaluate in other than the one that is trained in.
+            ValueError: if there is no environment to evaluate in except the one that is trained in.
         """
         super().on_start(config, env)
         if self.path is not None:
@@ -65,7 +65,7 @@ class KeepBest(EvaluateEvery):
         self.run = self.best_return = None
 
     def on_resume(self, config: Config, env: gym.Env | None, earlier: "Run") -> None:
-        """Continues with the best run of the earlier part, where this object or its file holds it; else begins anew.
+        """Continues with the best run of the earlier part, if this object or its file holds it; else without one.
 
         Raises:
             OSError: if the file cannot be written.

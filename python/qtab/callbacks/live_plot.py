@@ -22,8 +22,8 @@ class LivePlot(BaseCallback):
     Outside of a notebook it does nothing.
 
     Args:
-        every: The number of episodes between two looks at the clock; None takes ``callback_every``.
-        seconds: The least wall-clock time between two pictures. Drawing one takes about a tenth of a second.
+        every: The number of episodes between two checks of the time; None takes ``callback_every``.
+        seconds: The minimum time between two pictures, in seconds. Drawing one takes about a tenth of a second.
 
     Raises:
         TypeError: for an argument of the wrong type.
@@ -58,7 +58,7 @@ class LivePlot(BaseCallback):
             self._show()
 
     def on_end(self) -> None:
-        """Draws the end of the run, also where another callback stopped it."""
+        """Draws the end of the run, even if another callback stopped it."""
         if self._waiting is not None and self._waiting.is_current:
             self._show()
 
@@ -82,7 +82,7 @@ def _picture(progress: Progress) -> bytes:
 
     figure = Figure(figsize=(8, 4.5), layout="constrained")
     ax = plot(progress.run, figure.subplots())
-    ax.set_xlim(0, progress.total)  # the curve grows, and the axis stays
+    ax.set_xlim(0, progress.total)  # the axis stays the same while the curve grows
     written = io.BytesIO()
     figure.savefig(written, format="png", dpi=DOTS_PER_INCH)
     return written.getvalue()

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class _Interval:
-    """The episodes since the last time that a logger wrote."""
+    """The episodes since a logger last wrote."""
 
     progress: Progress
     returns: NDArray[np.float64]
@@ -39,17 +39,17 @@ METRICS: Mapping[str, Callable[[_Interval], float | int | None]] = {
 exploration rate and learning rate of the last episode."""
 
 EVALUATION = "evaluation_return"
-"""The mean return of an evaluation, for a logger that was given one."""
+"""The name of the mean return of an evaluation, for a logger with ``evaluation``."""
 
 
 class MetricsLogger(BaseCallback):
-    """What the loggers have in common: they compute the same metrics, and write them to different places.
+    """The base class of the loggers, which compute the same metrics and write them to different places.
 
     Args:
         every: The number of episodes between two lines; None takes ``callback_every``.
-        metrics: The names of what to write, in this order.
-        evaluation: A callback that evaluates the run, whose mean returns are written too. It belongs before the logger
-            in the list of callbacks.
+        metrics: The names of the metrics to write, in this order.
+        evaluation: A callback that evaluates the run, whose mean returns are written too. It must come before the
+            logger in the list of callbacks.
 
     Raises:
         TypeError: for an argument of the wrong type.
@@ -84,7 +84,7 @@ class MetricsLogger(BaseCallback):
         self._start(config, len(earlier.episode_returns))
 
     def _start(self, config: Config, finished: int) -> None:  # noqa: ARG002
-        """Begins a log, or continues that of so many finished episodes."""
+        """Begins a log, or continues one after ``finished`` episodes."""
         # An evaluation callback, which comes before the logger, has continued its evaluations already.
         self._evaluations = len(self.evaluation.evaluations) if finished and self.evaluation else 0
         self._episodes = finished
@@ -99,13 +99,13 @@ class MetricsLogger(BaseCallback):
         return values
 
     def _last_evaluation(self, callback: EvaluateEvery) -> float | None:
-        """The mean return of the last evaluation; None if there was none since the last call."""
+        """Returns the mean return of the last evaluation; None if there was none since the last call."""
         before, self._evaluations = self._evaluations, len(callback.evaluations)
         return callback.evaluations[-1].mean_return if self._evaluations > before else None
 
 
 def check_metrics(metrics: Iterable[str]) -> tuple[str, ...]:
-    """Returns the names of metrics.
+    """Checks the names of metrics and returns them.
 
     Raises:
         TypeError: if they are not a sequence of strings.

@@ -15,11 +15,11 @@ class StopAtReturn(BaseCallback):
 
     Args:
         value: The mean return to reach.
-        window: The number of last episodes to average. A run is not stopped before it has so many.
-        every: The number of episodes between two looks; None takes ``callback_every``.
+        window: The number of last episodes to average. A run is not stopped before it has that many.
+        every: The number of episodes between two checks; None takes ``callback_every``.
 
     Attributes:
-        stopped_at: The number of episodes after which the value was reached; None as long as it is not.
+        stopped_at: The number of episodes after which the value was reached; None until then.
 
     Raises:
         TypeError: for an argument of the wrong type.
@@ -33,7 +33,7 @@ class StopAtReturn(BaseCallback):
         self.stopped_at: int | None = None
 
     def on_start(self, config: Config, env: gym.Env | None) -> None:  # noqa: ARG002
-        """Begins anew."""
+        """Resets ``stopped_at``."""
         self.stopped_at = None
 
     def __call__(self, progress: Progress) -> bool:

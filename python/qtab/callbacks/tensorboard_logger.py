@@ -15,15 +15,15 @@ from qtab.training.progress import Progress
 class TensorBoardLogger(MetricsLogger):
     """Writes the metrics of a run to a folder that ``tensorboard --logdir`` shows, over the number of episodes.
 
-    It needs tensorboardX, which writes TensorBoard's files without TensorBoard. Where a run is resumed, the curves of
+    It needs tensorboardX, which writes TensorBoard's files without TensorBoard. When a run is resumed, the curves of
     its earlier part continue.
 
     Args:
         folder: The folder, created if it is missing. A run adds a file; give each run a folder to tell them apart.
         every: The number of episodes between two points; None takes ``callback_every``.
-        metrics: The names of what to write: those of :class:`qtab.callbacks.CSVLogger`. None writes all of them.
+        metrics: The names of the metrics to write: those of :class:`qtab.callbacks.CSVLogger`. None writes all of them.
         evaluation: A callback that evaluates the run, whose mean returns are the curve ``evaluation_return``. It
-            belongs before the logger in the list of callbacks.
+            must come before the logger in the list of callbacks.
 
     Raises:
         TypeError: for an argument of the wrong type.
@@ -52,8 +52,8 @@ class TensorBoardLogger(MetricsLogger):
             self.folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise type(error)(f"folder must be a folder, got {str(self.folder)!r}: {error.strerror}") from None
-        # TensorBoard drops the points of earlier files from `purge_step` on. The suffix tells two files of one second
-        # apart.
+        # TensorBoard drops the points of earlier files from `purge_step` on. The suffix distinguishes two files of the
+        # same second.
         again = {"purge_step": finished + 1, "filename_suffix": f".{finished}"} if finished else {}
         self._writer = SummaryWriter(str(self.folder), **again)
         settings = "\n".join(f"    {name} = {value!r}" for name, value in vars(config).items() if value is not None)
