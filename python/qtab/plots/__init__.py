@@ -1,10 +1,10 @@
-"""Pictures of runs: of a Run, of Runs, of a Sweep, of arrays, or of a mapping of names to any of these.
+"""Pictures of a Run, Runs, a Sweep, arrays, or a mapping of names to any of these.
 
-Of many runs: ``learning_curves``, ``distribution``, ``profile`` and ``sensitivity``. Of what was learned: ``values``,
-``policy``, ``visits``, ``trajectory``, ``difference``, ``schedule``, and ``overview``, which returns a figure of four.
+Many runs: ``learning_curves``, ``distribution``, ``profile`` and ``sensitivity``. The result of a run: ``values``,
+``policy``, ``visits``, ``trajectory``, ``difference``, ``schedule``, and ``overview``, a figure with four of them.
 
 Every function draws on the axes it is given, or on a new figure, which a notebook and ``plt.show()`` show, and returns
-the axes. They need the extra ``plot``; those with confidence intervals also need ``stats``.
+the axes. Plots need the extra ``plot``; those with confidence intervals also need ``stats``.
 """
 
 from qtab.plots.difference import difference

@@ -19,11 +19,11 @@ _IS_SHOWN: ContextVar[bool] = ContextVar("is_shown", default=True)
 
 
 def new_figure(width: float = 8, height: float = 4.5) -> "Figure":
-    """Returns an empty figure that pyplot does not know, for pictures that only go to files.
+    """Returns an empty figure that pyplot does not manage, for pictures that only go to files.
 
     Args:
-        width: In inches.
-        height: In inches.
+        width: The width in inches.
+        height: The height in inches.
 
     Raises:
         ModuleNotFoundError: without matplotlib; the message names the ``pip install``.
@@ -36,13 +36,13 @@ def new_figure(width: float = 8, height: float = 4.5) -> "Figure":
 
 
 def shown_figure(width: float = 8, height: float = 4.5) -> "Figure":
-    """Returns an empty figure of pyplot's: a notebook shows it, and so does ``plt.show()``.
+    """Returns an empty pyplot figure, which a notebook and ``plt.show()`` show.
 
-    Within :func:`not_shown` it is one that pyplot does not know.
+    Within :func:`not_shown`, pyplot does not manage it.
 
     Args:
-        width: In inches.
-        height: In inches.
+        width: The width in inches.
+        height: The height in inches.
 
     Raises:
         ModuleNotFoundError: without matplotlib; the message names the ``pip install``.
@@ -60,7 +60,7 @@ def shown_figure(width: float = 8, height: float = 4.5) -> "Figure":
 
 @contextmanager
 def not_shown() -> Iterator[None]:
-    """Within it, plots without ``ax=`` make figures for files only: no window opens, and nothing must be closed."""
+    """A context in which plots without ``ax=`` make figures for files only: no window opens, none must be closed."""
     token = _IS_SHOWN.set(False)
     try:
         yield

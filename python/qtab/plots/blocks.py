@@ -1,4 +1,4 @@
-"""How many episodes the points of a learning curve average."""
+"""The number of episodes that a point of a learning curve averages."""
 
 import math
 from collections.abc import Sequence
@@ -13,8 +13,8 @@ _MIN_POINTS = 20
 def fitting_block(episodes: int) -> int:
     """Returns the default number of episodes in a block: 100, and more for runs of more than 10,000 episodes.
 
-    Runs of fewer than 2,000 episodes have shorter blocks, of which at least twenty fit, and those of fewer than forty
-    have blocks of one.
+    Runs of fewer than 2,000 episodes have at least twenty shorter blocks, and those of fewer than forty have blocks of
+    one.
     """
     if episodes >= _MIN_POINTS * 100:
         return default_block(episodes)
@@ -25,7 +25,7 @@ def common_block(block: int | None, lengths: Sequence[int], units: Sequence[int]
     """Returns the number of episodes in a block of several learning curves.
 
     Args:
-        block: The user's choice; None means what fits the shortest curve.
+        block: The user's choice; None fits the block to the shortest curve.
         lengths: The number of episodes of each curve.
         units: The number of episodes that each point of a curve already averages.
 

@@ -30,7 +30,7 @@ SEQUENTIAL = "viridis"
 _DARK = 0.35
 """A background of less brightness than this is dark."""
 _LIGHTENED = 0.45
-"""How far colors are mixed with white on a dark background."""
+"""The share of white in the colors on a dark background."""
 
 
 def color(index: int, ax: "Axes | None" = None) -> Any:
@@ -71,7 +71,7 @@ def is_dark(ax: "Axes") -> bool:
 
 
 def brightness(chosen: Any) -> float:
-    """Returns how bright a color looks, from 0 to 1."""
+    """Returns the perceived brightness of a color, from 0 to 1."""
     from matplotlib.colors import to_rgb
 
     red, green, blue = to_rgb(chosen)
@@ -84,7 +84,7 @@ def palette(
     """Returns a color for each line.
 
     Algorithms have one color each, the same in every plot. Three or more numbers have sequential colors in their
-    order. Everything else has the colors in the order of the lines.
+    order. All other lines take the colors in order.
 
     Args:
         keys: For each line the name of its algorithm, as in the settings or as in ``"Sarsa(λ)"``, a number, or anything
@@ -96,7 +96,7 @@ def palette(
 
     Raises:
         TypeError: if ``colors`` is of the wrong type.
-        ValueError: if it holds what is no color, or too few colors.
+        ValueError: if it holds something other than a color, or too few colors.
     """
     if colors is not None:
         return _given(keys if labels is None else labels, colors)
@@ -130,7 +130,7 @@ _BY_NAME = {_plain(name): key for key, written in ALGORITHM_NAMES.items() for na
 
 
 def sequential(numbers: Sequence[float], ax: "Axes") -> list[Any]:
-    """Returns a color for each number, in their order."""
+    """Returns a color for each number, sequential by size."""
     from matplotlib import colormaps
     from matplotlib.colors import to_hex
 

@@ -1,4 +1,4 @@
-"""A picture of where a policy differs from the optimal one, and what that costs."""
+"""A picture of the states in which a policy differs from an optimal one, and of the cost."""
 
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
@@ -23,9 +23,9 @@ if TYPE_CHECKING:
 EXACT = 1e-9
 """A smaller cost, relative to the values of the two actions, is a tie between them."""
 CANCELLED = 1e-14
-"""So is a smaller cost relative to the largest value of all states: rounding leaves it where rewards cancel to 0."""
+"""A smaller cost, relative to the largest value of all states, is a rounding error where rewards cancel to 0."""
 APPROXIMATE = 1.0
-"""For MountainCar's values, which are interpolated in a grid, a cost of up to one step is none."""
+"""For MountainCar's values, which are interpolated in a grid, a cost of up to one step counts as 0."""
 
 
 def difference(
@@ -37,15 +37,16 @@ def difference(
     layout: Layout | None = None,
     title: str | None = None,
 ) -> "Axes":
-    """Draws what the greedy action of each state costs: how much of the optimal value it gives away, V*(s) - Q*(s, a).
+    """Draws the cost of the greedy action in each state: the optimal value that it gives away, V*(s) - Q*(s, a).
 
-    The cost is that of one such action, followed by optimal ones. It is 0 where the action is optimal, also where
-    several are; these states stay blank. Grey is where the run has learned nothing, as in :func:`qtab.plots.values`.
+    The cost is that of a single action, followed by optimal ones. It is 0 if the action is optimal, or one of several
+    optimal ones; these states stay blank. States in which the run has learned nothing are grey, as in
+    :func:`qtab.plots.values`.
     For MountainCar the values are those of the best known policy, accurate to about a step: lower costs count as 0.
 
     Args:
         run: A run, or the runs of many seeds with their tables, whose most frequent greedy action is taken.
-        optimum: What :func:`qtab.optimum` returned for the environment.
+        optimum: The result of :func:`qtab.optimum` for the environment.
         ax: The axes to draw on; None creates a new figure.
         at: For observations of more than two components, the values of those that are not axes; see
             :func:`qtab.plots.values`.
@@ -75,7 +76,7 @@ def difference(
     raster = arrange(subject, at, layout, sampled=optimum.search is not None)
     cost = costs(subject, best, raster)
     [ax] = axes_for([raster], ax)
-    from matplotlib import colormaps  # after the axes: the message without matplotlib is theirs
+    from matplotlib import colormaps  # after the axes, whose error without matplotlib names the extra
     from matplotlib.colors import ListedColormap, Normalize
 
     known = np.isfinite(cost)
@@ -85,7 +86,7 @@ def difference(
         policy = "an optimal policy" if optimum.exact else "the best known policy"
         title = f"{subject.env}: cost against {policy}"
     shade_unknown(ax, raster, cost)
-    # Without the end of the map that looks like the background.
+    # The end of the map that looks like the background is left out.
     cmap = ListedColormap(colormaps["magma" if is_dark(ax) else "magma_r"](np.linspace(0.25, 1.0, 256)))
     # A few states of very high costs would leave all others pale.
     highest = float(np.quantile(cost[wrong], 0.99)) if wrong.any() else 1.0
@@ -101,7 +102,7 @@ def difference(
 
 
 def costs(subject: Subject, best: Subject, raster: Raster) -> NDArray[np.float64]:
-    """Returns (ny, nx): what the greedy action of a subject costs; 0 where it is optimal, NaN where it is not known."""
+    """Returns (ny, nx): the cost of a subject's greedy action; 0 where it is optimal, NaN where it is not known."""
     rows = raster.rows
     if best.discretizer.shape != subject.discretizer.shape or raster.observations is not None:
         if raster.observations is None:

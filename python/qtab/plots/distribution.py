@@ -18,9 +18,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 MAX_BINS = 1000
-"""More bins are narrower than a pixel."""
+"""The largest number of bins; more would be narrower than a pixel."""
 MAX_FILLED = 3
-"""More histograms than this are outlines."""
+"""The largest number of filled histograms; more are drawn as outlines."""
 
 
 def distribution(
@@ -37,14 +37,14 @@ def distribution(
 
     Args:
         returns: A Run, Runs, a Sweep or an array (runs,) with one return per run, such as ``runs.final_returns()``; or
-            a mapping of names to any of these. Several histograms share their bins. Of a sweep each setting has one;
-            where there are more than eight, the eight with the best mean final return, which the legend reports.
+            a mapping of names to any of these. Several histograms share their bins. A sweep has one for each setting;
+            of more than eight settings, the eight with the best mean final return, which the legend reports.
         ax: The axes to draw on; None creates a new figure, which a notebook and ``plt.show()`` show.
         bins: The number of bins, at most 1,000; None means the square root of the largest number of runs, at most 40.
         settings: The indices of the settings of a sweep to draw, such as ``[0, 3]``.
         colors: A color, a sequence of colors, or a mapping of names to colors; None chooses.
         threshold: A return to mark by a dotted line. None means that at which Gymnasium considers the environment
-            solved, where it is known and not far from the data; False means no line.
+            solved, if it is known and not far from the data; False means no line.
         title: The title of the axes.
 
     Raises:
@@ -61,7 +61,7 @@ def distribution(
     edges = _edges([entry.values for entry in drawn], bins)
     ax = axes_or_new(ax)
     hues = palette(color_keys(drawn), ax, None, colors, [entry.label for entry in drawn])
-    # Many filled histograms on top of each other would mix to a color of none of them.
+    # Many filled histograms on top of each other would mix their colors.
     fill = 0.5 / math.sqrt(len(drawn)) if len(drawn) <= MAX_FILLED else 0.06
     for index, (entry, hue) in enumerate(zip(drawn, hues, strict=True)):
         middle = float(np.median(entry.values))

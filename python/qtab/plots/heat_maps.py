@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.colors import Normalize
 
 Text = Callable[[float], str]
-"""Returns how a number is written into its cell."""
+"""Returns the text of a number in its cell."""
 
 
 def draw_heat_maps(
@@ -33,7 +33,7 @@ def draw_heat_maps(
     """Draws a panel for each subject, with one scale of colors and one color bar, or one for each.
 
     Args:
-        panels: What to draw, and where each panel shows which state.
+        panels: The subject and the raster of each panel.
         grids: (ny, nx) for each panel: the numbers; NaN where a state has none.
         ax: The axes to draw on; None creates a new figure.
         norm: Returns the scale of the colors for the grids.
@@ -43,7 +43,7 @@ def draw_heat_maps(
         one_scale: Whether all panels have the same scale.
 
     Returns:
-        The axes, of several panels the first.
+        The axes; of several panels, those of the first.
 
     Raises:
         ModuleNotFoundError: without matplotlib; the message names the ``pip install``.
@@ -63,7 +63,7 @@ def draw_heat_maps(
 def draw_heat_map(
     ax: "Axes", raster: Raster, grid: NDArray[np.float64], norm: "Normalize", title: str, text: Text | None
 ) -> Any:
-    """Draws (ny, nx) numbers, the grey of states that have none, and the title; returns what a color bar takes."""
+    """Draws (ny, nx) numbers, the grey of states that have none, and the title; returns the image for a color bar."""
     shade_unknown(ax, raster, grid)
     image = draw_cells(ax, raster, grid, SEQUENTIAL, norm)
     if text is not None and raster.has_numbers:

@@ -1,4 +1,4 @@
-"""What plots take: a run, many runs, a sweep, arrays, or several of these by name."""
+"""The data that plots accept: a run, many runs, a sweep, arrays, or several of these by name."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -15,14 +15,14 @@ from qtab.sweeps.environments import sweep_threshold
 from qtab.sweeps.results import Sweep
 
 BEST_SETTINGS = 8
-"""Of a sweep with more settings than this, plots show those with the best mean final return, and report it."""
+"""The largest number of settings of a sweep in a plot; of more, it shows those with the best mean final return."""
 
 Kind = Literal["curves", "final returns"]
 
 
 @dataclass(frozen=True)
 class Entry:
-    """What one line or histogram of a plot shows."""
+    """The data of one line or histogram of a plot."""
 
     label: str
     """Its name in the legend; empty if there is only one."""
@@ -31,18 +31,18 @@ class Entry:
     unit: int = 1
     """The number of episodes that a point of a learning curve averages; more than 1 for a sweep."""
     threshold: float | None = None
-    """The return at which Gymnasium considers its environment solved, where one holds."""
+    """The return at which Gymnasium considers its environment solved; None if none applies."""
     color_key: Any = None
     """The algorithm or the number that determines the color."""
 
 
 def entries(name: str, data: Any, kind: Kind, settings: Sequence[int] | None = None) -> tuple[list[Entry], str]:
-    """Returns what to draw, and a note if not all settings of a sweep are among it.
+    """Returns the entries to draw, and a note if some settings of a sweep are left out.
 
     Args:
         name: The name of the argument.
         data: Its value: a Run, Runs, a Sweep, an array, or a mapping of names to any of these.
-        kind: Whether the learning curves or the final returns are wanted.
+        kind: Whether to return the learning curves or the final returns.
         settings: The indices of the settings of a sweep to draw; None means all, or the best eight.
 
     Raises:
@@ -76,7 +76,7 @@ def only_threshold(drawn: Sequence[Entry]) -> float | None:
 
 
 def color_keys(drawn: Sequence[Entry]) -> list[Any]:
-    """Returns what determines the colors: the algorithms or numbers if all entries have different ones, or the labels.
+    """Returns the keys of the colors: the algorithms or numbers if all entries have different ones, or the labels.
 
     A label that is the name of an algorithm determines the color of an array.
     """

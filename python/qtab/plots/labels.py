@@ -17,12 +17,12 @@ HANDLE = 4.0
 MAX_LEGEND = 0.6
 """The largest part of the axes' height that a legend inside them may take."""
 _LEGEND_SIZES = (1.0, 0.85, 0.7)
-"""Tried in turn where a legend is too high."""
+"""Font sizes, relative to the default, to try in turn if a legend is too high."""
 _NOTE = "qtab-note"
 
 
 def check_title(title: str | None) -> None:
-    """Checks the argument ``title`` of a plot that has a title of its own.
+    """Checks the argument ``title`` of a plot with a default title.
 
     Raises:
         TypeError: if it is neither None nor a string.
@@ -60,7 +60,7 @@ def joined(*parts: str, separator: str = "; ") -> str:
 
 
 def earlier_limits(ax: "Axes") -> tuple[float, float] | None:
-    """Returns the limits of an x axis on which something is drawn, here or on axes that share it; None elsewhere."""
+    """Returns the limits of an x axis on which something is drawn, here or on axes that share it; else None."""
     has_data = any(sibling.has_data() for sibling in ax.get_shared_x_axes().get_siblings(ax))
     return ax.get_xlim() if has_data else None
 
@@ -97,7 +97,7 @@ def category_ticks(ax: "Axes", names: list[str]) -> None:
 
 
 def fitted(text: str, points: float, size: float, weight: str = "normal") -> str:
-    """Returns a text broken into lines of at most a width, in points, for a font size."""
+    """Breaks a text into lines that are at most ``points`` points wide in a font size."""
     width = _width(text, size, weight)
     if width <= points:
         return text
@@ -115,7 +115,7 @@ def _width(text: str, size: float, weight: str = "normal") -> float:
 
 
 def _broken(text: str, room: int) -> str:
-    """Returns a text broken into lines of at most ``room`` characters at spaces, and in longer words at underscores."""
+    """Breaks a text into lines of at most ``room`` characters, at spaces and in longer words at underscores."""
     lines = [""]
     for word in text.split():
         space = " " if lines[-1] else ""
@@ -238,5 +238,5 @@ def _size(ax: "Axes") -> tuple[float, float]:
 
 
 def _font_size(text: "Text") -> float:
-    """Returns the size of a text in points; a name such as ``"small"`` is only what it was set with."""
+    """Returns the size of a text in points, even if it was set by a name such as ``"small"``."""
     return float(text.get_fontsize())

@@ -47,22 +47,22 @@ def learning_curves(
     The interval is that of :func:`qtab.stats.curve`. A single run has none, and its means are drawn without one.
 
     Args:
-        returns: A Run, Runs, a Sweep or an array (runs, episodes); or a mapping of names to any of these. Of a sweep
-            each setting has a curve; where there are more than eight, the eight with the best mean final return, which
-            the legend reports.
+        returns: A Run, Runs, a Sweep or an array (runs, episodes); or a mapping of names to any of these. A sweep has
+            a curve for each setting; of more than eight settings, the eight with the best mean final return, which the
+            legend reports.
         ax: The axes to draw on; None creates a new figure, which a notebook and ``plt.show()`` show.
         block: The number of episodes in a block. Each point shows the mean returns of one block. None means 100; more
             for runs of more than 10,000 episodes, and fewer for those of fewer than 2,000.
         statistic: The statistic over the runs: ``"mean"``, ``"median"`` or ``"iqm"``.
         confidence: The coverage probability of the interval, between 0 and 1.
-        label: The name in the legend of a single curve; several have the names of the mapping or the settings.
+        label: The name of a single curve in the legend; several are named by the mapping or the settings.
         index: The index of the color and of the line's style. Settings on the same axes need different ones. None
-            means the algorithm's color where the algorithm is known, else the first.
+            means the algorithm's color if the algorithm is known, else the first.
         settings: The indices of the settings of a sweep to draw, such as ``[0, 3]``.
         colors: A color, a sequence of colors, or a mapping of names to colors; None chooses.
         optimum: A result of :func:`qtab.optimum`, or a return, to mark by a dashed line with its number in the legend.
         threshold: A return to mark by a dotted line. None means that at which Gymnasium considers the environment
-            solved, where it is known and not far from the data; False means no line.
+            solved, if it is known and not far from the data; False means no line.
         title: The title of the axes.
 
     Raises:
@@ -88,7 +88,7 @@ def learning_curves(
             raise ValueError(f"label must be None where returns has names or several settings, got {label!r}")
         drawn = [Entry(**{**vars(drawn[0]), "label": label})]
     block = common_block(block, [entry.values.shape[1] * entry.unit for entry in drawn], [e.unit for e in drawn])
-    # The numbers come before the figure: an error leaves no empty one.
+    # The numbers come before the figure, so that an error leaves no empty figure.
     means = [_block_means(entry, block) for entry in drawn]
     points = [
         stats.curve(runs, block=1, statistic=statistic, confidence=confidence) if len(runs) > 1 else None
@@ -131,7 +131,7 @@ def _draw_curve(
 
 
 def _names(drawn: list[Entry], statistic: str, confidence: str) -> tuple[list[str], str]:
-    """Returns the names of the curves in the legend, and its title, which tells once what holds for all of them."""
+    """Returns the names of the curves in the legend, and its title with the text that applies to all of them."""
     counts = [len(entry.values) for entry in drawn]
     if len(drawn) == 1:
         shown = "1 run" if counts[0] == 1 else f"{statistic} of {counts[0]} runs, {confidence} interval"

@@ -59,7 +59,7 @@ def mark_threshold(
     Args:
         ax: The axes, with all data drawn.
         threshold: The return to mark. None means the known one, if it is not far from the data; False means none.
-        known: The threshold that holds for the data, if there is one.
+        known: The threshold that applies to the data, if there is one.
         axis: The axis that shows returns.
     """
     if threshold is False:

@@ -30,7 +30,7 @@ def overview(
     """Draws four panels: the learning curve, the values, the policy, and the visits, or else the schedule.
 
     Args:
-        run: The run. With ``visits=True`` the last panel shows its visits, otherwise how ε and α changed.
+        run: The run. With ``visits=True`` the last panel shows its visits, otherwise the schedules of ε and α.
         at: For observations of more than two components, the values of those that are not axes; see
             :func:`qtab.plots.values`.
         layout: A map for numbered states; see :func:`qtab.plots.values`.

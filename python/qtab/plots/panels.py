@@ -1,4 +1,4 @@
-"""What the pictures of tables share: panels with one scale of colors, and colors for light and dark styles."""
+"""Parts of the pictures of tables: panels with one scale of colors, and colors for light and dark styles."""
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
@@ -29,14 +29,14 @@ def arranged(
     title: str | None,
     step: int = 0,
 ) -> list[tuple[Subject, Raster]]:
-    """Returns what the panels of a picture show, each with where it shows which state.
+    """Returns the subject and the raster of each panel of a picture.
 
     Args:
         run: The argument ``run`` of a plot: a run, Runs or an optimum, or a sequence of them.
         at: The components of the observation that are held fixed.
         layout: The map of an environment with numbered states; None takes the known one.
         title: The title of the picture, which is only checked.
-        step: Of which step of an episode, for runs with ``time_aware=True``.
+        step: The step of the episode to show, for runs with ``time_aware=True``.
 
     Raises:
         TypeError: for an argument of the wrong type.
@@ -61,7 +61,7 @@ def axes_for(rasters: Sequence[Raster], ax: "Axes | None") -> "list[Axes]":
             return [axes_or_new(ax)]
         return [shown_figure(*rasters[0].size).subplots()]
     if ax is not None:
-        raise ValueError(f"ax must be None for {len(rasters)} runs, each of which has a panel of its own")
+        raise ValueError(f"ax must be None for {len(rasters)} runs, which need a panel each")
     columns = min(len(rasters), MAX_PANELS_IN_A_ROW)
     lines = -(-len(rasters) // columns)
     width, height = (max(raster.size[side] for raster in rasters) for side in (0, 1))
@@ -77,7 +77,7 @@ def ink(ax: "Axes") -> str:
 
 
 def shade_unknown(ax: "Axes", raster: Raster, values: NDArray[Any]) -> None:
-    """Fills the states that have no value, NaN or negative indices, with grey."""
+    """Fills the states without a value, which have NaN or negative indices, with grey."""
     from matplotlib.colors import ListedColormap
 
     unknown = (raster.rows >= 0).all(axis=-1) & ~(values >= 0 if values.dtype.kind == "i" else np.isfinite(values))
@@ -89,16 +89,16 @@ def shade_unknown(ax: "Axes", raster: Raster, values: NDArray[Any]) -> None:
 def draw_cells(
     ax: "Axes", raster: Raster, values: NDArray[np.float64], cmap: Any, norm: "Normalize | None" = None
 ) -> Any:
-    """Draws (ny, nx) values in colors; NaN stays transparent. Returns what a color bar takes."""
+    """Draws (ny, nx) values in colors; NaN stays transparent. Returns the image for a color bar."""
     shown = np.ma.masked_invalid(values)
-    # A vector picture would hold every point as a polygon.
+    # Without rasterization, a vector picture would hold every point as a polygon.
     return ax.pcolormesh(raster.x_edges, raster.y_edges, shown, cmap=cmap, norm=norm, rasterized=True)
 
 
 def write_numbers(
     ax: "Axes", raster: Raster, values: NDArray[np.float64], image: Any, text: Callable[[float], str]
 ) -> None:
-    """Writes the number of each cell in a color that is readable on the cell's."""
+    """Writes the number of each cell in a color that is readable on that of the cell."""
     xs, ys = (middles.tolist() for middles in raster.centers)
     size = cell_font_size(ax, raster)
     for (row, column), value in np.ndenumerate(values):
@@ -108,7 +108,7 @@ def write_numbers(
 
 
 def finish_panel(ax: "Axes", raster: Raster, title: str, note: str = "") -> None:
-    """Draws what belongs to the arrangement, the title and the note."""
+    """Draws the marks of the arrangement, the title and the note."""
     ax.set_title(title, loc="left", fontsize="medium", fontweight="bold")
     if note := note or raster.note:
         ax.text(1.0, 1.015, note, transform=ax.transAxes, ha="right", va="bottom", fontsize="x-small", alpha=0.8)
@@ -117,10 +117,10 @@ def finish_panel(ax: "Axes", raster: Raster, title: str, note: str = "") -> None
 
 
 def color_bar(axes: "Sequence[Axes]", raster: Raster, image: Any, label: str, extend: str = "neither") -> Any:
-    """Draws a color bar beside a panel, of its height, or one beside all panels."""
+    """Draws a color bar as high as a panel beside it, or one beside all panels."""
     figure: Any = axes[0].figure
     if len(axes) == 1:
-        # Inset: a bar of a map, whose cells are square, would else be higher than the map.
+        # Inset: the bar would otherwise be higher than a map, whose cells are square.
         place: dict[str, Any] = {"cax": axes[0].inset_axes((raster.bar_at, 0.0, 0.03, 1.0))}
     else:
         place = {"ax": list(axes), "pad": 0.02, "fraction": 0.05}
@@ -130,7 +130,7 @@ def color_bar(axes: "Sequence[Axes]", raster: Raster, image: Any, label: str, ex
 
 
 def cell_font_size(ax: "Axes", raster: Raster) -> float:
-    """Returns the size of letters, in points, with which a number fits into a cell."""
+    """Returns the font size, in points, with which a number fits into a cell."""
     figure: Any = ax.figure
     width = ax.get_position().width * figure.get_figwidth() * 72 / len(raster.x_edges)
     height = ax.get_position().height * figure.get_figheight() * 72 / len(raster.y_edges)

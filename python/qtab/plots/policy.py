@@ -31,7 +31,7 @@ def policy(
     """Draws the greedy action of each state: arrows on a map, colors with a legend elsewhere.
 
     Of several greedy actions the first is shown, which is the one that ``run.predict`` takes; of many seeds the most
-    frequent one. Grey is where nothing was learned, as in :func:`qtab.plots.values`.
+    frequent one. States in which nothing was learned are grey, as in :func:`qtab.plots.values`.
 
     Args:
         run: A run; the runs of many seeds with their tables; or an optimum. A sequence of them makes panels.
@@ -42,10 +42,10 @@ def policy(
         action_names: A name for each action; None takes ``run.action_names``. On a map the actions left, right, up and
             down, and west, east, north and south, are arrows.
         title: The title; None names the environment, the algorithm and the seed.
-        step: For runs with ``time_aware=True``, after how many steps of an episode.
+        step: The step of the episode to show, for runs with ``time_aware=True``.
 
     Returns:
-        The axes, of several panels the first.
+        The axes; of several panels, those of the first.
 
     Raises:
         ModuleNotFoundError: without matplotlib; the message names the ``pip install``.
@@ -91,8 +91,8 @@ def draw_moves(ax: "Axes", raster: Raster, taken: NDArray[np.bool_], names: Sequ
     Args:
         ax: The axes.
         raster: A map.
-        taken: (ny, nx, actions): which actions are taken. The arrows of several start in the middle of the cell.
-        names: (actions,): their names.
+        taken: (ny, nx, actions): whether each action is taken. Several arrows start in the middle of the cell.
+        names: (actions,): the names of the actions.
     """
     xs, ys = np.meshgrid(*raster.centers)
     color, letter_color = ("#9ecbff", "#ffb26b") if is_dark(ax) else ("#1f5fa8", "#b3480f")
@@ -129,7 +129,7 @@ def draw_moves(ax: "Axes", raster: Raster, taken: NDArray[np.bool_], names: Sequ
 
 
 def _initials(names: Sequence[str]) -> str:
-    """Returns what the letters in the cells of a map mean."""
+    """Returns the meaning of the letters in the cells of a map."""
     return ", ".join(f"{_letters(name)}: {name}" for name in names if name not in DIRECTIONS and " " in name)
 
 
@@ -138,7 +138,7 @@ def _letters(name: str) -> str:
 
 
 def action_colors(count: int, ordered: bool) -> list[Any]:
-    """Returns a color for each action; from blue over pale yellow to orange where their order means something."""
+    """Returns a color for each action; from blue through pale yellow to orange if their order has a meaning."""
     from matplotlib import colormaps
 
     if count == 2:
@@ -153,7 +153,7 @@ def action_colors(count: int, ordered: bool) -> list[Any]:
 
 
 def draw_regions(ax: "Axes", raster: Raster, greedy: NDArray[np.int64], names: Sequence[str]) -> list[Any]:
-    """Draws (ny, nx) actions in colors; returns what a legend explains, nothing where the picture itself does."""
+    """Draws (ny, nx) actions in colors; returns the handles of a legend, none if the picture has labels instead."""
     from matplotlib.colors import BoundaryNorm, ListedColormap
     from matplotlib.patches import Patch
 
@@ -202,7 +202,7 @@ def _name_cells(
 def _label_regions(
     ax: "Axes", raster: Raster, greedy: NDArray[np.int64], names: Sequence[str], colors: Sequence[Any]
 ) -> None:
-    """Writes the action into its region, where that is widest, in each part of the picture, as the book does."""
+    """Writes the action into its region, at the widest place, in each part of the picture, as in the book."""
     xs, ys = raster.centers
     for part in raster.parts.values():
         for action, name in enumerate(names):
@@ -218,7 +218,7 @@ def _label_regions(
 
 
 def _longest(matches: NDArray[np.bool_]) -> tuple[int, int]:
-    """Returns where the longest stretch of True begins and ends."""
+    """Returns the start and the end of the longest stretch of True."""
     ends = np.flatnonzero(np.diff(np.concatenate([[False], matches, [False]]).astype(np.int8)))
     stretches = list(zip(ends[::2].tolist(), ends[1::2].tolist(), strict=True))
     return max(stretches, key=lambda stretch: stretch[1] - stretch[0], default=(0, 0))

@@ -42,7 +42,7 @@ def profile(
     Args:
         scores: A Run, Runs, a Sweep, an array (runs,) or (runs, environments); or a mapping of names to any of these
             or to a mapping of environments to Runs or (runs,). Scores of Run, Runs and Sweep are their final returns.
-            Of a sweep each setting has a curve; where there are more than eight, the eight with the best mean final
+            A sweep has a curve for each setting; of more than eight settings, the eight with the best mean final
             return, which the legend reports.
         ax: The axes to draw on; None creates a new figure, which a notebook and ``plt.show()`` show.
         thresholds: (thresholds,) float; None spans all scores.
@@ -65,11 +65,11 @@ def profile(
     labels, keys, environments, note = _by_setting(scores, settings)
     pooled = np.concatenate([runs for setting in environments for runs in setting.values()])
     if thresholds is None:
-        margin = np.ptp(pooled) / 50 or 1.0  # from where all runs are above
+        margin = np.ptp(pooled) / 50 or 1.0  # all runs are above the lowest threshold
         levels = np.linspace(pooled.min() - margin, pooled.max() + margin, LEVELS)
     else:
         levels = np.sort(arrays.sample("thresholds", thresholds))
-    # The numbers come before the figure: an error leaves no empty one.
+    # The numbers come before the figure, so that an error leaves no empty figure.
     bands = [
         stats.profile(setting, levels, confidence=confidence) if min(map(len, setting.values())) > 1 else None
         for setting in environments

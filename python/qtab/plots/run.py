@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 DOTS_PER_INCH = 150
 MAX_DOTS = 20_000
-"""A run with more episodes than this shows evenly spaced ones only."""
+"""The largest number of dots; of more episodes, evenly spaced ones are drawn."""
 
 
 def plot(
@@ -46,7 +46,7 @@ def plot(
         color: The color; None means that of the algorithm.
         optimum: A result of :func:`qtab.optimum`, or a return, to mark by a dashed line with its number in the legend.
         threshold: A return to mark by a dotted line. None means that at which Gymnasium considers the environment
-            solved, where it is known and not far from the returns; False means no line.
+            solved, if it is known and not far from the returns; False means no line.
 
     Returns:
         The axes.
@@ -115,7 +115,7 @@ def _settings_note(run: Run) -> str:
 
 
 def save_plot(run: Run, path: Path, optimum: "Optimum | None" = None) -> None:
-    """Draws the learning curve to a file, completely or not at all; the suffix determines the format.
+    """Writes the learning curve to a file, completely or not at all, in the format of its suffix.
 
     Raises:
         ModuleNotFoundError: without matplotlib; the message names the ``pip install``.

@@ -1,4 +1,4 @@
-"""A picture of how exploration and the learning rate change over a run."""
+"""A picture of the exploration and the learning rate over a run."""
 
 from typing import TYPE_CHECKING
 
@@ -18,15 +18,15 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 MAX_POINTS = 2_000
-"""A run with more episodes than this shows evenly spaced ones only."""
+"""The largest number of points; of more episodes, evenly spaced ones are drawn."""
 
 
 def schedule(run: Run, ax: "Axes | None" = None, *, title: str | None = None) -> "Axes":
     """Draws the exploration rate ε, or the temperature τ or the confidence c, and the learning rate α in each episode.
 
-    The episodes are the finished ones, at least one, with the rates that they had: where a run was resumed with more
-    episodes while a rate fell, the line jumps. A learning rate that falls with the visits of a state and action is no
-    function of the episode: a band shows where it lies, from its value at the first visit down to its minimum.
+    The episodes are the finished ones, at least one, with the rates that they had: if a run was resumed with more
+    episodes while a rate fell, the line jumps. A learning rate that falls with the visits of a state and action is not
+    a function of the episode: a band shows its range, from the value at the first visit down to the minimum.
 
     Args:
         run: The run.

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from qtab.planning import Optimum
 
 LOG_SCALE_RATIO = 50
-"""From this ratio of the largest to the smallest value on, the x axis is logarithmic."""
+"""The ratio of the largest to the smallest value from which on the x axis is logarithmic."""
 
 
 def sensitivity(
@@ -42,10 +42,10 @@ def sensitivity(
     """Draws a column of a sweep's table over one of its parameters, with intervals over the seeds.
 
     Each point is one setting, and its interval is over the runs of that setting: runs that differ in another parameter
-    are never pooled. The other parameters have the values in ``fixed``; those that are not in it have, for each point,
-    the values with the best statistic, as in the parameter studies of Sutton & Barto. The legend reports which. The
-    best of several settings with the same seeds looks better than it is: train it with fresh seeds before you report
-    its return.
+    are never pooled. The other parameters have the values in ``fixed``; those missing from it have, for each point, the
+    values with the best statistic, as in the parameter studies of Sutton & Barto. The legend names these parameters.
+    The best of several settings with the same seeds looks better than it is: train it with fresh seeds before you
+    report its return.
 
     Args:
         sweep: A result of :func:`qtab.sweep`.
@@ -60,7 +60,7 @@ def sensitivity(
         colors: A color, a sequence of colors, or a mapping of names to colors; None chooses.
         optimum: A result of :func:`qtab.optimum`, or a return, to mark by a dashed line with its number in the legend.
         threshold: A return to mark by a dotted line. None means that at which Gymnasium considers the environment
-            solved, where it is not far from the data and the column is ``"final_return"``; False means no line.
+            solved, if it is not far from the data and the column is ``"final_return"``; False means no line.
         title: The title of the axes.
 
     Raises:
@@ -83,7 +83,7 @@ def sensitivity(
     values = list(dict.fromkeys(point.value for _, points in lines for point in points))
     numbers = [value for value in values if isinstance(value, int | float) and not isinstance(value, bool)]
     is_numeric = len(numbers) == len(values)
-    if by is None and not is_numeric:  # each category has its color, as each algorithm has elsewhere
+    if by is None and not is_numeric:  # one color for each category, as for each algorithm elsewhere
         for point, hue in zip(lines[0][1], palette(values, ax, None, colors), strict=True):
             _draw_line(ax, [point], values, hue, "", "none")
     else:
@@ -101,7 +101,7 @@ def sensitivity(
 
 
 def _draw_line(ax: "Axes", points: list[Point], categories: list[Any] | None, hue: Any, label: str, line: Any) -> None:
-    """Draws the points of one line, with bars where the x axis has categories, between which there is nothing."""
+    """Draws the points of one line with a band, or with error bars and no line for categories and single points."""
     x = [point.value if categories is None else categories.index(point.value) for point in points]
     y = [point.estimate for point in points]
     low, high = np.array([point.low for point in points]), np.array([point.high for point in points])

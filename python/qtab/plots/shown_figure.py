@@ -1,4 +1,4 @@
-"""A figure of pyplot's that a notebook shows once."""
+"""A pyplot figure that a notebook shows once."""
 
 import matplotlib
 from matplotlib import pyplot as plt
@@ -12,8 +12,8 @@ class ShownFigure(Figure):
         """Called before IPython shows the figure, which it then does as usual.
 
         Raises:
-            NotImplementedError: always, by which IPython knows that it must show the figure itself.
+            NotImplementedError: always, so that IPython shows the figure itself.
         """
         if "inline" in matplotlib.get_backend().lower():
-            plt.close(self)  # or else it would be shown again at the end of the cell
+            plt.close(self)  # an open figure would be shown again at the end of the cell
         raise NotImplementedError

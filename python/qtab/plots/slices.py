@@ -96,13 +96,13 @@ def _fixed(sweep: Sweep, fixed: Any, drawn: set[str | None]) -> dict[str, Any]:
 
 
 def _key(value: Any) -> Any:
-    """Returns what two equal values of a setting have in common: 1 and 1.0 are equal, 1 and True are not."""
+    """Returns a key that equal values of a setting share: 1 and 1.0 are equal, 1 and True are not."""
     cell = to_cell(value)
     return isinstance(cell, bool), cell
 
 
 def _ordered(values: Iterable[Any]) -> list[Any]:
-    """Returns different values: numbers by size, everything else in its order."""
+    """Returns the different values: numbers by size, all others in their order."""
     different = list({_key(value): value for value in values}.values())
     is_numeric = all(isinstance(to_cell(value), int | float) and not isinstance(value, bool) for value in different)
     return sorted(different) if is_numeric else different
@@ -113,7 +113,7 @@ def _varies(sweep: Sweep, settings: list[int], name: str) -> bool:
 
 
 def _merit(sweep: Sweep, setting: int, column: str, statistic: str) -> float:
-    """Returns the number by which the best of several settings is chosen."""
+    """Returns the number that ranks several settings."""
     if column in _LARGER_IS_BETTER:
         return _point(sweep, setting, None, column, statistic, None).estimate
     return float(sweep.values("final_return", setting).mean())

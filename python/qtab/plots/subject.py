@@ -1,4 +1,4 @@
-"""What a picture of values shows: a run, the mean of several, or an optimum, in one form."""
+"""The subject of a picture in one form: a run, the mean of several, or an optimum."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -24,10 +24,10 @@ from qtab.results.runs import Runs
 from qtab.results.time_steps import at_step, checked_step
 
 Drawable = Run | Runs | Optimum
-"""What the pictures show."""
+"""The objects that the pictures show."""
 
 Learned = Literal["action values", "state values", "preferences"]
-"""What the value of a state in a picture is: that of its greedy action, a learned state value, or a preference."""
+"""The kinds of values of a state in a picture: of its greedy action, a learned state value, or a preference."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,27 +35,27 @@ class Subject:
     """One or several Q tables of one environment."""
 
     source: Any
-    """What it was made from."""
+    """The object that it was made from."""
     env: str
     """The environment's id, or the name of its class."""
     env_kwargs: Mapping[str, Any]
     """Keyword arguments of the environment's constructor."""
     description: Description
-    """What its numbers mean."""
+    """The names and units of its observations and actions."""
     name: str
-    """A title."""
+    """The default title."""
     discretizer: Discretizer
     """Maps observations to rows of the tables."""
     tables: NDArray[np.float64]
-    """(seeds, rows, actions): what the greedy policy reads: action values on the scale of returns, or preferences."""
+    """(seeds, rows, actions): the policy's tables: action values on the scale of returns, or preferences."""
     known: NDArray[np.bool_] | None
-    """(seeds, rows): whether anything was learned there; None where every value means something."""
+    """(seeds, rows): whether anything was learned in the row; None if every value has a meaning."""
     action_names: tuple[str, ...]
-    """(actions,)"""
+    """(actions,): the names of the actions."""
     discount: float
     """The discount of the values."""
     learned: Learned = "action values"
-    """What :meth:`state_values` returns."""
+    """The kind of values that :meth:`state_values` returns."""
     state_table: NDArray[np.float64] | None = None
     """(seeds, rows, 1): the state values that were learned beside preferences; None for other methods."""
 
@@ -80,10 +80,10 @@ class Subject:
         for seed, table in enumerate(tables):
             np.take(table, first, axis=0, out=total[seed], mode="wrap")
             for active in others:
-                # Into one array: a new one for each tiling would take several times as long.
+                # Reuses one array: a new one for each tiling would take several times as long.
                 total[seed] += np.take(table, active, axis=0, out=part, mode="wrap")
             if self.known is not None:
-                # The value of a point of which most tiles were never updated is mostly initial_q.
+                # If most tiles of a point were never updated, its value is mostly initial_q.
                 total[seed, 2 * np.count_nonzero(self.known[seed][points], axis=-1) < points.shape[-1]] = np.nan
         total[:, first < 0] = np.nan
         return total.reshape(len(total), *rows.shape[:2], -1)
@@ -91,7 +91,7 @@ class Subject:
     def state_values(self, rows: NDArray[np.int64]) -> NDArray[np.float64]:
         """Returns (ny, nx): the state value that was learned, or else the largest action value or preference.
 
-        It is the mean over the seeds; NaN where none knows one.
+        It is the mean over the seeds; NaN if no seed has learned it.
         """
         largest = self._read(self.tables if self.state_table is None else self.state_table, rows).max(axis=-1)
         count = (~np.isnan(largest)).sum(axis=0)
@@ -114,12 +114,12 @@ def subject_of(name: str, source: Any, step: Any = 0) -> Subject:
 
     Args:
         name: The argument that gives it, for messages.
-        source: What to draw.
-        step: Of which step of an episode, for runs with ``time_aware=True``.
+        source: The object to draw.
+        step: The step of the episode to show, for runs with ``time_aware=True``.
 
     Raises:
         TypeError: for anything else.
-        ValueError: for runs whose tables were not kept, or a step that there is not.
+        ValueError: for runs whose tables were not kept, or a step that does not exist.
     """
     if isinstance(source, Run | Runs) and source.config.time_aware:
         known: Any = source  # one run or many
@@ -175,7 +175,7 @@ def _of_runs(
 
 
 def _known(source: Run | Runs, config: Config, tables: NDArray[np.float64]) -> NDArray[np.bool_] | None:
-    """Where a table was updated: by its visits, or else where it is no longer at its first value."""
+    """Returns whether each row was updated: by its visits, or else by a value other than the initial one."""
     if isinstance(source, Run) and source.visits is not None:
         visited: NDArray[np.bool_] = source.visits.reshape(1, -1, source.visits.shape[-1]) > 0
         return np.asarray(visited.any(axis=-1))

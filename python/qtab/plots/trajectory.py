@@ -1,4 +1,4 @@
-"""A picture of greedy episodes over the learned values: of a continuous state the phase portrait."""
+"""A picture of greedy episodes over the learned values: for a continuous state, the phase portrait."""
 
 from collections.abc import Mapping
 from contextlib import nullcontext
@@ -36,7 +36,7 @@ def trajectory(
 ) -> "Axes":
     """Draws episodes of the greedy policy over the values of the states.
 
-    A circle marks the beginning of an episode, a star a terminal state, a cross the time limit. Where the observation
+    A circle marks the beginning of an episode, a star a terminal state, a cross the time limit. If the observation
     has more than two components, the values are those of the slice that ``at`` names, and the episodes are projected.
 
     Args:
@@ -44,7 +44,7 @@ def trajectory(
         ax: The axes to draw on; None creates a new figure.
         episodes: The number of episodes.
         seed: The seed of the first reset of the environment.
-        env: The environment, where that of the run cannot be made again; it is not closed.
+        env: The environment, if that of the run cannot be made again; it is not closed.
         at: For observations of more than two components, the values of those that are not axes; see
             :func:`qtab.plots.values`.
         layout: A map for numbered states; see :func:`qtab.plots.values`.
@@ -112,7 +112,7 @@ def _draw_path(
 ) -> None:
     points = raster.locate(observations)
     if raster.is_map:
-        # Beside each other, so that episodes along the same cells can be told apart.
+        # Side by side, so that episodes along the same cells can be told apart.
         points = points + 0.36 * ((index + 0.5) / episodes - 0.5)
     low, high = (np.array([raster.x_edges[end], raster.y_edges[end]]) for end in (0, -1))
     middle = np.clip(points, low, high)

@@ -43,18 +43,18 @@ def values(
 ) -> "Axes":
     """Draws the value of each state: the largest action value, which is that of the greedy policy.
 
-    Of REINFORCE with baseline and actor-critic methods it is the state value that they learned, and of methods that
-    learn preferences alone the largest preference, as the color bar says.
+    For REINFORCE with baseline and actor-critic methods it is the learned state value, and for methods that learn only
+    preferences it is the largest preference, as the color bar states.
 
-    States along the axes of the observation, or on the map that the environment has; Taxi's by the place of the
+    States are shown along the axes of the observation, or on the map of the environment; Taxi's by the place of the
     passenger and the destination, Blackjack's as in Sutton & Barto (2nd ed., Figure 5.2). Tile coding is sampled on
-    200 x 200 points. Grey is where nothing was learned: never visited, where the run counted visits, and otherwise
-    still at ``initial_q``, where that is one number. With tile coding this holds of most tiles of a grey point.
+    200 x 200 points. States in which nothing was learned are grey: never visited, if the run counted visits, and
+    otherwise still at ``initial_q``, if that is one number. With tile coding this holds for most tiles of a grey point.
 
     Args:
-        run: A run; the runs of many seeds with their tables, of which the mean is shown; an optimum; or the values that
-            :func:`qtab.estimate_values` found. A sequence of them makes panels with one scale of colors; values of
-            different discounts differ in size, so that each panel has a scale of its own.
+        run: A run; the runs of many seeds with their tables, whose mean is shown; an optimum; or the result of
+            :func:`qtab.estimate_values`. A sequence of them makes panels with one scale of colors; values of different
+            discounts differ in size, so that each panel then has a separate scale.
         ax: The axes to draw on; None creates a new figure. A sequence needs None.
         at: For observations of more than two components, the values of those that are not axes, by the names in
             ``run.axes``, such as ``{"cart position": 0.0, "cart velocity": 0.0}``. Acrobot and Pendulum have angles
@@ -62,11 +62,11 @@ def values(
         layout: A map for numbered states: rows of text as FrozenLake's ``desc``, with ``#`` for obstacles, or the
             numbers of rows and columns. None takes the environment's own.
         title: The title; None names the environment, the algorithm and the seed.
-        step: For runs with ``time_aware=True``, after how many steps of an episode.
+        step: The step of the episode to show, for runs with ``time_aware=True``.
         numbers: Whether to write the values into the cells of small maps.
 
     Returns:
-        The axes, of several panels the first.
+        The axes; of several panels, those of the first.
 
     Raises:
         ModuleNotFoundError: without matplotlib; the message names the ``pip install``.
@@ -88,13 +88,13 @@ def value_label(subjects: Sequence[Subject]) -> str:
     """Returns the label of the color bar of several subjects.
 
     Raises:
-        ValueError: for values beside preferences, which no scale has in common.
+        ValueError: for values beside preferences, which have no common scale.
     """
     learned = {subject.learned for subject in subjects}
     if len(learned) == 1:
         return _LABELS[learned.pop()]
     if "preferences" in learned:
-        raise ValueError("run must hold runs that learned values or runs that learned preferences alone, got both")
+        raise ValueError("run must hold only runs that learned values or only runs that learned preferences, got both")
     return "value"
 
 
@@ -107,5 +107,5 @@ def common_norm(grids: Sequence[NDArray[np.float64]]) -> "Normalize":
 
 
 def value_text(value: float) -> str:
-    """Returns a value as it is written into a cell."""
+    """Returns the text of a value in a cell."""
     return f"{value:.3g}"

@@ -1,4 +1,4 @@
-"""A picture of where a run has been."""
+"""A picture of the visits of a run."""
 
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
@@ -27,7 +27,7 @@ def visits(
     layout: Layout | None = None,
     title: str | None = None,
 ) -> "Axes":
-    """Draws how often training visited each state, on a logarithmic scale. Grey states were never visited.
+    """Draws the number of visits of each state in training, on a logarithmic scale. Grey states were never visited.
 
     With tile coding the number at a point is the mean over the tiles that it lies in, with ``time_aware=True`` the sum
     over the steps of an episode.
@@ -41,7 +41,7 @@ def visits(
         title: The title; None names the environment, the algorithm and the seed.
 
     Returns:
-        The axes, of several panels the first.
+        The axes; of several panels, those of the first.
 
     Raises:
         ModuleNotFoundError: without matplotlib; the message names the ``pip install``.

@@ -1,4 +1,4 @@
-"""Which arrangement suits an environment."""
+"""The choice of the arrangement for an environment."""
 
 from collections.abc import Mapping
 
@@ -21,11 +21,11 @@ def arrange(
     layout: Layout | None = None,
     sampled: bool = False,
 ) -> Raster:
-    """Returns where a picture of a subject shows which state.
+    """Returns the raster for a picture of a subject.
 
     Args:
-        subject: What to draw.
-        at: The components of the observation that are held fixed, where it has more than two.
+        subject: The subject to draw.
+        at: The components of the observation that are held fixed, if it has more than two.
         layout: The map of an environment with numbered states; None takes the known one.
         sampled: Whether to sample points of a continuous space even where the table has cells.
 

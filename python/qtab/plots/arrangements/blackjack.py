@@ -13,9 +13,9 @@ if TYPE_CHECKING:
 SHAPE = (32, 11, 2)
 """The cells of Gymnasium's observation: the player's sum, the dealer's card, whether an ace is usable."""
 SUMS, CARDS = range(12, 22), range(1, 11)
-"""Below a sum of 12 one always hits."""
+"""The sums and cards in the picture; below a sum of 12 the player always hits."""
 LOWER = len(SUMS) + 1
-"""Where the upper part begins, with a usable ace; a row is left between the parts."""
+"""The first row of the upper part, with a usable ace; one row between the parts is empty."""
 
 
 def blackjack() -> Raster:

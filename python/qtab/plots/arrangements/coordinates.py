@@ -11,20 +11,20 @@ from qtab.results.axes import Axis
 
 @dataclass(frozen=True, eq=False)
 class Coordinate:
-    """A quantity that can be an axis: a component of the observation, or an angle of which it has cosine and sine."""
+    """A quantity that can be an axis: a component of the observation, or an angle given by its cosine and sine."""
 
     name: str
     label: str
     low: float
     high: float
     components: tuple[int, ...]
-    """The component, or those of the cosine and the sine."""
+    """The index of the component, or those of the cosine and the sine."""
     edges: NDArray[np.float64] | None
     """The edges of its cells; None for an angle."""
 
     @property
     def default(self) -> float:
-        """Zero, or else the bound that is nearest."""
+        """Zero, or the bound nearest to it."""
         return float(np.clip(0.0, self.low, self.high))
 
     def read(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -36,7 +36,7 @@ class Coordinate:
 
 
 def coordinates(subject: Subject) -> tuple[Coordinate, ...]:
-    """Returns the quantities that can be axes: angles first, then the remaining components in their order."""
+    """Returns the quantities that can be axes: angles first, then the remaining components in order."""
     axes = subject.axes
     description = subject.description
     named = tuple(axis.name for axis in axes) == tuple(one.name for one in description.observation)
@@ -50,7 +50,7 @@ def coordinates(subject: Subject) -> tuple[Coordinate, ...]:
 
 
 def _component(index: int, axis: Axis) -> Coordinate:
-    """Outer bins without an outer edge are drawn as wide as their neighbors."""
+    """Returns the coordinate of a component; outer bins without an outer edge are as wide as their neighbors."""
     edges = axis.edges.copy()
     inner = edges[np.isfinite(edges)]
     width = float(np.diff(inner).mean()) if len(inner) > 1 else 1.0

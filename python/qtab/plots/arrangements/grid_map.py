@@ -20,11 +20,11 @@ Layout = Sequence[str] | tuple[int, int]
 """A map: rows of text, a letter for each state, or the numbers of rows and columns."""
 
 NAMES = {"S": "S", "G": "G", "H": "hole", "C": "cliff"}
-"""What is written on the cells with these letters; other letters are ground."""
+"""The text on the cells with these letters; other letters are ground."""
 FILLS = {"G": "#2f8f5b", "H": "#4b6f9c", "C": "#8a6a4a"}
 """The colors of these cells."""
 NO_STATE = "HGC#"
-"""In these cells no action is taken."""
+"""The letters of cells in which no action is taken."""
 
 
 def checked_layout(layout: Any, states: int) -> tuple[str, ...]:
@@ -32,7 +32,7 @@ def checked_layout(layout: Any, states: int) -> tuple[str, ...]:
 
     Raises:
         TypeError: if it is neither rows of text nor two integers.
-        ValueError: if it has another number of cells than there are states.
+        ValueError: if the number of cells differs from the number of states.
     """
     if isinstance(layout, str | bytes) or not isinstance(layout, Sequence):
         raise TypeError(f"layout must be rows of text, or the numbers of rows and columns, got {layout!r}")
@@ -53,7 +53,7 @@ def known_layout(subject: Subject) -> tuple[str, ...]:
     kwargs = subject.env_kwargs
     side = math.isqrt(states)
     if kwargs.get("map_name", "") is None and kwargs.get("desc") is None:
-        return ("." * side,) * side  # a random map, which a new environment would draw again
+        return ("." * side,) * side  # a random map: a new environment would draw another one
     with closing(gym.make(spec_of_run(subject.env), **{**kwargs, "render_mode": None})) as made:
         env: Any = made.unwrapped
         if hasattr(env, "desc"):
@@ -68,7 +68,7 @@ def known_layout(subject: Subject) -> tuple[str, ...]:
 
 
 def grid_map(layout: Sequence[str], first: int = 0) -> Raster:
-    """Returns the raster of a map: a cell for each state, which are numbered from ``first`` row by row."""
+    """Returns the raster of a map with a cell for each state; states are numbered from ``first``, row by row."""
     height, width = len(layout), len(layout[0])
     letters = np.array([list(row) for row in layout])
     rows = np.where(np.isin(letters, list(NO_STATE)), -1, np.arange(height * width).reshape(height, width))

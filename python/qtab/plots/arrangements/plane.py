@@ -16,16 +16,16 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 RESOLUTION = 200
-"""The points along each axis, where cells cannot be drawn as they are."""
+"""The number of points along each axis, if cells cannot be drawn as they are."""
 
 
 def plane(subject: Subject, at: Mapping[str, float] | None, sampled: bool = False) -> Raster:
     """Returns the raster of two coordinates.
 
     Args:
-        subject: What to draw.
+        subject: The subject to draw.
         at: The coordinates that are held fixed, by name; None and missing ones take their defaults.
-        sampled: Whether to sample points where cells could be drawn as they are.
+        sampled: Whether to sample points even if cells could be drawn as they are.
 
     Raises:
         TypeError: if ``at`` is not a mapping of names to numbers.
@@ -122,7 +122,7 @@ def _observations(
     fixed: Mapping[str, float],
     edges: list[NDArray[np.float64]],
 ) -> NDArray[Any]:
-    """The observation in the middle of each point of the picture."""
+    """Returns the observation in the middle of each point of the picture."""
     middles = [(ends[1:] + ends[:-1]) / 2 for ends in edges]
     grid = np.meshgrid(*middles)
     found = np.empty((grid[0].size, len(subject.axes)))

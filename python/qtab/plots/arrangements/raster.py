@@ -26,7 +26,7 @@ DIRECTIONS: Mapping[str, tuple[int, int]] = {
 
 
 def outline(ink: str) -> list[Any]:
-    """Returns the path effects of letters that can stand on any color: an outline of the other brightness."""
+    """Returns path effects that keep letters readable on any color: an outline of the opposite brightness."""
     from matplotlib.patheffects import withStroke
 
     return [withStroke(linewidth=2, foreground="#101010" if ink == LIGHT else "#ffffff")]
@@ -47,17 +47,17 @@ class Raster:
     rows: NDArray[np.int64]
     """(ny, nx, n_active): the active rows of the table at each point; -1 where there is no state."""
     locate: Callable[[NDArray[Any]], NDArray[np.float64]]
-    """Returns where observations, (n, d) or (n,), are in the picture: (n, 2)."""
+    """Returns (n, 2): the positions in the picture of observations, (n, d) or (n,)."""
     labels: tuple[str, str] = ("", "")
     """The labels of the axes."""
     note: str = ""
-    """What the picture does not show: the values of the other components."""
+    """The values of the components that the picture does not show."""
     decorate: Callable[["Axes", str], None] = _nothing
     """Draws letters, walls and ticks in a color."""
     bar_at: float = 1.02
-    """Where a color bar begins, in widths of the axes."""
+    """The x position of a color bar, in widths of the axes."""
     parts: Mapping[str, slice] = field(default_factory=dict)
-    """The rows of each part, of a picture whose regions are to be labeled."""
+    """The rows of each part, for a picture with labeled regions."""
     is_map: bool = False
     """Whether columns and rows are places, so that moves are arrows; the rows then run downwards."""
     has_numbers: bool = False
@@ -65,17 +65,17 @@ class Raster:
     has_gaps: bool = False
     """Whether it has several parts with gaps between them, which a line must not cross."""
     observations: NDArray[Any] | None = None
-    """(ny * nx, d): the observation at each point; None where the rows were counted directly."""
+    """(ny * nx, d): the observation at each point; None if the rows were counted directly."""
     size: tuple[float, float] = (8.0, 4.5)
     """The width and the height of a figure that suits the picture, in inches."""
 
     @property
     def centers(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """The middles of the columns and of the rows."""
+        """The centers of the columns and of the rows."""
         return (self.x_edges[1:] + self.x_edges[:-1]) / 2, (self.y_edges[1:] + self.y_edges[:-1]) / 2
 
     def frame(self, ax: "Axes", ink: str) -> None:
-        """Sets the limits, the labels and the direction of the axes, and draws what belongs to the arrangement."""
+        """Sets the limits, the labels and the direction of the axes, and draws the marks of the arrangement."""
         ax.set_xlabel(self.labels[0])
         ax.set_ylabel(self.labels[1])
         margin = 0.08 if self.has_gaps else 0.0

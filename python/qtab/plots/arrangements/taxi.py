@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 SIDE, PASSENGERS, DESTINATIONS = 5, 5, 4
 PITCH = SIDE + 1
-"""From one map to the next: one cell is left between them."""
+"""The distance from one map to the next, which leaves one cell between them."""
 PLACES = ("red", "green", "yellow", "blue")
 LOCATIONS = ((0, 0), (0, 4), (4, 0), (4, 3))
 """The row and column of each place."""
