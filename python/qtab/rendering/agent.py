@@ -21,12 +21,12 @@ from qtab.training.run_env import check_env, check_spaces
 
 @dataclass(frozen=True)
 class Agent:
-    """What acts, and where."""
+    """An agent and its environment."""
 
     source: Run | Optimum
-    """What it was made from."""
+    """The object that it was made from."""
     config: Config
-    """Its environment and the time limit; of a run, all settings."""
+    """The environment and the time limit; for a run, all settings."""
     act: Callable[[Any, Any, Any], tuple[Any, Any]]
     """Takes an observation, a state, None at first, and the action mask, None without one; returns the action as
     ``env.step`` takes it, and the state."""
@@ -58,7 +58,7 @@ def agent_of(source: Any) -> Agent:
 
 
 def _greedy(run: Run) -> Callable[[Any, Any, Any], tuple[Any, Any]]:
-    """Returns the policy that :func:`qtab.evaluate` plays, to the bit."""
+    """Returns the policy that :func:`qtab.evaluate` plays, bit for bit."""
     table = greedy_table(run)[0]
 
     def act(observation: Any, state: Any, mask: Any) -> tuple[Any, Any]:
@@ -81,7 +81,7 @@ def rendered_environment(
     max_episode_steps: int,
     render_mode: str,
 ) -> gym.Env:
-    """Returns the environment in which an agent is to be seen: its own, another, or a given one with the time limit.
+    """Returns the environment in which to render an agent: the agent's, another, or a given one with the time limit.
 
     Raises:
         gymnasium.error.UnregisteredEnv: without ``env``, for an agent whose environment is not registered.

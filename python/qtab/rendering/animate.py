@@ -1,4 +1,4 @@
-"""``qtab.animate``: what a run learned, over its snapshots."""
+"""``qtab.animate``: pictures of a run's values or policy over its snapshots."""
 
 import os
 from collections.abc import Mapping
@@ -30,7 +30,7 @@ class Animation:
     what: str
     """``"values"`` or ``"policy"``."""
     episodes: NDArray[np.int64]
-    """(n,): how many episodes were finished at each picture."""
+    """(n,): the number of finished episodes at each picture."""
     frames: Frames = field(repr=False)
     """The pictures."""
 
@@ -44,7 +44,7 @@ class Animation:
         """Writes the animation to a file, completely or not at all.
 
         Args:
-            path: Ends in ``.gif``, ``.mp4`` or ``.html``; the last is a page with a slider, which needs no other file.
+            path: The file, ending in ``.gif``, ``.mp4`` or ``.html``, a page with a slider that needs no other file.
 
         Raises:
             ModuleNotFoundError: if a library is missing; the message names the ``pip install``.
@@ -55,7 +55,7 @@ class Animation:
         save_video(self.frames, target, lambda: page(self.env, self._repr_html_()))
 
     def _repr_html_(self) -> str:
-        """The pictures with a slider, for notebooks."""
+        """HTML for notebooks: the pictures with a slider."""
         noun = "Values of the states" if self.what == "values" else "Greedy policy"
         return slider(list(png_uris(self.frames)), self.frames.labels, self.frames.fps, f"{noun} of {self.env}")
 
@@ -71,7 +71,7 @@ def animate(
     title: str | None = None,
     progress: bool | None = None,
 ) -> Animation:
-    """Draws what a run had learned at each of its snapshots, with one scale of colors.
+    """Draws the values or the policy of a run at each of its snapshots, with one scale of colors.
 
     Args:
         run: A run trained with ``snapshots=``.
@@ -81,8 +81,7 @@ def animate(
         at: For observations of more than two components, the values of those that are not axes; see
             :func:`qtab.plots.values`.
         layout: A map for numbered states; see :func:`qtab.plots.values`.
-        title: The title, above the number of episodes; None names the environment, the algorithm and the
-            seed.
+        title: The title, above the number of episodes; None names the environment, the algorithm and the seed.
         progress: Whether to show a progress bar; None shows one after a second.
 
     Returns:

@@ -1,4 +1,4 @@
-"""Episodes of an agent, as they are rendered."""
+"""Episodes of an agent that are rendered."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -14,14 +14,14 @@ from qtab.results.run import Run
 
 @dataclass(frozen=True)
 class Episodes:
-    """What happened in them."""
+    """The results of the finished episodes."""
 
     returns: NDArray[np.float64]
-    """(episodes,)"""
+    """(episodes,): the return of each episode."""
     lengths: NDArray[np.int64]
-    """(episodes,)"""
+    """(episodes,): the number of steps of each episode."""
     terminated: NDArray[np.bool_]
-    """(episodes,)"""
+    """(episodes,): whether each episode ended in a terminal state."""
 
 
 def play_episodes(
@@ -30,12 +30,12 @@ def play_episodes(
     """Plays episodes.
 
     Args:
-        agent: What acts.
+        agent: The agent.
         env: The environment, with a time limit.
         episodes: The number of episodes.
         seed: Seeds the first reset, as :func:`qtab.evaluate` does.
-        see: Called after each reset and each step with the numbers of the episode and of the step; it stops the
-            playing by returning False.
+        see: Called after each reset and each step with the numbers of the episode and of the step; returning
+            False stops the episodes.
 
     Returns:
         The finished episodes.

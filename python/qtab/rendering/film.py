@@ -1,4 +1,4 @@
-"""An agent's episodes as pictures or in a window: played when they are wanted, always the same."""
+"""An agent's episodes as pictures or in a window: played on demand, always the same."""
 
 import os
 import sys
@@ -18,7 +18,7 @@ from qtab.rendering.window import is_headless
 
 @dataclass(frozen=True)
 class Scene:
-    """Who plays where, from which seed, and how fast it is shown."""
+    """The agent, the environment, the seed and the speed of a film."""
 
     agent: Agent
     env: Any
@@ -28,9 +28,9 @@ class Scene:
     episodes: int
     seed: int
     fps: float | None
-    """None takes that of the environment."""
+    """The pictures per second; None takes the speed of the environment."""
     max_frames: int | None = None
-    """Stops after so many pictures."""
+    """The largest number of pictures; None sets no limit."""
 
     def show(self) -> Episodes:
         """Plays in a window; returns the episodes that were finished before it was closed."""
@@ -61,7 +61,7 @@ class Scene:
 
 
 class Film:
-    """The pictures of a scene, rendered once, when they are first needed."""
+    """The pictures of a scene, rendered once on first use."""
 
     def __init__(self, scene: Scene) -> None:
         self._scene = scene
@@ -82,7 +82,7 @@ class Film:
         return self._frames
 
     def player(self, make: Callable[[Frames], str]) -> str:
-        """Returns the player of the pictures, which is made once."""
+        """Returns the player of the pictures, made once."""
         if self._player is None:
             self._player = make(self.frames())
         return self._player
@@ -90,7 +90,7 @@ class Film:
 
 @contextmanager
 def _with_speed(env: gym.Env, fps: float | None) -> Iterator[None]:
-    """Gives an environment another speed in its window, not its class."""
+    """Changes the speed of an environment's window, but not of its class."""
     before = env.metadata
     if fps is not None:
         env.metadata = {**before, "render_fps": fps}
@@ -103,7 +103,7 @@ def _with_speed(env: gym.Env, fps: float | None) -> Iterator[None]:
 
 @contextmanager
 def _without_display() -> Iterator[None]:
-    """Keeps SDL, where there is no display, from searching for one and printing errors."""
+    """Keeps SDL from searching for a display and printing errors if there is none."""
     if not is_headless():
         yield
         return
@@ -115,6 +115,6 @@ def _without_display() -> Iterator[None]:
 
 
 def _is_window_closed() -> bool:
-    """Returns whether the user has closed the window of pygame, which Gymnasium does not look at."""
+    """Returns whether the user has closed the window of pygame, which Gymnasium does not check."""
     pygame: Any = sys.modules.get("pygame")
     return pygame is not None and pygame.display.get_init() and bool(pygame.event.peek(pygame.QUIT))

@@ -21,15 +21,15 @@ FORMATS = (".mp4", ".gif", ".html")
 MAX_GIF_FPS = 50.0
 """Browsers slow down a GIF with shorter delays than 0.02 s."""
 PALETTE_FRAMES = 16
-"""The colors of about so many pictures make the palette of all."""
+"""The approximate number of pictures whose colors make the palette of all."""
 EXACT_COLORS = 8
-"""The most frequent colors, such as that of the background, are not changed."""
+"""The number of the most frequent colors, such as that of the background, that are kept exactly."""
 QUALITY = 7
-"""From 1 to 10: letters stay sharp, and an episode of Mountain Car takes about 40 kB."""
+"""The quality, from 1 to 10: with 7 letters stay sharp, and an episode of Mountain Car takes about 40 kB."""
 
 
 def check_video_path(path: Any) -> Path:
-    """Returns the path of a video, to which it can be written in the format that its suffix names.
+    """Checks that a video can be written to a path in the format of its suffix, and returns the path.
 
     Raises:
         ModuleNotFoundError: if the library for the format is missing; the message names the ``pip install``.
@@ -109,7 +109,7 @@ def png_uris(frames: Frames) -> Iterator[str]:
 
 
 def data_uri(kind: str, content: bytes) -> str:
-    """Returns content as a URI that holds it."""
+    """Returns content as a data URI."""
     return f"data:{kind};base64,{base64.b64encode(content).decode()}"
 
 
@@ -123,9 +123,9 @@ def _write_gif(frames: Frames, path: Path) -> None:
 
 
 def _images(frames: Frames) -> Iterator[Any]:
-    """Yields the pictures with one palette, that of some of them: much faster than a palette for each.
+    """Yields the pictures with one palette made from some of them, which is much faster than a palette for each.
 
-    The most frequent colors are kept exactly, so that white stays white; Pillow takes near ones.
+    The most frequent colors are kept exactly, so that white stays white; Pillow would choose similar ones.
     """
     image = _pillow()
     step = max(len(frames) // PALETTE_FRAMES, 1)
@@ -165,7 +165,7 @@ def ffmpeg() -> Any:
         raise missing(error, "video") from None
     try:
         imageio_ffmpeg.get_ffmpeg_exe()
-    except RuntimeError as error:  # a platform for which the library brings no ffmpeg
+    except RuntimeError as error:  # the library has no ffmpeg for this platform
         raise missing(ModuleNotFoundError(str(error), name="ffmpeg")) from None
     return imageio_ffmpeg
 

@@ -21,7 +21,7 @@ class Frames:
     def __init__(self, fps: float) -> None:
         self.fps = fps
         self.labels: list[str] = []
-        """What each picture shows."""
+        """The label of each picture."""
         self._shape: tuple[int, ...] | None = None
         self._compressed: list[bytes] = []
 
@@ -54,7 +54,7 @@ class Frames:
         self._shape = picture.shape
         compressed = zlib.compress(picture.tobytes(), 1)
         if self._compressed and self._compressed[-1] == compressed:
-            compressed = self._compressed[-1]  # an agent that does not move takes no memory
+            compressed = self._compressed[-1]  # an unchanged picture takes no memory
         self._compressed.append(compressed)
         self.labels.append(label)
 

@@ -32,7 +32,7 @@ def runs_at_snapshots(run: Run) -> list[tuple[int, Run]]:
     """
     if run.snapshots is None or not len(run.snapshots):
         raise ValueError("run must have snapshots: qtab.train(..., snapshots=50) keeps them")
-    # A number as the first value tells what had been learned by then. Otherwise the visits tell what ever was.
+    # If the initial value is a number, the tables show what was learned by then; else the visits show what ever was.
     visits = None if isinstance(run.config.initial_q, int | float) else run.visits
     tables = zip(run.snapshots.episodes.tolist(), run.snapshots.tables, strict=True)
     return [(done, dataclasses.replace(run, tables=table, visits=visits)) for done, table in tables]
@@ -55,12 +55,12 @@ def draw_learning(
     """Returns a picture of each state, with a panel for the values, for the policy, or for each of them.
 
     Args:
-        states: What :func:`runs_at_snapshots` returns.
-        panels: Which panels, of :data:`PANELS`.
+        states: The result of :func:`runs_at_snapshots`.
+        panels: The panels to draw, of :data:`PANELS`.
         fps: The number of pictures per second.
         at: The components of the observation that are held fixed; see :func:`qtab.plots.values`.
         layout: A map for numbered states; see :func:`qtab.plots.values`.
-        titles: The title of each panel, below which the number of episodes stands; None names the run.
+        titles: The title of each panel, above the number of episodes; None names the run.
         progress: Whether to show a progress bar; None shows one after a second.
 
     Raises:
@@ -80,9 +80,9 @@ def draw_learning(
     canvas: Any = FigureCanvasAgg(figure)
     frames = Frames(fps)
     painter = _Painter(figure, raster, subjects, panels, at, layout)
-    # A given height of the titles saves matplotlib from measuring all labels for each picture.
+    # With a fixed height of the titles, matplotlib does not measure all labels for each picture.
     with rc_context({"axes.titley": 1.0}), ProgressBar(len(states), "snapshot", progress, "draw") as bar:
-        # The last picture, which has most to show, determines the layout of all.
+        # The last picture, which shows the most, determines the layout of all.
         painter.draw(len(states) - 1, _below(titles, states[-1][0]))
         canvas.draw()
         figure.set_layout_engine("none")
@@ -120,7 +120,7 @@ class _Painter:
             self.norm = common_norm(self.grids)
 
     def draw(self, index: int, titles: Sequence[str]) -> None:
-        """Replaces what the axes show by the state with an index."""
+        """Draws the state with an index in place of the previous one."""
         for ax, panel, title in zip(self.axes, self.panels, titles, strict=True):
             self._clear(ax)
             if panel == "values":
@@ -132,7 +132,7 @@ class _Painter:
                 policy(source, ax, at=self.at, layout=self.layout, title=title)
 
     def _clear(self, ax: Any) -> None:
-        """Removes what was drawn; the axes, their ticks and the color bar stay, which saves a third of the time."""
+        """Removes the drawing; the axes, their ticks and the color bar stay, which saves a third of the time."""
         legend = ax.get_legend()
         drawn = [*ax.collections, *ax.lines, *ax.texts, *ax.patches, *ax.images, *ax.child_axes, legend]
         for artist in drawn:

@@ -28,7 +28,7 @@ from qtab.results.run import Run
 _LOGGER = logging.getLogger("qtab")
 MAX_FPS = 1000.0
 MAX_LISTED = 3
-"""The returns of so many episodes are listed; of more their mean is."""
+"""The largest number of returns to list; of more, the mean is shown."""
 
 
 @with_fields
@@ -41,9 +41,9 @@ class Playback:
     returns: NDArray[np.float64]
     """(episodes,): the sum of rewards of each finished episode."""
     lengths: NDArray[np.int64]
-    """(episodes,): the number of steps of each."""
+    """(episodes,): the number of steps of each episode."""
     terminated: NDArray[np.bool_]
-    """(episodes,): whether each ended in a terminal state."""
+    """(episodes,): whether each episode ended in a terminal state."""
     seed: int
     """The seed of the environment."""
     film: Film = field(repr=False)
@@ -67,7 +67,7 @@ class Playback:
         """Writes the video to a file, completely or not at all.
 
         Args:
-            path: Ends in ``.mp4``, ``.gif`` or ``.html``; the last is a page with a player, which needs no other file.
+            path: The file, ending in ``.mp4``, ``.gif`` or ``.html``, a page with a player that needs no other file.
 
         Raises:
             ModuleNotFoundError: if a library is missing; the message names the ``pip install``.
@@ -81,7 +81,7 @@ class Playback:
         return page(self.env, f"{paragraph(self.summary)}\n{self._repr_html_()}")
 
     def _repr_html_(self) -> str:
-        """A player, for notebooks."""
+        """HTML for notebooks: a player."""
         return self.film.player(lambda frames: episode_player(frames, self.summary))
 
 
@@ -100,15 +100,15 @@ def play(
     """Shows the greedy agent in motion, rendered by Gymnasium: in a notebook as a video, in a script in a window.
 
     With the same seed the episodes are those of :func:`qtab.evaluate`. An :class:`~qtab.Optimum` plays its policy.
-    Closing the window ends the playing; the result then holds the finished episodes.
+    Closing the window stops the replay; the result then holds the finished episodes.
 
     Args:
         run: The run, or an optimum. It is not changed.
         episodes: The number of episodes.
         seed: The seed of the environment; None draws one, which the result records.
-        env: Another environment than the run's: an id, an EnvSpec, or an environment that was made with
+        env: An environment other than the run's: an id, an EnvSpec, or an environment that was made with
             ``render_mode="rgb_array"``, or ``"human"`` for a window. It is not closed.
-        window: Whether to show a window. None shows one outside of notebooks where there is a display.
+        window: Whether to show a window. None shows one outside of notebooks if there is a display.
         fps: Pictures per second; None takes the environment's ``render_fps``.
         env_kwargs: Keyword arguments for the environment's constructor; None takes those of the run, or with ``env``
             none.
@@ -123,7 +123,7 @@ def play(
         ModuleNotFoundError: for a window without pygame; the message names the ``pip install``.
         TypeError: for an argument of the wrong type.
         ValueError: for an argument out of range, an environment that cannot be rendered or has other spaces than the
-            run's, or a window where there is no display.
+            run's, or a window without a display.
     """
     agent = agent_of(run)
     episodes = checks.integer("episodes", episodes, least=1)
@@ -145,7 +145,7 @@ def play(
 
 
 def _opens_window(env: Any, window: bool | None) -> tuple[bool, str | None]:
-    """Returns whether to open a window, and why none can be opened where nobody asked for one."""
+    """Returns whether to open a window, and if ``window`` is None the reason why none can be opened."""
     if isinstance(env, gym.Env) and window is None:
         return env.render_mode == "human", None
     if window is False or (window is None and in_notebook()):

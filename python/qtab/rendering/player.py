@@ -6,7 +6,7 @@ from html import escape
 from qtab.rendering.formats import mp4_uri, png_uris
 from qtab.rendering.frames import Frames
 
-# Attributes instead of a script element: notebooks run them, and several players on a page do not share names.
+# Attributes instead of a script element: notebooks run them, and several players on a page share no names.
 _MOVE = (
     "const f=this.closest('figure'),p=f.querySelectorAll('img'),n=+this.value;"
     "p.forEach((e,i)=>{e.style.display=i===n?'':'none'});const o=f.querySelector('output');"
@@ -25,7 +25,7 @@ def episode_player(frames: Frames, title: str) -> str:
 
     Args:
         frames: The pictures.
-        title: What they show, for screen readers.
+        title: The subject of the pictures, for screen readers.
     """
     uri = mp4_uri(frames)
     if uri is None:
@@ -41,9 +41,9 @@ def slider(pictures: Sequence[str], labels: Sequence[str], fps: float, title: st
 
     Args:
         pictures: URIs.
-        labels: What each picture shows.
+        labels: The label of each picture.
         fps: The number of pictures per second.
-        title: What they show, for screen readers.
+        title: The subject of the pictures, for screen readers.
         start: The index of the picture that is shown first; None means the last.
     """
     last = len(pictures) - 1

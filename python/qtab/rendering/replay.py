@@ -26,7 +26,7 @@ def make_render_env(
     Args:
         config: The config of the run.
         render_mode: The render mode.
-        env_kwargs: Other keyword arguments than the run's; None takes those.
+        env_kwargs: The keyword arguments of the environment's constructor; None takes the run's.
         max_episode_steps: Another time limit; None takes the run's.
 
     Raises:
@@ -95,13 +95,13 @@ def replay_all(
 ) -> int:
     """Replays all recorded episodes of a run in ``env``, and returns the number with another return than in training.
 
-    The environment is seeded first, as for the run. One with a method ``resume_after`` is told before each episode how
-    many steps the run had taken until then. A return can differ if the environment keeps other state between episodes
-    beside that of its ``np_random``.
+    The environment is seeded first, as for the run. If it has a method ``resume_after``, this is called before each
+    episode with the number of steps that the run had taken. A return can differ if the environment keeps state between
+    episodes other than its ``np_random``.
     """
     different = 0
     if run.recordings:
-        # What the first reset of a run draws for all episodes, such as the problem of a bandit, must be there again.
+        # The first reset of a run can draw state for all episodes, such as a bandit problem, which is needed again.
         env.unwrapped.reset(seed=run.config.seed)
     with ProgressBar(len(run.recordings), "episode", progress, "replay") as bar:
         for index, recording in enumerate(run.recordings):

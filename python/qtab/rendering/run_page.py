@@ -33,9 +33,9 @@ from qtab.results.summary import FINAL_EPISODES
 from qtab.training.run_env import check_env
 
 MAX_SNAPSHOTS = 50
-"""Of more snapshots, so many are shown."""
+"""The largest number of snapshots to show."""
 MAX_FRAMES = 300
-"""A longer episode is cut, so that the page stays small."""
+"""The largest number of frames; longer episodes are cut, so that the page stays small."""
 DOTS_PER_INCH = 100
 SNAPSHOTS_PER_SECOND = 5.0
 
@@ -67,7 +67,7 @@ def _page(
     env: Any,
     progress: bool | None,
 ) -> str:
-    episode = _episode(run, env)  # first, as a wrong environment is then refused at once
+    episode = _episode(run, env)  # first, so that a wrong environment raises at once
     found = _diagnosis(run, optimum)
     if optimum is None and found is not None:
         optimum = _best_known(found)
@@ -142,14 +142,14 @@ def _episode(run: Run, env: Any) -> str:
 
 
 def _diagnosis(run: Run, optimum: Optimum | float | None) -> Diagnosis | None:
-    """Returns the diagnosis where it takes about a second."""
+    """Returns the diagnosis if it takes about a second, else None."""
     if run.config.backend != "rust" or not len(run.episode_returns):
         return None
     return diagnose(run, optimum if isinstance(optimum, Optimum) else None)
 
 
 def _best_known(found: Diagnosis) -> Any:
-    """Returns what the learning curve marks: the exact optimum, or the best known return with its name."""
+    """Returns the mark of the learning curve: the exact optimum, or the best known return with its name."""
     value = found.facts.best_return
     if found.facts.optimum is not None or value is None:
         return found.facts.optimum
@@ -158,7 +158,7 @@ def _best_known(found: Diagnosis) -> Any:
 
 def _findings(found: Diagnosis | None) -> str:
     if found is None:
-        return paragraph("There is none: it needs an environment that Rust steps, and a finished episode.")
+        return paragraph("Not available: the diagnosis needs an environment that Rust steps, and a finished episode.")
     return f'<div class="text wide">{found._repr_html_()}</div>'
 
 

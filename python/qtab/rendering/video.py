@@ -16,11 +16,11 @@ from qtab.results.run import Recording, Run
 
 
 class VideoRecorder:
-    """Writes videos into a folder. The constructor raises everything that can be known before training.
+    """Writes videos into a folder. The constructor raises all errors that can be known before training.
 
     Args:
         config: The resolved config of the run.
-        folder: Where the videos are written; created if it does not exist.
+        folder: The folder to write the videos to, created if it does not exist.
 
     Raises:
         ModuleNotFoundError: without imageio-ffmpeg; the message names the ``pip install``.
@@ -38,7 +38,7 @@ class VideoRecorder:
         self._env = make_render_env(config, "rgb_array")
         try:
             self._env.reset()
-            # A picture that no video can hold is refused here, before training.
+            # A picture that no video can hold raises here, before training.
             Frames(frames_per_second(self._env, None)).append(self._env.render(), "")
             _create_folder(folder)
         except BaseException:
