@@ -1,4 +1,4 @@
-"""Which actions a state has, in plain NumPy: an action that is masked has the value -inf."""
+"""Action masks in plain NumPy: a masked action has the value -inf."""
 
 from typing import Any
 
@@ -20,7 +20,7 @@ class ActionMasks:
         self.of_state: dict[tuple[int, ...], NDArray[np.bool_]] = {}
 
     def see(self, state: list[int], observation: Any, info: dict[str, Any]) -> None:
-        """Keeps the mask of a state: by a function, the environment's ``action_masks()`` or its info."""
+        """Keeps the mask of a state, from a function, the environment's ``action_masks()`` or its info."""
         if self.setting is False:
             return
         if callable(self.setting):

@@ -11,7 +11,7 @@ from qtab.config import Config
 
 
 def actions(env: gym.Env, config: Config) -> list[Any]:
-    """Returns the actions as ``env.step`` takes them; of several components every combination, the last one fastest.
+    """Returns the actions as ``env.step`` takes them; for several components every combination, the last one fastest.
 
     Raises:
         TypeError: for an action space that cannot be enumerated.

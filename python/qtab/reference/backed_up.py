@@ -1,4 +1,4 @@
-"""The return that tree backup and Q(σ) back up (Sutton & Barto, 2nd ed., equations 7.16 and 7.17)."""
+"""The n-step returns of tree backup and Q(σ) (Sutton & Barto, 2nd ed., equations 7.16 and 7.17)."""
 
 from collections.abc import Callable
 
@@ -10,7 +10,7 @@ from qtab.reference.expected_sarsa import expected_value
 from qtab.reference.task import Result, Rows, Table, Task, value
 
 Weight = Callable[[float, float], float]
-"""From π(A | S) and the importance sampling ratio ρ to the weight of what follows A."""
+"""Returns the weight of the return after A from π(A | S) and the importance sampling ratio ρ."""
 
 
 def n_step_backups(
@@ -21,7 +21,7 @@ def n_step_backups(
     Q = task.table()
 
     def chosen(state: Rows) -> tuple[int, float]:
-        """An action by the behaviour policy b, and ρ = π(A | S) / b(A | S)."""
+        """Returns an action by the behaviour policy b, and ρ = π(A | S) / b(A | S)."""
         values = task.values(Q, state)
         action = task.policy.choose(values, state)
         ratio = (
@@ -70,11 +70,11 @@ def n_step_backups(
 
 
 def expected(task: Task, Q: Table, state: Rows, greedy: bool) -> float:
-    """Σ π(a | S) Q(S, a)."""
+    """Returns Σ π(a | S) Q(S, a)."""
     return float(np.max(task.values(Q, state))) if greedy else expected_value(task, Q, state)
 
 
 def probability(task: Task, Q: Table, state: Rows, action: int, greedy: bool) -> float:
-    """π(A | S). An action that ties for the maximum is greedy."""
+    """Returns π(A | S). An action that ties for the maximum is greedy."""
     values = task.values(Q, state)
     return float(values[action] == np.max(values)) if greedy else task.policy.probabilities(values, state)[action]

@@ -1,4 +1,4 @@
-"""From an observation to the active rows of the table, in plain NumPy."""
+"""Discretizers in plain NumPy: from an observation to the active rows of the table."""
 
 import math
 from typing import Any, Protocol
@@ -18,7 +18,7 @@ class Discretizer(Protocol):
     shape: tuple[int, ...]
     """The shape of the table, without its actions."""
     n_active: int
-    """How many rows are active for an observation."""
+    """The number of active rows for an observation."""
 
     def rows(self, observation: ArrayLike) -> list[int]:
         """Returns the active rows of an observation."""
@@ -36,7 +36,7 @@ class Rounding:
 
     def rows(self, observation: ArrayLike) -> list[int]:
         """Returns one row; the cells are numbered in C order."""
-        # In the dtype of the space, whatever the dtype of the observation.
+        # Computed in the dtype of the space, whatever the dtype of the observation.
         cell = np.round((np.asarray(observation, dtype=self.low.dtype) - self.low) * self.scale, 0).astype(int)
         return [int(np.ravel_multi_index(tuple(cell), self.shape))]
 
@@ -53,7 +53,7 @@ class Bins:
         else:
             low, high = np.array(config.low, dtype=self.dtype), np.array(config.high, dtype=self.dtype)
             self.edges = [np.linspace(*ends) for ends in zip(low, high, np.array(config.bins) + 1, strict=True)]
-            # What lies beyond the limits belongs to the outermost bins.
+            # Values beyond the limits belong to the outermost bins.
             self.edges = [edges[1:-1] for edges in self.edges]
         self.shape: tuple[int, ...] = tuple(len(edges) + 1 for edges in self.edges)
 

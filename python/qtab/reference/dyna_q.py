@@ -8,7 +8,7 @@ from qtab.config.algorithms import DynaQ
 from qtab.reference.task import Result, Rows, Table, Task
 
 Outcomes = dict[tuple[float, int | None], int]
-"""How often each reward and next row followed a state and action."""
+"""The number of times that each reward and next row followed a state and action."""
 
 
 def dyna_q(env: gym.Env, config: Config, stop_after: int | None = None) -> Result:
@@ -16,8 +16,8 @@ def dyna_q(env: gym.Env, config: Config, stop_after: int | None = None) -> Resul
     task = Task(env, config, stop_after)
     options = DynaQ.of(config)
     Q = task.table()
-    # Model(S, A) = what followed: R, S' (None after a terminal state), and how often. Dicts keep the order of first
-    # visits, first tries and first outcomes. A deterministic model keeps the last outcome alone.
+    # Model(S, A) = the outcomes R, S' (None after a terminal state), and their counts. Dicts keep the order of first
+    # visits, first tries and first outcomes. A deterministic model keeps only the last outcome.
     model: dict[int, dict[int, Outcomes]] = {}
 
     for _ in task.episodes():
@@ -47,7 +47,7 @@ def dyna_q(env: gym.Env, config: Config, stop_after: int | None = None) -> Resul
 
 
 def sample(task: Task, outcomes: Outcomes) -> tuple[float, int | None]:
-    """Returns an outcome with the probability that it had so far."""
+    """Returns a random outcome, each with its relative frequency so far."""
     left = int(task.rng.integers(0, sum(outcomes.values())))
     for outcome, count in outcomes.items():
         if left < count:

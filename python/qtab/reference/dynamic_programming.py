@@ -16,7 +16,7 @@ LAST_BITS = 4 * sys.float_info.epsilon
 
 
 def action_value(P: Any, V: Sequence[float] | NDArray[np.float64], s: int, a: int, discount: float) -> float:
-    """Σ p (r + γ V(s')): what comes after a terminal step counts nothing (eq. 4.6)."""
+    """Returns Σ p (r + γ V(s')), in which a state after a terminal step has the value 0 (eq. 4.6)."""
     value = 0.0
     for p, s_next, r, terminated in P[s][a]:
         value += p * (r + discount * (0.0 if terminated else V[s_next]))
@@ -32,7 +32,7 @@ def action_size(P: Any, V: Sequence[float] | NDArray[np.float64], s: int, a: int
 
 
 def value_iteration(P: Any, discount: float) -> NDArray[np.float64]:
-    """V(s) ← max_a Σ p (r + γ V(s')), in place, until changes are in the last bits and shrink no more (eq. 4.10).
+    """V(s) ← max_a Σ p (r + γ V(s')), in place, until changes are in the last bits and no longer shrink (eq. 4.10).
 
     The last bits are relative to the magnitudes of the terms of the largest action value.
     """
@@ -52,7 +52,7 @@ def value_iteration(P: Any, discount: float) -> NDArray[np.float64]:
 
 
 def finite_horizon(P: Any, discount: float, steps: int) -> NDArray[np.float64]:
-    """The best values with all steps left: V_k(s) = max_a Σ p (r + γ V_{k-1}(s')), V_0 = 0."""
+    """Returns the best values with all steps left: V_k(s) = max_a Σ p (r + γ V_{k-1}(s')), V_0 = 0."""
     V = np.zeros(len(P)).tolist()
     for _ in range(steps):
         V = [max(action_value(P, V, s, a, discount) for a in range(len(P[s]))) for s in range(len(P))]
@@ -60,7 +60,7 @@ def finite_horizon(P: Any, discount: float, steps: int) -> NDArray[np.float64]:
 
 
 def policy_return(P: Any, initial_state_distrib: Any, policy: Any, steps: int) -> float:
-    """What a policy that never changes returns on average within so many steps, without a discount."""
+    """Returns the expected undiscounted return of a fixed policy within ``steps`` steps."""
     V = np.zeros(len(P)).tolist()
     for _ in range(steps):
         V = [action_value(P, V, s, policy[s], 1.0) for s in range(len(P))]
@@ -71,7 +71,7 @@ def policy_return(P: Any, initial_state_distrib: Any, policy: Any, steps: int) -
 
 
 def sweep(P: Any, V: Sequence[float], discount: float, policy: Any, in_place: bool) -> list[float]:
-    """One sweep: V(s) ← Σ π(a|s) q(s, a) (eq. 4.5), or without a policy max_a q(s, a) (eq. 4.10)."""
+    """Makes one sweep: V(s) ← Σ π(a|s) q(s, a) (eq. 4.5), or without a policy max_a q(s, a) (eq. 4.10)."""
     new = list(V)
     for s in range(len(P)):
         old = new if in_place else V

@@ -29,7 +29,7 @@ def first_visits(task: Task, Q: Table, state: Rows, action: int) -> None:
         if not terminal:
             action = task.choose(Q, state)
 
-    # After a time-out, the value of an action that is drawn, but not taken, stands for the return that is missing.
+    # After a time-out, the value of an action that is drawn, but not taken, replaces the missing return.
     G = 0.0 if terminal else value(Q, state, action)
     for t in reversed(range(len(pairs))):
         following = None if terminal and t == len(pairs) - 1 else G

@@ -1,4 +1,4 @@
-"""Observations of any space in plain NumPy: which discretizer divides which of their components."""
+"""Discretization of observations of any space, in plain NumPy."""
 
 import math
 from collections.abc import Iterator
@@ -13,7 +13,7 @@ from qtab.reference.discretizers import Bins, Discretizer, Identity, Rounding, T
 
 Path = tuple[Any, ...]
 SMALL = 1024
-"""Integers of at most so many values index the table; others are discretized."""
+"""The largest number of values of an integer that indexes the table; others are discretized."""
 
 
 def discretizer(env: gym.Env, config: Config) -> Discretizer:
@@ -42,7 +42,7 @@ def of_box(box: gym.spaces.Box, config: Config) -> Rounding | Bins | TileCoding:
 
 
 class Components:
-    """Each component of an observation is an index or is discretized, in Gymnasium's order and arrays in C order."""
+    """Each component of an observation is an index or is discretized, in Gymnasium's order, arrays in C order."""
 
     def __init__(self, space: gym.Space[Any], config: Config) -> None:
         self.leaves = list(leaves(space))
@@ -89,7 +89,7 @@ class Components:
         return np.concatenate([np.ravel(part(observation, path)) for path in paths])
 
     def rows(self, observation: Any) -> list[int]:
-        """Returns one row; or with tile coding one of each tiling, of those that the other components have."""
+        """Returns one row, or with tile coding one of each tiling, among those for the other components."""
         cell = self.cells(observation)
         row = int(np.ravel_multi_index(cell, self.cell_shape)) if cell else 0
         if self.tiles is None:
@@ -134,7 +134,7 @@ class AssignedRows:
 
 
 def leaves(space: Any, path: Path = ()) -> Iterator[tuple[Path, Any]]:
-    """Yields the spaces without spaces in them, and where they are.
+    """Yields the innermost spaces, each with its path.
 
     Raises:
         TypeError: for one that does not consist of numbers.
@@ -162,7 +162,7 @@ def size(leaf: Any) -> int:
 
 
 def integers(leaf: Any) -> list[tuple[int, int]]:
-    """Returns the first integer of each component, and how many there are; any number where there are no bounds."""
+    """Returns the first integer of each component and the number of integers; 0 stands for a missing bound."""
     if isinstance(leaf, gym.spaces.Discrete):
         return [(int(leaf.start), int(leaf.n))]
     if isinstance(leaf, gym.spaces.MultiDiscrete):

@@ -1,4 +1,4 @@
-"""What a learner shows of its work while it trains. :func:`qtab.explain` watches a run this way."""
+"""The interface to which learners report their work. :func:`qtab.explain` uses it to follow a run."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -19,7 +19,7 @@ Table = NDArray[np.float64]
 
 
 class Observer:
-    """Sees the parts of a task and every update. This one does nothing with them."""
+    """Receives the parts of a task and every update. The base class ignores them."""
 
     def masks(self, masks: "ActionMasks") -> None:
         """Called with the action masks, which are filled in as states are seen."""
@@ -42,7 +42,7 @@ class Observer:
         """Called after each step of the environment, before the learner learns from it.
 
         Args:
-            bonus: What the learner adds to the reward: the count bonus, or 0.
+            bonus: The count bonus that the learner adds to the reward, or 0.
             terminal: Whether the learner treats the next state as terminal, so that its value is zero.
         """
 
@@ -50,11 +50,11 @@ class Observer:
         """Called before every update, with the terms of its target.
 
         Args:
-            step: The number of the step in the episode, from 0; -1 is the last one of the episode before, and None one
-                that was planned.
-            rewards: The rewards in the target, with their bonuses, of which the k-th is discounted by γ^(k-1); none
-                where the target is a return G.
-            following: The value that is discounted in it after the rewards; None if nothing follows.
+            step: The number of the step in the episode, from 0; -1 is the last one of the previous episode, and None a
+                planned one.
+            rewards: The rewards in the target, with their bonuses, of which the k-th is discounted by γ^(k-1); empty
+                if the target is a return G.
+            following: The discounted value after the rewards; None if nothing follows.
         """
 
     def returned(self, step: int, target: float) -> None:
@@ -64,15 +64,15 @@ class Observer:
         """Called before an update of a differential method with the average reward R̄ in its target."""
 
     def exploring_start(self, values: Table, action: int, valid: int) -> None:
-        """Called with the first action of an episode where it is drawn among all valid actions of the state."""
+        """Called with the first action of an episode if it is drawn among all valid actions of the state."""
 
     def advantage(self, state: Sequence[int], target: float, reference: float, power: float) -> None:
         """Called before a state value and the preferences change.
 
         Args:
             state: The active rows of the state.
-            target: What its action was worth.
-            reference: What that is compared with; 0 without a baseline.
+            target: The reward, the return G, or R + γ v(S') of its action.
+            reference: The value to compare the target with; 0 without a baseline.
             power: γ^t.
         """
 
@@ -82,13 +82,13 @@ class Observer:
         """Called before preferences change along the gradient of ln π(A | S), or by their traces."""
 
     def after_ascent(self, H: Table) -> None:
-        """Called after that."""
+        """Called after the preferences changed."""
 
     def before_update(self, Q: Table, state: Sequence[int], action: int, target: float) -> None:
         """Called before Q(S, A) changes towards a target."""
 
     def after_update(self, Q: Table, step_sizes: Sequence[float] | None) -> None:
-        """Called after that, with the step size of each active row; None where the target was assigned."""
+        """Called after Q(S, A) changed, with the step size of each active row; None if the target was assigned."""
 
     def traces(self, z: Table, old_value: float | None = None) -> None:
         """Called in an update before all values with a trace change; ``old_value`` is Q_old of true online Sarsa(λ)."""

@@ -23,7 +23,7 @@ def off_policy_monte_carlo(env: gym.Env, config: Config, stop_after: int | None 
             steps.append((state[0], action, step.reward, probability))
             state, over, terminal = step.state, step.over, step.terminal
 
-        # After a time-out, the largest value stands for the return that is missing.
+        # After a time-out, the largest value replaces the missing return.
         G = 0.0 if terminal else float(np.max(task.values(Q, state)))
         W = 1.0
         for t in reversed(range(len(steps))):

@@ -1,4 +1,4 @@
-"""How actions are chosen from their values (Sutton & Barto, 2nd ed., sections 2.2, 2.7 and 2.8)."""
+"""Policies, which choose actions from their values (Sutton & Barto, 2nd ed., sections 2.2, 2.7 and 2.8)."""
 
 import math
 from typing import Protocol
@@ -51,7 +51,7 @@ class EpsilonGreedy:
         return [int(np.argmax(values))]
 
     def probabilities(self, values: Values, state: list[int]) -> list[float]:  # noqa: ARG002
-        """Returns ε / n for each of the n actions that there are, and shares the rest among the greedy ones."""
+        """Returns ε / n for each of the n valid actions, and shares the rest among the greedy ones."""
         epsilon, greedy = self.epsilon.value, self.greedy(values)
         valid = valid_actions(self.config, values)
         shares = [epsilon / len(valid) if action in valid else 0.0 for action in range(len(values))]
@@ -90,7 +90,7 @@ class Softmax:
         return [weight / total for weight in weights]
 
     def end_episode(self) -> None:
-        """The temperature is constant."""
+        """Keeps the temperature, which is constant."""
 
 
 class Ucb:
@@ -133,11 +133,11 @@ class Ucb:
         return [1.0 / len(candidates) if action in candidates else 0.0 for action in range(len(values))]
 
     def end_episode(self) -> None:
-        """The counts go on."""
+        """Keeps the counts."""
 
 
 def valid_actions(config: Config, values: Values) -> list[int]:
-    """Returns the actions that a state has. Those that it does not have are worth -inf, by a mask or from the start."""
+    """Returns the actions that a state has. All others have the value -inf, by a mask or in the initial table."""
     missing_at_first = isinstance(config.initial_q, np.ndarray) and bool(np.isneginf(config.initial_q).any())
     if config.action_mask is False and not missing_at_first:
         return list(range(len(values)))

@@ -1,4 +1,4 @@
-"""What policy gradient methods share, in plain NumPy (Sutton & Barto, 2nd ed., chapter 13)."""
+"""The common parts of policy gradient methods, in plain NumPy (Sutton & Barto, 2nd ed., chapter 13)."""
 
 from qtab._utils.checks import required
 from qtab.reference.task import Rows, Table, Task
@@ -12,7 +12,7 @@ def log_gradient(task: Task, theta: Table, state: Rows, action: int) -> list[flo
 
 
 def ascend(task: Task, theta: Table, state: Rows, action: int, scale: float) -> None:
-    """θ <- θ + α scale ∇ ln π(A | S, θ); the active rows of S share the step."""
+    """Updates θ <- θ + α scale ∇ ln π(A | S, θ); the active rows of S share the step."""
     step = step_size(task) * scale
     gradient = log_gradient(task, theta, state, action)
     task.observer.before_ascent(theta, state, action, step_size(task), gradient, None)
@@ -31,7 +31,7 @@ class Critic:
     """State values v(S, w): the sum of the weights of the active rows."""
 
     def __init__(self, task: Task) -> None:
-        # A column for each action, all equal, so that the values are stored beside the preferences.
+        # One column for each action, all equal, to store the values in the same shape as the preferences.
         self.w = task.critic_table()
         self.step = required("value_learning_rate", task.config.value_learning_rate) / task.discretizer.n_active
 
@@ -43,6 +43,6 @@ class Critic:
         return total
 
     def update(self, state: Rows, error: float) -> None:
-        """W <- W + α δ ∇v(S, w)."""
+        """Updates w <- w + α δ ∇v(S, w)."""
         for row in state:
             self.w[row] += self.step * error

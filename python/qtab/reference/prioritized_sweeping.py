@@ -21,7 +21,7 @@ def prioritized_sweeping(env: gym.Env, config: Config, stop_after: int | None = 
     # Model(S, A) = R, S' (None after a terminal state), and the pairs predicted to lead to each state.
     model: dict[Pair, tuple[float, Rows | None]] = {}
     predecessors: dict[int, set[Pair]] = {}
-    # The queue, the highest priority first, then the order of the table; what is no longer in `priorities` is ignored.
+    # The queue, by highest priority, then by the order of the table; entries no longer in `priorities` are ignored.
     queue: list[tuple[float, Pair]] = []
     priorities: dict[Pair, float] = {}
 

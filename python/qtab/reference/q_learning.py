@@ -1,4 +1,4 @@
-"""Q-learning in plain NumPy, to be read beside the article and the book (Sutton & Barto, 2nd ed., section 6.5)."""
+"""Q-learning in plain NumPy, to read beside the article and the book (Sutton & Barto, 2nd ed., section 6.5)."""
 
 import gymnasium as gym
 import numpy as np

@@ -13,7 +13,7 @@ def reinforce(env: gym.Env, config: Config, stop_after: int | None = None) -> Re
 
 
 def reinforce_with_baseline(env: gym.Env, config: Config, stop_after: int | None = None) -> Result:
-    """The same with state values as a baseline, which are the second table: one value a row, in every column."""
+    """Trains with state values as a baseline, which are the second table: one value per row, in every column."""
     return _reinforce(Task(env, config, stop_after), with_baseline=True)
 
 

@@ -1,4 +1,4 @@
-"""How the exploration rate and the learning rate change from episode to episode."""
+"""Schedules of the exploration rate and the learning rate over the episodes."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +18,7 @@ class Schedule:
         self.reduction = (value - minimum) / (episodes - warm_up)
 
     def end_episode(self) -> None:
-        """Decreases by the article's constant amount, or by a factor."""
+        """Decreases the rate by the article's constant amount, or by a factor."""
         if self.warm_up > 0:
             self.warm_up -= 1
         elif self.value > self.minimum:
@@ -62,7 +62,7 @@ class LearningRate:
             self.visits[row, action] += 1
 
     def step(self, row: int, action: int) -> float:
-        """Returns the step size; by visits that of the n-th is 1/n of the first one's."""
+        """Returns the step size; by visits, that of the n-th visit is 1/n of the first."""
         if self.by_visits:
             return max(self.schedule.value / int(self.visits[row, action]), self.schedule.minimum) / self.n_active
         return self.schedule.value / self.n_active

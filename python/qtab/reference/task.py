@@ -1,4 +1,4 @@
-"""What all learners share: the discretized environment, the schedules, the policy, and the record of episodes."""
+"""The parts that all learners share: the discretized environment, schedules, the policy, and the episodes' records."""
 
 import math
 from collections.abc import Iterator
@@ -21,7 +21,7 @@ from qtab.reference.schedules import LearningRate
 from qtab.reference.streams import agent_stream
 
 Table = NDArray[np.float64]
-"""(rows, actions)"""
+"""(rows, actions): a table."""
 Rows = list[int]
 """A state: the active rows of its observation."""
 Result = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64]]
@@ -41,7 +41,7 @@ class Step:
 
 
 class Task:
-    """An environment to learn in, and everything that the algorithms share."""
+    """An environment to learn in, with the parts that all algorithms share."""
 
     def __init__(self, env: gym.Env, config: Config, stop_after: int | None = None) -> None:
         self.env, self.config = env, config
@@ -55,7 +55,7 @@ class Task:
         self.observer.masks(self.masks)
         self.rng = self.observer.stream(agent_stream(self.seed, config.bit_generator))
         self.discretizer = discretizer(env, config)
-        # With time_aware each step before the time limit has rows of its own, those of the first step first.
+        # With time_aware each step before the time limit has separate rows, in the order of the steps.
         self.limit = required("max_episode_steps", config.max_episode_steps) if config.time_aware else None
         self.shape = self.discretizer.shape if self.limit is None else (self.limit, *self.discretizer.shape)
         self.n_rows = int(np.prod(self.shape))
@@ -122,7 +122,7 @@ class Task:
         return [step * math.prod(self.discretizer.shape) + row for row in rows]
 
     def step(self, action: int) -> Step:
-        """Takes a step. At a time-out the state is not terminal, unless the config makes that mistake."""
+        """Takes a step. At a time-out the state is not terminal, unless the config treats it as terminal by mistake."""
         observation, reward, terminated, truncated, info = self.env.step(deepcopy(self.actions[action]))
         self.returns[-1] += float(reward)
         self.lengths[-1] += 1
@@ -156,7 +156,7 @@ class Task:
         return self.masks.masked(state, values(Q, state))
 
     def valid_actions(self, Q: Table, state: Rows) -> list[int]:
-        """Returns the actions that S has: all, unless a mask or the initial table says otherwise."""
+        """Returns the actions that S has: all, unless a mask or the initial table excludes some."""
         return valid_actions(self.config, self.values(Q, state))
 
     @property
@@ -180,7 +180,7 @@ class Task:
         rate: LearningRate | None = None,
         planned: bool = False,
     ) -> None:
-        """Q(S, A) <- Q(S, A) + α [R + γ following - Q(S, A)]; ``following`` is None if the next state is terminal."""
+        """Updates Q(S, A) <- Q(S, A) + α [R + γ following - Q(S, A)]; ``following`` is None at a terminal state."""
         self.observer.target(None if planned else self.step_number, (reward,), following)
         if following is None:
             self.end(Q, state, action, reward, rate)
@@ -188,7 +188,7 @@ class Task:
             self.update(Q, state, action, reward + self.discount * following, rate)
 
     def update(self, Q: Table, state: Rows, action: int, target: float, rate: LearningRate | None = None) -> None:
-        """Q(S, A) <- Q(S, A) + α [target - Q(S, A)]; the active rows of S share the change."""
+        """Updates Q(S, A) <- Q(S, A) + α [target - Q(S, A)]; the active rows of S share the change."""
         rate = rate or self.learning_rate
         step_sizes = []
         for row in state:
@@ -197,7 +197,7 @@ class Task:
         self.move(Q, state, action, target, step_sizes)
 
     def move(self, Q: Table, state: Rows, action: int, target: float, step_sizes: list[float]) -> None:
-        """Q(S, A) <- Q(S, A) + α [target - Q(S, A)], with the step size of each active row of S."""
+        """Updates Q(S, A) <- Q(S, A) + α [target - Q(S, A)], with the step size of each active row of S."""
         self.observer.before_update(Q, state, action, target)
         error = target - value(Q, state, action)
         for row, step_size in zip(state, step_sizes, strict=True):
@@ -205,7 +205,7 @@ class Task:
         self.observer.after_update(Q, step_sizes)
 
     def end(self, Q: Table, state: Rows, action: int, reward: float, rate: LearningRate | None = None) -> None:
-        """Updates before a terminal state, where the target is the reward alone. The article assigns it."""
+        """Updates Q(S, A) before a terminal state, where the target is the reward alone. The article assigns it."""
         if self.config.terminal_update == "assign":
             self.observer.before_update(Q, state, action, reward)
             Q[state[0], action] = reward

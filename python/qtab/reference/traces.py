@@ -7,7 +7,7 @@ from qtab.reference.task import Rows, Table, Task, value
 
 
 def mark(z: Table, state: Rows, action: int, kind: Traces) -> None:
-    """A visit adds 1 to an accumulating trace and sets a replacing one to 1; clearing also ends the other actions'."""
+    """Adds 1 to an accumulating trace or sets a replacing one to 1; clearing also zeroes those of other actions."""
     for row in state:
         if kind == "accumulating":
             z[row, action] += 1.0
@@ -18,7 +18,7 @@ def mark(z: Table, state: Rows, action: int, kind: Traces) -> None:
 
 
 def learn(task: Task, Q: Table, z: Table, state: Rows, action: int, target: float) -> None:
-    """W <- w + α z [target - Q(S, A)], where the traces z already include S and A."""
+    """Updates w <- w + α z [target - Q(S, A)], where the traces z already include S and A."""
     task.observer.before_update(Q, state, action, target)
     task.observer.traces(z)
     apply_td_error(task, Q, z, target - value(Q, state, action))
@@ -26,12 +26,12 @@ def learn(task: Task, Q: Table, z: Table, state: Rows, action: int, target: floa
 
 
 def apply_td_error(task: Task, Q: Table, z: Table, error: float) -> None:
-    """W <- w + α δ z, for the weights whose trace is not zero."""
+    """Updates w <- w + α δ z, for the weights whose trace is not zero."""
     traced = np.nonzero(z)
     Q[traced] += task.learning_rate.steps(*traced) * error * z[traced]
 
 
 def decay(z: Table, factor: float, cutoff: float) -> None:
-    """Z <- γλ z; traces at the cutoff or below are set to zero."""
+    """Updates z <- γλ z; traces at the cutoff or below are set to zero."""
     z *= factor
     z[np.abs(z) <= cutoff] = 0.0
