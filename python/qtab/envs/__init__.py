@@ -11,7 +11,7 @@ def register() -> None:
 
     Each id of :data:`~qtab.envs.registry.ENTRIES` gets a twin with the prefix ``qtab/`` and the same time limit, reward
     threshold and keyword arguments. Ids that the installed Gymnasium does not have are skipped. The vector environment
-    of a twin equals ``SyncVectorEnv``, or else the one that Gymnasium has for its id: CartPole's.
+    of a twin equals ``SyncVectorEnv``; for CartPole it equals Gymnasium's ``CartPoleVectorEnv``.
     """
     for name, entry in ENTRIES.items():
         spec = gym.registry.get(name)

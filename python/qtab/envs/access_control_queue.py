@@ -15,9 +15,9 @@ class AccessControlQueueEnv(TabularEnv):
     """A queue of customers of several priorities for a number of servers.
 
     At each step the customer at the head of the queue is accepted, if a server is free, or rejected. An accepted
-    customer pays a reward, its priority's, and occupies a server; a rejected one leaves with a reward of 0. Then each
+    customer pays the reward of its priority and occupies a server; a rejected one leaves with a reward of 0. Then each
     busy server becomes free with a fixed probability, and the next customer's priority is drawn at random. The task
-    never ends. State ``free * len(priorities) + p`` is the one of so many free servers and priority number ``p``.
+    never ends. In state ``free * len(priorities) + p``, ``free`` servers are free, and the priority has number ``p``.
 
     Args:
         servers: The number of servers.

@@ -14,12 +14,12 @@ _SURFACES = ("screens", "surf")
 class CartPoleVectorEnv(GymnasiumCartPoleVectorEnv):
     """Gymnasium's ``CartPoleVectorEnv``, equal to the last bit, with the cart-poles stepped in Rust.
 
-    Gymnasium has a vector environment of its own for CartPole. All its cart-poles draw from one generator, so that they
-    start elsewhere than those of ``SyncVectorEnv``, and its rewards are float32. Its attributes (``state``, ``steps``,
-    ``gravity``, …) can be read and assigned. :class:`qtab.RustVectorEnv` is ``SyncVectorEnv``'s equal.
+    Gymnasium has a special vector environment for CartPole. All its cart-poles draw from one generator, so that their
+    first states differ from those of ``SyncVectorEnv``, and its rewards are float32. Its attributes (``state``,
+    ``steps``, ``gravity``, …) can be read and assigned. :class:`qtab.RustVectorEnv` equals ``SyncVectorEnv``.
 
-    What Rust does not compute with (a state of another dtype, a parameter that is no Python number, numbers so large
-    that NumPy warns) steps in Gymnasium's code, as everything does where NumPy does not take sine and cosine from the C
+    Steps that Rust does not support (a state of another dtype, a parameter that is not a Python number, numbers so
+    large that NumPy warns) run in Gymnasium's code, as do all steps if NumPy does not take sine and cosine from the C
     library.
 
     Args:
@@ -27,7 +27,7 @@ class CartPoleVectorEnv(GymnasiumCartPoleVectorEnv):
         max_episode_steps: The time limit of an episode, in steps.
         render_mode: None, or anything else for ``render`` to return a list of frames.
         sutton_barto_reward: Whether the reward is -1 in the last step and 0 before it, instead of 1 per step.
-        others: None: arguments of :class:`qtab.RustVectorEnv` are refused with a message that names it.
+        others: Must be empty: arguments of :class:`qtab.RustVectorEnv` raise an error that names it.
 
     Raises:
         TypeError: for any other argument.
@@ -75,5 +75,5 @@ class CartPoleVectorEnv(GymnasiumCartPoleVectorEnv):
         return state.T.astype(np.float32), rewards, terminated, truncated, {}
 
     def __getstate__(self) -> dict[str, Any]:
-        """Everything but the surfaces, which the next frame makes anew."""
+        """Returns all attributes but the surfaces, which the next frame creates again."""
         return {name: None if name in _SURFACES else value for name, value in self.__dict__.items()}

@@ -15,17 +15,17 @@ GAP_RIGHT = (
     ".........",
     "...S.....",
 )
-"""The maze whose way leads along the right side: 10 steps."""
+"""The maze with a path along the right side: 10 steps."""
 GAP_LEFT = (*GAP_RIGHT[:3], ".########", *GAP_RIGHT[4:])
-"""The maze whose way leads along the left side: 16 steps."""
+"""The maze with a path along the left side: 16 steps."""
 BOTH_GAPS = (*GAP_RIGHT[:3], ".#######.", *GAP_RIGHT[4:])
-"""The maze with both ways."""
+"""The maze with both paths."""
 
 
 class ChangingMazeEnv(TabularEnv):
     """A maze that changes after a number of steps, counted over all episodes: part of the state of the environment.
 
-    ``reset(seed=...)`` starts with the first maze and a count of 0; ``reset()`` goes on counting. An agent that stands
+    ``reset(seed=...)`` starts with the first maze and a count of 0; ``reset()`` continues the count. An agent in a cell
     where an obstacle appears can leave it. Each reset and each step draws one ``np_random.random()``, as
     :class:`qtab.TabularEnv` does. The reward is 1 at the goal and 0 elsewhere.
 
@@ -56,7 +56,7 @@ class ChangingMazeEnv(TabularEnv):
         return super().reset(seed=seed, options=options)
 
     def step(self, action: Any) -> Any:
-        """Takes a step in the maze of its time.
+        """Takes a step in the current maze.
 
         Raises:
             AssertionError: for an action outside the space.
@@ -66,15 +66,15 @@ class ChangingMazeEnv(TabularEnv):
         return super().step(action)
 
     def resume_after(self, total_steps: int) -> None:
-        """Continues as after so many steps; :func:`qtab.resume` and replays call it."""
+        """Sets the count of steps; :func:`qtab.resume` and replays call it."""
         self.total_steps = total_steps
 
 
 class BlockingMazeEnv(ChangingMazeEnv):
-    """The blocking maze (Example 8.2): the way along the right side is blocked, and one along the left side opens.
+    """The blocking maze (Example 8.2): the path along the right side is blocked, and one along the left side opens.
 
     Args:
-        change_after: The number of steps after which it happens.
+        change_after: The number of steps after which the maze changes.
     """
 
     def __init__(self, change_after: int = 1000) -> None:
@@ -82,10 +82,10 @@ class BlockingMazeEnv(ChangingMazeEnv):
 
 
 class ShortcutMazeEnv(ChangingMazeEnv):
-    """The shortcut maze (Example 8.3): beside the way along the left side, a shorter one along the right side opens.
+    """The shortcut maze (Example 8.3): besides the path along the left side, a shorter one along the right side opens.
 
     Args:
-        change_after: The number of steps after which it happens.
+        change_after: The number of steps after which the maze changes.
     """
 
     def __init__(self, change_after: int = 3000) -> None:

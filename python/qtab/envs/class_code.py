@@ -1,7 +1,7 @@
-"""Digests of the code of classes and functions, and whether the code of a library was replaced.
+"""Digests of the code of classes and functions, and checks for replaced code of a library.
 
-They are digests of byte code, not of source: byte code is there without a file, it is the code that runs even if the
-file was edited since, and comments and formatting do not change it. Another version of Python has another one.
+They are digests of byte code, not of source: byte code exists without a file, it is the code that runs even if the
+file was edited since, and comments and formatting do not change it. It differs between versions of Python.
 """
 
 import dis
@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 
 LIBRARY = "library"
-"""Stands for the code of Gymnasium and of this package, which their versions tell."""
+"""The digest of the code of Gymnasium and of this package, which their versions identify."""
 _LIBRARIES = ("gymnasium", "qtab")
 _PYTHON = f"{sys.version_info.major}.{sys.version_info.minor}"
 
@@ -55,9 +55,9 @@ def is_of_library(cls: type) -> bool:
 
 
 def changed_library_code(cls: type) -> str | None:
-    """Returns what was replaced in a class of Gymnasium's or this package's, as a test or a lesson may do, or None.
+    """Returns the name of replaced code in a class of Gymnasium or this package; None if there is none.
 
-    It is a method of the class or of its bases, or a function of their modules.
+    A test or a lesson may replace a method of the class or of its bases, or a function of their modules.
     """
     for base in filter(is_of_library, cls.__mro__):
         if (name := replaced_member(base)) is not None:
@@ -69,9 +69,9 @@ def changed_library_code(cls: type) -> str | None:
 
 
 def replaced_member(cls: type) -> str | None:
-    """Returns the name of a method of a class that is not the one of its module; None if there is none.
+    """Returns the name of a method that is not defined in the module of its class; None if there is none.
 
-    A function's globals show where its code is; its name and its module can be those of what it replaces.
+    A function's globals show where it was defined; its name and module can be copied from the function it replaces.
     """
     module = sys.modules.get(cls.__module__)
     if module is None or cls.__module__ == "qtab._core":
@@ -99,7 +99,7 @@ def _is_builtin(member: Any) -> bool:
 
 
 def _functions(member: Any) -> list[FunctionType]:
-    """The functions of a member of a class: a method, those of a property, or none."""
+    """Returns the functions of a member of a class: a method, those of a property, or none."""
     if isinstance(member, property):
         candidates = [member.fget, member.fset, member.fdel]
     else:
@@ -120,7 +120,7 @@ def _members(cls: type) -> list[Any]:
 
 
 def _stored_attributes(cls: type) -> Iterator[str]:
-    """The attributes that a method assigns: what a class holds under such a name is no constant."""
+    """Yields the attributes that a method assigns; a class attribute of such a name is not a constant."""
     for member in vars(cls).values():
         for function in _functions(member):
             for instruction in dis.get_instructions(function):

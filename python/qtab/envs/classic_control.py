@@ -22,7 +22,7 @@ class ClassicControlMixin(_core.ClassicControl):
 
     Spaces, reset options, rendering and attributes are inherited from Gymnasium. An attribute assigned on the instance
     takes effect at the next step, one assigned on the class at the next reset. CartPole, Acrobot and Pendulum use
-    NumPy's sine and cosine. Where NumPy does not take these from the C library, which Rust calls, the environments step
+    NumPy's sine and cosine. If NumPy does not take these from the C library, which Rust calls, the environments step
     in Gymnasium's code, and Gymnasium's logger reports it once.
     """
 

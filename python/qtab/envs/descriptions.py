@@ -23,9 +23,9 @@ class Quantity:
     name: str
     """Its name, in lower case."""
     unit: str = ""
-    """Its unit; empty where it has none."""
+    """Its unit; empty if it has none."""
     values: tuple[str, ...] = ()
-    """The names of its values, from the first on, where it is discrete and they have names."""
+    """The names of its values in order, if it is discrete and they have names."""
 
     @property
     def label(self) -> str:
@@ -56,7 +56,7 @@ class Mark:
 
 @dataclass(frozen=True)
 class Description:
-    """What the numbers of an environment mean."""
+    """The names and units of an environment's numbers, and their place in pictures."""
 
     observation: tuple[Quantity, ...] = ()
     """The components of an observation."""
@@ -67,13 +67,13 @@ class Description:
     angles: tuple[Angle, ...] = ()
     """The angles that pictures show instead of their cosines and sines."""
     plane: tuple[str, ...] = ()
-    """The two quantities along the axes of a picture by default, where there are more than two."""
+    """The two quantities along the axes of a picture by default, if there are more than two."""
     marks: tuple[Mark, ...] = ()
-    """What pictures mark along an axis."""
+    """The marks along the axes of pictures."""
     layout: Literal["", "map", "taxi", "blackjack"] = ""
-    """How pictures arrange the states; empty for the axes of the observation."""
+    """The arrangement of states in pictures; empty for the axes of the observation."""
     bounds: tuple[tuple[float, ...], tuple[float, ...]] | None = None
-    """The lower and the upper bounds of the observations, where they are a Box."""
+    """The lower and the upper bounds of the observations, if they are a Box."""
 
 
 _POSITION, _VELOCITY = Quantity("position", "m"), Quantity("velocity", "m/step")
@@ -168,7 +168,7 @@ _WRAPPERS = {
     for how in ("transform", "stateful")
     for kind in ("observation", "action", "reward")
 }
-"""What the wrappers in the modules of Gymnasium change."""
+"""The part of an environment that the wrappers in each module of Gymnasium change."""
 
 UNKNOWN = Description()
 """The description of an environment that is not listed."""
@@ -177,7 +177,7 @@ UNKNOWN = Description()
 def describe(env: str) -> Description:
     """Returns the description of an id, of Gymnasium's or of this package's; ``UNKNOWN`` for any other.
 
-    Another environment may be registered under the id, or with wrappers: it is another one, too.
+    It is also ``UNKNOWN`` if another class, or wrappers, are registered under the id.
     """
     bare = env.rpartition(":")[2]
     entry, spec = entry_for_id(bare), gym.registry.get(bare)
@@ -191,7 +191,7 @@ def describe(env: str) -> Description:
 def describe_observed(env: str, low: NDArray[Any], high: NDArray[Any]) -> Description:
     """Returns the description of an environment whose observations have these bounds, (d,) or ().
 
-    Bounds that are not the environment's show that a wrapper changes its observations: nothing of them is described.
+    If the bounds are not the environment's, a wrapper changes its observations, which are then not described.
     """
     known = describe(env)
     if known.bounds is None:
@@ -203,10 +203,10 @@ def describe_observed(env: str, low: NDArray[Any], high: NDArray[Any]) -> Descri
 
 
 def behind(known: Description, wrappers: Iterable[str]) -> Description:
-    """Returns what remains of a description behind wrappers, which are given as ``"module:Class"``.
+    """Returns the part of a description that is valid behind wrappers, which are given as ``"module:Class"``.
 
-    Those of Gymnasium that only change rewards leave all of it, those of observations the actions, and those of actions
-    the observations. Of any other wrapper it is not known what it changes.
+    Gymnasium's wrappers of rewards keep all of it, those of observations keep the actions, and those of actions keep
+    the observations. Any other wrapper may change everything.
     """
     for wrapper in wrappers:
         kind = _WRAPPERS.get(wrapper.partition(":")[0])
@@ -222,7 +222,7 @@ def _actions_of(known: Description) -> Description:
 
 
 def observation_quantities(known: Description, count: int) -> tuple[Quantity, ...]:
-    """Returns the ``count`` components of an environment's observations; neutral names where they do not fit."""
+    """Returns the ``count`` components of an environment's observations; neutral names if they do not fit."""
     if len(known.observation) == count:
         return known.observation
     return _STATE if count == 1 else tuple(Quantity(f"observation[{index}]") for index in range(count))

@@ -8,7 +8,7 @@ MOST_DOUBLINGS = 7
 
 
 def scaled_maze(doublings: int) -> tuple[str, ...]:
-    """Returns the map of the Dyna maze doubled so often: first the columns, then rows and columns in turn.
+    """Returns the map of the Dyna maze after doublings: first of the columns, then of rows and columns in turn.
 
     All cells of the goal are goals; one cell is the start.
     """
@@ -25,7 +25,7 @@ class DynaMazeEnv(TabularEnv):
     """The Dyna maze: 6 rows, 9 columns, four actions, a reward of 1 at the goal and 0 elsewhere.
 
     Args:
-        doublings: How often the number of cells is doubled, 0 to 7: from 47 cells without obstacles to 6,016.
+        doublings: The number of doublings of the cells, 0 to 7: from 47 cells without obstacles to 6,016.
 
     Raises:
         TypeError: if ``doublings`` is not an integer.

@@ -1,4 +1,4 @@
-"""What returns mean in an environment: the threshold at which it is solved, and the best return that is known."""
+"""The meaning of returns in an environment: the threshold at which it is solved, and the best known return."""
 
 import inspect
 from collections.abc import Mapping
@@ -28,16 +28,16 @@ def reward_threshold(
     max_episode_steps: int | None,
     description: EnvironmentDescription | None = None,
 ) -> float | None:
-    """Returns the return at which Gymnasium considers an environment solved; None where it gives none.
+    """Returns the return at which Gymnasium considers an environment solved; None if it gives none.
 
-    It gives one for the environment as it is registered: with another time limit, other keyword arguments, wrappers or
-    attributes the same return means something else.
+    The threshold applies to the environment as it is registered: with another time limit, other keyword arguments,
+    wrappers or attributes the same return has another meaning.
 
     Args:
         env: The id.
         env_kwargs: The keyword arguments of its constructor.
         max_episode_steps: The time limit, in steps.
-        description: The environment in detail; None where that is not known.
+        description: The environment in detail; None if it is not known.
     """
     spec = _registered(env)
     if spec is None or spec.reward_threshold is None:
@@ -46,18 +46,18 @@ def reward_threshold(
 
 
 def threshold_of(config: Config) -> float | None:
-    """Returns the threshold that holds for the config of a run; see :func:`reward_threshold`."""
+    """Returns the threshold that applies to the config of a run; see :func:`reward_threshold`."""
     return reward_threshold(config.env, config.env_kwargs, config.max_episode_steps, trained_on(config))
 
 
 def registered_threshold(env: str) -> float | None:
-    """Returns the threshold of an environment as it is registered; None where it has none."""
+    """Returns the threshold of an environment as it is registered; None if it has none."""
     spec = _registered(env)
     return None if spec is None else spec.reward_threshold
 
 
 def why_no_threshold(config: Config) -> str:
-    """Returns why no threshold holds for the config of a run."""
+    """Returns the reason why no threshold applies to the config of a run."""
     spec = _registered(config.env)
     if spec is None or spec.reward_threshold is None:
         return "Gymnasium defines no threshold"
@@ -66,7 +66,7 @@ def why_no_threshold(config: Config) -> str:
 
 
 def is_usual_mountain_car(config: Config) -> bool:
-    """Returns whether a run is on MountainCar-v0 with its own constants and time limit."""
+    """Returns whether a run is on MountainCar-v0 with the default constants and time limit."""
     spec = _registered(config.env)
     if spec is None or gymnasium_id(config.env) != "MountainCar-v0":
         return False
@@ -84,18 +84,18 @@ def has_quick_optimum(config: Config, n_rows: int, n_actions: int) -> bool:
     entry = entry_for_id(config.env)
     if config.backend != "rust" or entry is None or not entry.knows_transitions or not is_registered(config.env):
         return False
-    steps = 1 if config.time_aware else config.max_episode_steps or 0  # a table that counts them has rows for each
+    steps = 1 if config.time_aware else config.max_episode_steps or 0  # a time-aware table has rows for each step
     return n_rows * n_actions * steps <= MAX_QUICK_UPDATES
 
 
 def own_time_limit(env: str) -> int | None:
-    """Returns the time limit with which an environment is registered; None where it has none."""
+    """Returns the time limit with which an environment is registered; None if it has none."""
     spec = _registered(env)
     return None if spec is None else spec.max_episode_steps
 
 
 def _registered(env: str) -> EnvSpec | None:
-    """The spec of a complete id. Nothing is imported: the id may come from a file."""
+    """Returns the spec of a complete id. Nothing is imported: the id may come from a file."""
     return gym.registry.get(env.rpartition(":")[2])
 
 
@@ -105,7 +105,7 @@ def _why_not_as_registered(
     max_episode_steps: int | None,
     description: EnvironmentDescription | None,
 ) -> str | None:
-    """Why the threshold of a spec does not hold, to follow its number; None if it does."""
+    """Returns the reason why the threshold of a spec does not apply, to follow its number; None if it does."""
     limit = spec.max_episode_steps or UNLIMITED_MAX_EPISODE_STEPS
     if max_episode_steps != limit:
         return f"holds for {limit:,} steps, not for max_episode_steps={max_episode_steps}"
@@ -126,7 +126,7 @@ def _has_usual_arguments(spec: EnvSpec, env_kwargs: Mapping[str, Any]) -> bool:
 
 
 def _constructor_defaults(spec: EnvSpec) -> dict[str, Any]:
-    """The defaults of the constructor's arguments, of environments whose class is known."""
+    """Returns the defaults of the constructor's arguments, for environments whose class is known."""
     entry = entry_for_id(spec.id)
     if entry is None:
         return {}

@@ -70,7 +70,7 @@ def grid_world(
     goal_reward: float = 0.0,
     rewards: Mapping[Cell, float] | None = None,
 ) -> TabularEnv:
-    """Returns the grid world that a map shows, with four actions: up, right, down, left.
+    """Returns the grid world of a map, with four actions: up, right, down, left.
 
     A move that would end in a wall leaves the agent in its cell, and the edge of the grid stops it.
 
@@ -81,7 +81,7 @@ def grid_world(
         wind: For each column the number of cells by which a move that begins there is shifted upwards.
         step_reward: The reward of a step.
         goal_reward: The reward of a step into a goal.
-        rewards: Other rewards, of the steps into certain cells, each given as (row, column).
+        rewards: Other rewards for steps into certain cells, by (row, column).
 
     Raises:
         ValueError: if the map, the wind or a cell does not fit, or a reward is not finite.
@@ -116,7 +116,7 @@ def grid_world(
 
 
 def _size(layout: Sequence[str]) -> tuple[int, int]:
-    """The rows and columns of a map, which is checked."""
+    """Checks a map, and returns its numbers of rows and columns."""
     rows = len(layout)
     lengths = {len(row) for row in layout}
     if isinstance(layout, str) or len(lengths) != 1 or 0 in lengths:

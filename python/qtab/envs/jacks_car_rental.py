@@ -12,7 +12,7 @@ from qtab._utils import checks
 from qtab.envs.tabular import TabularEnv, Transition
 
 MAX_MOVED = 5
-"""At most so many cars are moved overnight; action a moves a - 5 cars from the first location to the second."""
+"""The most cars that can be moved overnight; action a moves a - 5 cars from the first location to the second."""
 RENTAL = 10.0
 """The reward for each car that is rented."""
 MOVE = 2.0
@@ -27,7 +27,7 @@ def jacks_car_rental(cars: int = 20) -> TabularEnv:
     """Returns Jack's car rental: two locations, between which cars are moved overnight. There is no terminal state.
 
     A state is ``first * (cars + 1) + second`` for the numbers of cars at the end of a day. Action a moves a - 5 cars
-    from the first location to the second, or as many as there are and as there is room for. The next day, Poisson
+    from the first location to the second, or as many as are available and fit. The next day, Poisson
     numbers of cars are requested and returned at each location; returned cars can be rented from the day after. The
     reward is the expected income of that day, minus the cost of the moved cars. An episode starts with both locations
     half full.
@@ -42,7 +42,7 @@ def jacks_car_rental(cars: int = 20) -> TabularEnv:
     cars = checks.integer("cars", cars, least=1)
     days = [_day(cars, requests, returns) for requests, returns in zip(REQUESTS, RETURNS, strict=True)]
     income = [expected for _, expected in days]
-    # What follows from the numbers of cars in the morning is the same whatever was moved: its probabilities are shared.
+    # A day depends only on the numbers of cars in the morning, not on the move: all moves share its probabilities.
     following = {
         morning: np.outer(days[0][0][morning[0]], days[1][0][morning[1]]).ravel().tolist()
         for morning in product(range(cars + 1), repeat=2)
@@ -71,7 +71,7 @@ def jacks_car_rental(cars: int = 20) -> TabularEnv:
 
 
 def cars_moved(first: int, second: int, action: int, cars: int = 20) -> int:
-    """Returns how many cars an action really moves from the first location to the second; negative for the reverse."""
+    """Returns the number of cars that an action in fact moves from the first location; negative for moves to it."""
     return max(min(action - MAX_MOVED, first, cars - second), -second, first - cars)
 
 
@@ -90,6 +90,6 @@ def _day(cars: int, requests: float, returns: float) -> tuple[NDArray[Any], NDAr
 
 
 def _capped(mean: float, most: int) -> NDArray[Any]:
-    """Returns the (most + 1,) probabilities of a Poisson number, of which those above the most count as the most."""
+    """Returns the (most + 1,) probabilities of a Poisson number, with numbers above ``most`` counted as ``most``."""
     below = [math.exp(-mean) * mean**count / math.factorial(count) for count in range(most)]
     return np.array([*below, max(0.0, 1.0 - math.fsum(below))])

@@ -16,8 +16,8 @@ class KArmedBanditEnv(gym.Env[Any, Any]):
     a ``reset()`` without a seed keeps the problem. There is one state. An episode is one step, and the next step may
     follow without a reset. ``info["optimal"]`` is whether the action had the largest true value.
 
-    :func:`qtab.evaluate` draws the problem of its seed: ``seed=run.config.seed`` plays on the one that a run has
-    learned.
+    :func:`qtab.evaluate` draws the problem of its seed: ``seed=run.config.seed`` plays on the one of the
+    training.
 
     With a learning rate of 1 that falls with the visits, a Q table holds the sample averages of the rewards.
 

@@ -14,24 +14,24 @@ from qtab.envs.class_code import changed_library_code
 from qtab.envs.registry import ENTRIES, gymnasium_id
 
 VERSION = "1.4."
-"""The version of Gymnasium whose tables these are. Any other makes them itself."""
+"""The version of Gymnasium that has these tables. With any other version, Gymnasium makes them."""
 
 _DIRECTIONS = {0: [-1, 0], 1: [0, 1], 2: [1, 0], 3: [0, -1]}
-"""Where the actions of CliffWalking lead to."""
+"""The move of each action of CliffWalking: rows and columns."""
 _LEFT_DOWN_RIGHT_UP = (0, 1, 2, 3)
 """The actions of FrozenLake."""
 _LETTERS = frozenset("SFHG")
-"""Of a frozen lake: start, frozen, hole, goal."""
+"""The letters of a frozen lake: start, frozen, hole, goal."""
 
 
 class KnownTable(gym.Env[int, int]):
-    """What training needs of an environment of Gymnasium's that Rust steps: the spaces and the transition table.
+    """The spaces and the transition table of a Gymnasium environment, which suffice for training in Rust.
 
     Python cannot step it; for that, ``gymnasium.make`` makes the environment.
 
     Args:
         table: The transition table.
-        attributes: What Rust reads besides.
+        attributes: Other attributes that Rust reads.
     """
 
     def __init__(self, table: _core.TransitionTable, **attributes: Any) -> None:
@@ -42,7 +42,7 @@ class KnownTable(gym.Env[int, int]):
 
 
 def known_table(spec: EnvSpec, kwargs: Mapping[str, Any]) -> KnownTable | None:
-    """Returns the table of ``gymnasium.make(spec, **kwargs)``; None where only Gymnasium knows it.
+    """Returns the table of ``gymnasium.make(spec, **kwargs)``; None if only Gymnasium can make it.
 
     Args:
         spec: The spec of an environment that Rust steps.
@@ -63,7 +63,7 @@ def known_table(spec: EnvSpec, kwargs: Mapping[str, Any]) -> KnownTable | None:
         return None
     try:
         return make_table(module, **arguments)
-    except (OverflowError, ValueError):  # what Gymnasium refuses, or a map of another size
+    except (OverflowError, ValueError):  # arguments that Gymnasium refuses, or a map of another size
         return None
 
 
@@ -104,7 +104,7 @@ def _taxi(
 
 @lru_cache(maxsize=4)
 def _taxi_table(lines: tuple[bytes, ...], rain: float | None) -> _core.TransitionTable:
-    # Making it takes as long as everything else before the first step; nothing can change it.
+    # Cached: making it takes as long as everything else before the first step, and nothing can change it.
     return _core.TransitionTable.taxi(lines, rain)
 
 
@@ -131,4 +131,4 @@ _KNOWN = {
     "FrozenLake8x8-v1": _FROZEN_LAKE,
     "Taxi-v4": _TAXI,
 }
-"""By the environment's id: the keyword arguments of its constructor with their defaults, and what makes its table."""
+"""The keyword arguments of the constructor with their defaults, and the function that makes the table, by the id."""

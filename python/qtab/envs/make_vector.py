@@ -1,4 +1,4 @@
-"""What ``gymnasium.make_vec("qtab/…")`` returns, with and without wrappers."""
+"""The result of ``gymnasium.make_vec("qtab/…")``, with and without wrappers."""
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
@@ -24,7 +24,7 @@ def make_vector_env(
     vector_kwargs: Mapping[str, Any] | None = None,
     **kwargs: Any,
 ) -> VectorEnv[Any, Any, Any]:
-    """Returns what ``gymnasium.make_vec("qtab/…")`` does: with wrappers a ``SyncVectorEnv``, else a RustVectorEnv.
+    """Returns the result of ``gymnasium.make_vec("qtab/…")``: with wrappers a ``SyncVectorEnv``, else a RustVectorEnv.
 
     Args:
         name: The id of the environment.
@@ -59,7 +59,7 @@ def _wrapped_env(make: Callable[[], gym.Env[Any, Any]], wrappers: Sequence[Any])
 
 
 def __getattr__(name: str) -> Any:
-    """Returns the vector entry point of an id: ``qtab.envs.make_vector:Taxi-v4``, or that of a table of the user's."""
+    """Returns the vector entry point of an id: ``qtab.envs.make_vector:Taxi-v4``, or that of a user's table."""
     if PREFIX + name not in gym.registry and name not in gym.registry:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return partial(make_vector_env, name)

@@ -15,14 +15,14 @@ from qtab.envs.registry import TABULAR, EnvEntry, entry_for_id
 # The wrappers of gymnasium.make, none of which changes an observation or a reward.
 _HARMLESS_WRAPPERS = (OrderEnforcing, PassiveEnvChecker, TimeLimit)
 
-# What a subclass of TabularEnv may define without changing how it resets and steps.
+# The attributes that a subclass of TabularEnv may define without changing its resets and steps.
 _NOT_STEPPING = {
     *("__init__", "__repr__", "__str__", "metadata", "render", "render_mode", "close"),
     *("__module__", "__doc__", "__dict__", "__weakref__", "__annotations__", "__parameters__", "__orig_bases__"),
     *("__firstlineno__", "__static_attributes__", "__annotate_func__", "__annotations_cache__"),
 }
 
-# What wrappers keep besides what they were made with: a reference, a cache, and whether one was closed.
+# The attributes of wrappers besides their arguments: a reference, a cache, and whether one was closed.
 _IRRELEVANT = ("env", "_cached_spec", "close_called")
 
 
@@ -30,8 +30,8 @@ class NotInRustError(ValueError):
     """Rust cannot step an environment. The message gives the reason.
 
     Args:
-        reason: Why.
-        remedy: What would let Rust step it.
+        reason: The reason.
+        remedy: A change after which Rust steps it.
     """
 
     def __init__(self, reason: str, remedy: str) -> None:
@@ -40,7 +40,7 @@ class NotInRustError(ValueError):
 
 
 def rust_unavailable(reason: str) -> ValueError:
-    """Returns the error for ``backend="rust"`` where Rust cannot step the environment."""
+    """Returns the error for ``backend="rust"`` if Rust cannot step the environment."""
     return ValueError(f"backend must be 'auto' or 'gymnasium' for this environment, got 'rust': {reason}")
 
 
@@ -75,7 +75,7 @@ def entry_for_env(env: gym.Env) -> EnvEntry:
 
 
 def changed_entry_code(spec: EnvSpec) -> str | None:
-    """Returns what was replaced in the class that a spec names, which Rust otherwise steps; None if nothing was."""
+    """Returns the name of replaced code in the class of a spec, which Rust otherwise steps; None if there is none."""
     if not isinstance(spec.entry_point, str):
         return None
     made: Any = load_env_creator(spec.entry_point)
@@ -99,12 +99,12 @@ def _entry_for_class(unwrapped: Any) -> EnvEntry:
 
 
 def _is_tabular(unwrapped: Any) -> bool:
-    """Whether it is a :class:`qtab.TabularEnv` or one of a subclass. Its class is imported only where one exists."""
+    """Returns whether it is a :class:`qtab.TabularEnv` or of a subclass. The class is imported only if one exists."""
     return any(f"{base.__module__}:{base.__qualname__}" == TABULAR.entry_point for base in type(unwrapped).__mro__)
 
 
 def _table_entry(unwrapped: Any) -> EnvEntry:
-    """Returns the entry of a table, whose subclass may add attributes and pictures, but no steps of another kind."""
+    """Returns the entry of a table. A subclass may add attributes and pictures, but not change resets and steps."""
     from qtab.envs.tabular import TabularEnv
 
     cls = type(unwrapped)

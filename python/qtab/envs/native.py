@@ -11,12 +11,12 @@ from qtab.envs.registry import TABULAR
 
 
 def native_env(name: str, env: Any, actions: Actions | None = None) -> _core.NativeEnv:
-    """Returns an environment that Rust steps, with what the unwrapped Gymnasium environment holds now.
+    """Returns an environment that Rust steps, with the current attributes of the unwrapped Gymnasium environment.
 
     Args:
         name: The name of its registry entry.
         env: The environment.
-        actions: What a learner chooses from.
+        actions: The actions that a learner chooses from.
 
     Raises:
         TypeError: if a table holds types for which Rust would not compute the sums that NumPy does.
@@ -33,7 +33,7 @@ def native_env(name: str, env: Any, actions: Actions | None = None) -> _core.Nat
 
 
 def table_env(env: Any) -> _core.NativeEnv:
-    """Returns an environment of Gymnasium's toy text, or any other with a transition table, as Rust steps it.
+    """Returns an environment that Rust steps by the transition table of Gymnasium's toy text, or of any other.
 
     Raises:
         TypeError: if the table holds types for which Rust would not compute the sums that NumPy does.

@@ -85,7 +85,7 @@ class RacetrackEnv(gym.Env[Any, Any]):
 
     The reward is -1 per step. The episode ends when the car crosses the finish line. A car that leaves the track goes
     back to a random cell of the starting line, with a velocity of 0. The velocity must not be zero except on the
-    starting line; an action that would stop the car has no effect. A path is a straight line, looked at once for each
+    starting line; an action that would stop the car has no effect. A path is a straight line, checked once for each
     cell of its longer side, rounded to the nearest cell.
 
     State ``((row * columns + column) * 5 + velocity upwards) * 5 + velocity to the right``; action
@@ -138,7 +138,7 @@ class RacetrackEnv(gym.Env[Any, Any]):
         return self._state(), -1.0, ground == "F", False, {}
 
     def _move_by(self, up: int, right: int) -> tuple[tuple[int, int], str]:
-        """Returns the cell that the car reaches, and what is there; "#" where it leaves the track."""
+        """Returns the cell that the car reaches, and its letter; "#" if it leaves the track."""
         (row, column), steps = self.cell, max(up, right)
         reached = self.cell
         for step in range(1, steps + 1):

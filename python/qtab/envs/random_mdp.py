@@ -9,9 +9,9 @@ from qtab.envs.tabular import TabularEnv
 def random_mdp(
     states: int = 1000, branching: int = 1, seed: int = 0, *, actions: int = 2, termination: float = 0.1
 ) -> TabularEnv:
-    """Returns a random Markov decision process: from each state, each action leads to one of some random states.
+    """Returns a random Markov decision process: in each state, each action leads to one of ``branching`` random states.
 
-    The states that follow are drawn with replacement and are equally likely. The reward of each transition is drawn
+    These next states are drawn with replacement and are equally likely. The reward of each transition is drawn
     from a normal distribution of mean 0 and variance 1. Every transition ends the episode with a small probability, and
     a reward of 0. An episode starts in state 0.
 

@@ -12,13 +12,13 @@ class RandomWalkEnv(TabularEnv):
 
     The actions are left (0) and right (1). Under the policy ``"random"`` it is the book's Markov reward process: five
     states with rewards 0 and 1 at the ends (Example 6.2), 19 with -1 and 1 (Example 7.1), or 1,000 with -1 and 1 where
-    a step leads to any of the 100 neighbors on its side (Example 9.1). Of an even number of states, the start is the
+    a step leads to any of the 100 neighbors on its side (Example 9.1). With an even number of states, the start is the
     left one of the two in the middle.
 
     Args:
         states: The number of states, without the terminal ones.
-        reach: A step leads to one of so many neighbors on its side with equal probability; those beyond the ends are
-            terminal.
+        reach: The number of neighbors on each side to which a step leads with equal probability; those beyond the ends
+            are terminal.
         left_reward: The reward of a step beyond the first state.
         right_reward: The reward of a step beyond the last state.
 
@@ -37,7 +37,7 @@ class RandomWalkEnv(TabularEnv):
         super().__init__(table, [float(state == start) for state in range(self.states)])
 
     def _row(self, state: int, action: int) -> list[Transition]:
-        """The transitions of an action: the neighbors in ascending order of their distance, then the end."""
+        """Returns the transitions of an action: the neighbors in ascending order of their distance, then the end."""
         room = state if action == LEFT else self.states - 1 - state
         near = min(self.reach, room)
         sign = -1 if action == LEFT else 1
@@ -46,7 +46,7 @@ class RandomWalkEnv(TabularEnv):
         ]
         if near < self.reach:
             reward = self.left_reward if action == LEFT else self.right_reward
-            # The next state of a last step is the nearest one that there is.
+            # The next state of a last step is the nearest existing one.
             end = 0 if action == LEFT else self.states - 1
             row.append(((self.reach - near) / self.reach, end, reward, True))
         return row

@@ -13,7 +13,7 @@ from qtab.envs.stored import StoredId, import_package, unregistered
 PACKAGE = "qtab"
 PREFIX = "qtab/"
 _TABLE = "Table"
-"""The extension module's name of every environment that its transition table describes completely."""
+"""The name, in the extension module, of all environments that a transition table describes completely."""
 
 
 @dataclass(frozen=True)
@@ -23,7 +23,7 @@ class EnvEntry:
     name: str
     """The name of the environment in the extension module."""
     gymnasium_entry_point: str
-    """Gymnasium's class as ``"module:Class"``; empty where Gymnasium has none."""
+    """Gymnasium's class as ``"module:Class"``; empty if Gymnasium has none."""
     entry_point: str
     """This package's class as ``"module:Class"``."""
     supported_kwargs: frozenset[str] = field(default_factory=frozenset)
@@ -31,7 +31,7 @@ class EnvEntry:
     has_table: bool = False
     """Whether Rust reads a transition table or the rules from the environment object, whatever its arguments were."""
     vector_entry_point: str = ""
-    """This package's twin of the vector environment that Gymnasium has for the id; empty where Gymnasium has none."""
+    """This package's twin of the vector environment that Gymnasium has for the id; empty if Gymnasium has none."""
 
     @property
     def knows_transitions(self) -> bool:
@@ -141,7 +141,7 @@ def entry_for_spec(spec: EnvSpec, kwargs: Mapping[str, Any]) -> EnvEntry | None:
         return None
     if spec.entry_point not in (entry.gymnasium_entry_point, entry.entry_point):
         return None
-    # An environment with a render mode is stepped in Python, so that it can be seen.
+    # An environment with a render mode is stepped in Python, so that it can be rendered.
     arguments = {
         name: value for name, value in {**spec.kwargs, **kwargs}.items() if (name, value) != ("render_mode", None)
     }

@@ -11,7 +11,7 @@ SWITCHED, GOAL = 1, 3
 class ShortCorridorEnv(gym.Env[Any, Any]):
     """Three states in a row that all look alike, with the goal to the right of them; every step costs 1.
 
-    Left and right lead where they say, except in the second state, where they are switched; left in the first state
+    Left and right move the agent as named, except in the second state, where they are switched; left in the first state
     does nothing. Since the observation is always 0, a deterministic policy never reaches the goal, and the best policy
     goes right with probability 2 - √2, about 0.586: its return is -6 - 4 √2, about -11.66, on average.
     """

@@ -1,4 +1,4 @@
-"""``wrappers`` and ``vector_kwargs`` of ``gymnasium.make_vec``, for ids that have a vector environment of their own."""
+"""``wrappers`` and ``vector_kwargs`` of ``gymnasium.make_vec``, for ids with a vector entry point."""
 
 from typing import Any
 
@@ -10,13 +10,13 @@ _UNKNOWN = "unknown"
 class SpecKwargs(dict[str, Any]):
     """The keyword arguments of a spec whose vector entry point takes ``wrappers`` and ``vector_kwargs``.
 
-    ``gymnasium.make_vec`` takes both out of the spec's keyword arguments, with what it was given as their default, and
-    refuses them where it calls a vector entry point. Here they stay, so that they reach the entry point instead. With
-    ``vectorization_mode="sync"`` or ``"async"``, and for everything else, this is a plain dict.
+    ``gymnasium.make_vec`` pops both from the spec's keyword arguments, with its own arguments as defaults, and raises
+    an error for them if it calls a vector entry point. Here they stay, so that they reach the entry point instead.
+    With ``vectorization_mode="sync"`` or ``"async"``, and in all other respects, this is a plain dict.
     """
 
     _mode: Any = _UNKNOWN
-    """The vectorization mode, which ``make_vec`` takes out before these two."""
+    """The vectorization mode, which ``make_vec`` pops before these two."""
 
     def pop(self, key: str, *default: Any) -> Any:
         """Removes a key and returns its value; ``wrappers`` and ``vector_kwargs`` can stay."""

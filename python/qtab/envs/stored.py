@@ -38,7 +38,7 @@ def spec_of_run(env: str) -> EnvSpec:
     """Returns the spec of a run's environment, whose id is complete.
 
     Raises:
-        gymnasium.error.UnregisteredEnv: if it is not registered; the message says what helps.
+        gymnasium.error.UnregisteredEnv: if it is not registered; the message names the remedy.
         ModuleNotFoundError: if the package that the id names is not installed.
     """
     import_package(env)

@@ -58,7 +58,7 @@ class TabularEnv(_core.ToyText, ToyTextMixin, gym.Env[Any, Any]):
         self.action_space = gym.spaces.Discrete(actions)
 
     def __repr__(self) -> str:
-        """One line; Gymnasium shows an environment without an id by its address."""
+        """Returns one line; Gymnasium would show an environment without an id by its address."""
         if self.spec is not None:
             return super().__repr__()
         states, actions = len(self.P), len(self.P[0])
@@ -99,7 +99,7 @@ class _Copies:
 
     def __init__(self) -> None:
         self._copies: dict[int, tuple[Sequence[Transition], list[Transition]]] = {}
-        """For the id of a list the list, so that no other gets this id, and its copy."""
+        """By the id of a list: the list itself, so that no other gets this id, and its copy."""
 
     def of(self, transitions: Sequence[Transition]) -> list[Transition]:
         """Returns the copy of a list."""

@@ -22,7 +22,7 @@ _MAX_RESET_BOUND = 1e6
 
 
 def _draws_its_state(env: gym.Env) -> bool:
-    """Whether a frame depends on nothing but the state."""
+    """Returns whether a frame depends on nothing but the state."""
     return type(env).__module__.startswith("qtab.") and not isinstance(env, TaxiEnv)
 
 
@@ -46,10 +46,10 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
         num_envs: The number of sub-environments.
         max_episode_steps: A time limit other than the spec's, as in ``gymnasium.make`` (-1: no limit).
         copy: Whether each step returns new arrays of observations. If False, it returns the same arrays each time.
-        autoreset_mode: What happens after the end of an episode: an ``AutoresetMode`` or its value.
-        threads: The most threads to step on; None means as many as there are cores. They start at each step, so that
-            where each would have fewer than some hundreds to thousands of sub-environments, fewer threads are used. The
-            number does not change the results.
+        autoreset_mode: The reset of sub-environments whose episode has ended: an ``AutoresetMode`` or its value.
+        threads: The largest number of threads; None means one per core. Threads start at each step, so that fewer are
+            used if each would have less than some hundreds to thousands of sub-environments. The number does not
+            change the results.
         kwargs: Further arguments of ``gymnasium.make``.
 
     It deep-copies and pickles: the copy continues the episodes with the same numbers.
@@ -160,7 +160,7 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
 
     @property
     def autoreset_mode(self) -> AutoresetMode:
-        """What happens after the end of an episode. It is chosen when the vector environment is made."""
+        """The reset of sub-environments whose episode has ended, chosen when the vector environment is made."""
         return self._autoreset_mode
 
     @autoreset_mode.setter
@@ -265,8 +265,8 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
             self._python.close(**kwargs)
 
     def __getstate__(self) -> dict[str, Any]:
-        """Returns the Python attributes, and the episodes and generators that Rust has."""
-        # The environments that draw frames hold surfaces, which cannot be copied, and nothing else that lasts.
+        """Returns the Python attributes, and the episodes and generators that Rust holds."""
+        # The environments that draw frames hold surfaces, which cannot be copied, and nothing else worth keeping.
         attributes = {**self.__dict__, "_render_envs": []}
         if not self.is_native:
             return {"attributes": attributes}

@@ -1,4 +1,4 @@
-"""Checks of what a vector environment is made from, and of what its ``reset`` takes, there with Gymnasium's errors."""
+"""Checks of the arguments of a vector environment and of its ``reset``, the latter with Gymnasium's errors."""
 
 from collections.abc import Sequence
 from typing import Any

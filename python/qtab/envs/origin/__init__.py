@@ -1,4 +1,4 @@
-"""Where a run comes from: one description of its environment, its comparison, and how the environment is made again."""
+"""The origin of a run: the description of its environment, its comparison with others, and its making again."""
 
 from qtab.envs.origin.again import make_again, needs_object
 from qtab.envs.origin.describe import describe

@@ -21,7 +21,7 @@ def needs_object(description: EnvironmentDescription, spec: EnvSpec) -> bool:
 
     Args:
         description: The description.
-        spec: The spec that its id has here.
+        spec: The spec of its id in this process.
     """
     return description.table is not None or len(description.wrappers) != len(spec.additional_wrappers)
 
@@ -40,8 +40,8 @@ def make_again(
         max_episode_steps: The time limit, in steps.
 
     Raises:
-        ValueError: if a part of it is not known well enough, or the environment that was made is another one. The
-            message says what differs, and asks for ``env=``.
+        ValueError: if a part of it is not known well enough, or the new environment differs. The message names the
+            difference, and asks for ``env=``.
     """
     if description.table is not None:
         raise cannot_be_made(description, "its constructor makes another transition table")

@@ -33,11 +33,11 @@ NEUTRAL = (
     *(OrderEnforcing, PassiveEnvChecker, TimeLimitWrapper, RecordEpisodeStatistics, RecordVideo),
     *(HumanRendering, RenderCollection),
 )
-"""Wrappers that change neither observations nor rewards nor when an episode ends; the time limit is described apart."""
+"""Wrappers that change no observation, reward or end of an episode; the time limit is described separately."""
 _UNIMPORTANT = ("render_mode", "spec", "metadata")
 """Attributes of environments that change no number."""
 _BESIDE_TABLE = {"fickle_passenger": False, "fickle_probability": 0.3}
-"""What Taxi's steps read besides the table, with the defaults of its constructor."""
+"""The attributes that Taxi's steps read besides the table, with the defaults of its constructor."""
 _PROBE_STEPS = 50
 
 
@@ -102,7 +102,7 @@ def _without_rendering(kwargs: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _counts(layer: gym.Env) -> bool:
-    """Whether a layer is a wrapper that may change a number: of a subclass nothing is known."""
+    """Returns whether a layer is a wrapper that may change a number, as any subclass of a known one may."""
     return isinstance(layer, gym.Wrapper) and type(layer) not in NEUTRAL
 
 
@@ -118,7 +118,7 @@ def _wrapper(layer: gym.Env) -> WrapperDescription:
 
 
 def _constructor_kwargs(layer: Any) -> dict[str, Any] | None:
-    """The arguments that a wrapper was made with; None where they are not known."""
+    """Returns the arguments that a wrapper was made with; None if they are not known."""
     if isinstance(layer, RecordConstructorArgs):
         recorded = {name: value for name, value in layer._saved_kwargs.items() if name != "env"}
         if _takes(type(layer), recorded):  # otherwise they are those of a base class
@@ -135,7 +135,7 @@ def _takes(cls: type, kwargs: Mapping[str, Any]) -> bool:
 
 
 def _scalars(layer: Any) -> dict[str, Any]:
-    """The numbers and texts that a wrapper holds and does not change itself."""
+    """Returns the numbers and texts that a wrapper holds and does not change itself."""
     held = {
         name: value
         for name, value in vars(layer).items()
@@ -159,14 +159,14 @@ def _attributes(unwrapped: Any, entry: EnvEntry | None) -> dict[str, Any]:
 
 
 def _beside_table(unwrapped: Any) -> dict[str, Any]:
-    """What Taxi's steps read besides the table, where it is no longer what the constructor was given."""
+    """Returns the attributes that Taxi's steps read besides the table, if not as given to the constructor."""
     given = {**_BESIDE_TABLE, **(unwrapped.spec.kwargs if unwrapped.spec is not None else {})}
     held = {name: value for name, value in vars(unwrapped).items() if name in _BESIDE_TABLE}
     return {name: describe_value(value) for name, value in held.items() if value != given[name]}
 
 
 def _arguments(layer: Any) -> dict[str, Any]:
-    """The attributes with the names of constructor arguments, where most classes keep these; those of the state not."""
+    """Returns the attributes with the names of constructor arguments, which most classes keep there, but no state."""
     held = vars(layer)
     names = [name for name in _parameters(type(layer)) if name != "env" and name not in _UNIMPORTANT]
     keys = {key: name for name in names for key in (name, f"_{name}") if key in held}
@@ -175,7 +175,7 @@ def _arguments(layer: Any) -> dict[str, Any]:
 
 
 def _parameters(cls: type) -> list[str]:
-    """The names of the constructor's parameters; none where they cannot be known."""
+    """Returns the names of the constructor's parameters; none if they cannot be known."""
     try:
         return list(inspect.signature(cls).parameters)
     except (TypeError, ValueError):
@@ -189,7 +189,7 @@ def _replaced_methods(layer: gym.Env) -> dict[str, Any]:
 
 
 def _changed(unwrapped: Any, known_already: Mapping[str, Any]) -> dict[str, Any]:
-    """The attributes that differ from those of a new environment of the same id, and that stepping does not change."""
+    """Returns the attributes that differ from those of a new environment of the id and do not change in steps."""
     left_out = {*known_already, *state_attributes(type(unwrapped))}
     held = {name: value for name, value in _plain_attributes(unwrapped) if name not in left_out}
     try:
@@ -215,7 +215,7 @@ def _plain_attributes(unwrapped: Any) -> Iterator[tuple[str, Any]]:
 
 
 def _moving(env: Any, before: Mapping[str, Any]) -> set[str]:
-    """The attributes that resets and random steps change, such as arrays in place: the state, not the problem."""
+    """Returns the attributes that resets and random steps change, such as arrays in place: state, not the problem."""
     moving: set[str] = set()
     env.action_space.seed(0)
     for seed in (0, 1):
@@ -240,13 +240,13 @@ def _has_table(unwrapped: Any) -> bool:
 
 
 def _draws_table(spec: EnvSpec | None) -> bool:
-    """Whether the constructor draws a table: FrozenLake's does so where it is given neither a map nor its name."""
+    """Returns whether the constructor draws a table, as FrozenLake's does without a map or the name of one."""
     kwargs: Mapping[str, Any] = {} if spec is None else spec.kwargs
     return "map_name" in kwargs and kwargs["map_name"] is None and kwargs.get("desc") is None
 
 
 def _changed_table(unwrapped: Any) -> str | None:
-    """A digest of a transition table; None where it is that of a new environment of the same id."""
+    """Returns a digest of a transition table; None if it is that of a new environment of the same id."""
     table = _table_digest(unwrapped)
     if unwrapped.spec is not None:
         try:
@@ -259,7 +259,7 @@ def _changed_table(unwrapped: Any) -> str | None:
 
 
 def _table_digest(unwrapped: Any) -> str | None:
-    """A digest of the transitions and of the first states, by their numbers; None where these are not all numbers."""
+    """Returns a digest of the transitions and of the first states; None if these are not all numbers."""
     states = _items(unwrapped.P)
     pairs = [(state, action, len(outcomes), outcomes) for state, row in states for action, outcomes in _items(row)]
     first = getattr(unwrapped, "initial_state_distrib", ())

@@ -12,9 +12,9 @@ class WrapperDescription:
     cls: str
     """Its class as ``"module:Class"``."""
     code: str | None
-    """A digest of the code of its class; None where that is not known."""
+    """A digest of the code of its class; None if it is not known."""
     kwargs: Mapping[str, Any] | None
-    """The arguments that it was made with; None where they are not known."""
+    """The arguments that it was made with; None if they are not known."""
     attributes: Mapping[str, Any]
     """The attributes that it does not change itself: numbers, texts, those with the names of constructor arguments, and
     methods replaced on the object."""
@@ -27,9 +27,9 @@ class WrapperDescription:
 
 @dataclass(frozen=True)
 class EnvironmentDescription:
-    """What an environment is made of, described once when training begins.
+    """The parts of an environment, described once when training begins.
 
-    Its values are as :func:`qtab.envs.origin.values.describe_value` returns them: what JSON can hold.
+    Its values are those of :func:`qtab.envs.origin.values.describe_value`, which JSON can hold.
     """
 
     id: str | None
@@ -37,16 +37,16 @@ class EnvironmentDescription:
     cls: str
     """The class of the environment without its wrappers, as ``"module:Class"``."""
     code: str | None
-    """A digest of the code of the class; None where that is not known."""
+    """A digest of the code of the class; None if it is not known."""
     kwargs: Mapping[str, Any]
     """The arguments of the constructor, without ``render_mode``; none are known without an id."""
     wrappers: tuple[WrapperDescription, ...]
     """The wrappers that can change a number, the outermost first."""
     attributes: Mapping[str, Any]
     """Attributes that make a difference: the constants of Gymnasium's classic control, the attributes with the names of
-    constructor arguments, what was changed after the constructor, and methods replaced on the object."""
+    constructor arguments, those changed after the constructor, and methods replaced on the object."""
     table: str | None
-    """A digest of the transition table; None without one, or where it is as the constructor makes it."""
+    """A digest of the transition table; None without one, or if it is as the constructor makes it."""
     observation_space: str
     """The observation space that training sees, with a digest of its bounds."""
     action_space: str

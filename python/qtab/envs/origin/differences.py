@@ -1,4 +1,4 @@
-"""What differs between the environment of a training and another one."""
+"""The differences between the environment of a training and another one."""
 
 import logging
 from collections.abc import Callable, Iterator, Mapping
@@ -17,11 +17,11 @@ _NOT_SET = "as the constructor leaves it"
 
 
 def differences(trained_on: EnvironmentDescription, given: EnvironmentDescription) -> list[str]:
-    """Returns what differs, in sentences; none if the two are equal as far as is known.
+    """Returns the differences, in sentences; none if the two are equal as far as is known.
 
     The id of this package and that of Gymnasium count as equal, since they have the same numbers. The time limit is a
-    setting of the run, and is compared there. Code of the user's that was edited may still give the same numbers: that
-    is logged, once in a process.
+    setting of the run, and is compared there. Edited code of the user may still give the same numbers, so that it
+    is only logged, once per process.
 
     Args:
         trained_on: The environment of the training.

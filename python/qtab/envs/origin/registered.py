@@ -19,15 +19,15 @@ _TRANSLATING = ("gymnasium.wrappers.transform_observation", "gymnasium.wrappers.
 def what_changes_returns(
     description: EnvironmentDescription, spec: EnvSpec, env_kwargs: Mapping[str, Any]
 ) -> str | None:
-    """Returns what gives the returns of an environment another meaning than those of the registered environment.
+    """Returns the reason why the returns of an environment do not compare with those of the registered one.
 
     Args:
         description: The environment.
-        spec: The spec of its id. Its environment is made only where the description has something to compare.
+        spec: The spec of its id. Its environment is made only if the description has something to compare.
         env_kwargs: The keyword arguments of the constructor.
 
     Returns:
-        The reason, to follow a colon; None where there is none.
+        The reason, to follow a colon; None if there is none.
     """
     if description.table is not None:
         return "its transition table was changed"
@@ -60,7 +60,7 @@ def _changes(ours: EnvironmentDescription, registered: EnvironmentDescription | 
 
 
 def _wrappers(description: EnvironmentDescription) -> tuple[WrapperDescription, ...]:
-    """The wrappers that may change rewards, or what happens in a step."""
+    """Returns the wrappers that may change rewards or the result of a step."""
     return tuple(wrapper for wrapper in description.wrappers if not _only_translates(wrapper))
 
 

@@ -13,7 +13,7 @@ _texts: dict[bytes, str] = {}
 
 
 def space_text(space: Any) -> str:
-    """Returns a space as it is shown, and a digest of all of it."""
+    """Returns the text of a space, with a digest of all of it."""
     if isinstance(space, spaces.Discrete):
         return f"Discrete({space.n}, start={space.start})"
     encoded = _encoded(space)

@@ -1,4 +1,4 @@
-"""Values of arguments and attributes as JSON holds them: exact where that is possible, else a digest to compare."""
+"""Values of arguments and attributes as JSON can hold them: exact if possible, else a digest to compare."""
 
 import hashlib
 import json
@@ -18,11 +18,11 @@ _TAG = "is"
 
 
 class NotRestorableError(ValueError):
-    """A value is known only by its description. The message says what it is."""
+    """Raised for a value that is known only by its description. The message describes it."""
 
 
 def describe_value(value: Any) -> Any:
-    """Returns a value as JSON can hold it, equal for equal values; what has no such form is described by its type."""
+    """Returns a value as JSON can hold it, equal for equal values; any other value is described by its type."""
     if value is None or isinstance(value, bool):
         return value
     if isinstance(value, int | str):
@@ -64,7 +64,7 @@ def is_plain(value: Any) -> bool:
 
 
 def restored(content: Any) -> Any:
-    """Returns the value that is described.
+    """Returns the value of a description.
 
     Raises:
         NotRestorableError: if only a digest or a type is known.
