@@ -27,7 +27,7 @@ SUBCOMMANDS = {
     "book": "run an experiment of Sutton & Barto's book: its settings, a table, a figure",
     "playground": "open a page that trains agents in the browser",
     "bench": "compare the speed of training with the article's plain loop",
-    "completion": "print the script with which bash or zsh completes commands, flags and choices",
+    "completion": "print the script that completes commands, flags and choices in bash or zsh",
 }
 """The subcommands with their help. Each is a module of ``commands``."""
 

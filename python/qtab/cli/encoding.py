@@ -13,13 +13,13 @@ _SIGNS = {
 
 
 def write_names_of_letters() -> None:
-    """Makes standard output and standard error write what their encoding lacks in words: ``alpha`` for α.
+    """Makes standard output and standard error write letters that their encoding lacks as words: ``alpha`` for α.
 
     Without it, the equations of ``qtab explain`` and the help of ``qtab train`` would raise UnicodeEncodeError.
     """
     codecs.register_error(HANDLER, _in_words)
     for stream in (sys.stdout, sys.stderr):
-        # What replaces the streams, as tests do, may have no encoding.
+        # A stream that replaces one of these, as in tests, may have no encoding.
         if hasattr(stream, "reconfigure") and stream.errors in ("strict", "backslashreplace"):
             stream.reconfigure(errors=HANDLER)
 
@@ -31,7 +31,7 @@ def _in_words(error: UnicodeError) -> tuple[str, int]:
 
 
 def _plain(letter: str) -> str:
-    """A character in ASCII: the name of a Greek letter, a sign in signs, or a question mark."""
+    """Returns a character in ASCII: the name of a Greek letter, a similar sign, or a question mark."""
     name = unicodedata.name(letter, "")
     if name.startswith("GREEK"):
         word = name.split(" WITH ")[0].split()[-1].replace("LAMDA", "LAMBDA")  # Unicode spells it so

@@ -1,4 +1,4 @@
-"""Errors in one line, with the arguments as they are typed; usage errors are what the user can correct."""
+"""Errors in one line, with the arguments as they are typed; usage errors are those that the user can correct."""
 
 import re
 import traceback
@@ -26,7 +26,7 @@ USER_ERRORS = (
     ModuleNotFoundError,
     gym.error.Error,
 )
-"""What bad arguments, files and environments raise."""
+"""The errors that bad arguments, files and environments raise."""
 
 
 def one_line(error: BaseException) -> str:
@@ -49,7 +49,7 @@ def usage_errors(options: Namespace | None = None) -> Iterator[None]:
 
     Args:
         options: The arguments of the command. Messages about its ``flags`` spell them as flags, and those about its
-            ``positionals`` as ``--help`` does. None: the message stays as it is.
+            ``positionals`` as ``--help`` does. None leaves the message unchanged.
     """
     try:
         yield

@@ -1,4 +1,4 @@
-"""What ends a command early: Ctrl-C, and SIGTERM in the same way; or its output: a closed pipe."""
+"""Early ends of a command, by Ctrl-C or SIGTERM, and of its output, by a closed pipe."""
 
 import os
 import signal
@@ -14,7 +14,7 @@ class Terminated(KeyboardInterrupt):
 
 
 def exit_code(interruption: KeyboardInterrupt) -> int:
-    """Returns the exit code of a command that was stopped, as a shell counts it: 128 and the number of the signal."""
+    """Returns the exit code of a command that was stopped: 128 plus the number of the signal, as in a shell."""
     return 143 if isinstance(interruption, Terminated) else 130
 
 
@@ -34,7 +34,7 @@ def sigterm_as_ctrl_c() -> Iterator[None]:
 
 def discard_output() -> None:
     """Discards what is printed from now on: the reader of the output has closed it."""
-    # Python would report that once more when it flushes at exit.
+    # Python would report the closed pipe again when it flushes at exit.
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 

@@ -30,8 +30,8 @@ class Outputs:
 
     Args:
         config: The resolved config of the run.
-        asked: The arguments ``save``, ``plot``, ``checkpoint``, ``watch`` and ``record``: what was asked for, or None.
-        report: Where to report what was written.
+        asked: The arguments ``save``, ``plot``, ``checkpoint``, ``watch`` and ``record``; each is None if not given.
+        report: The report to print the written files to.
 
     Raises:
         ModuleNotFoundError: if an optional library is missing; it names the ``pip install``.
@@ -42,9 +42,9 @@ class Outputs:
     def __init__(self, config: Config, asked: Namespace, report: Report) -> None:
         self._save, self._plot, self._record, self._say = asked.save, asked.plot, asked.record, report.text
         self.files: dict[str, Path] = {}
-        """What was written, by the argument that asked for it."""
+        """The written files, by the argument that asked for each."""
         self.written: list[str] = []
-        """Lines about what :meth:`keep` wrote, to be printed."""
+        """Lines to print about the files that :meth:`keep` wrote."""
         report.writes_files = any(path is not None for path in (asked.save, asked.plot, asked.record))
         if asked.watch is not None:
             checks.integer("watch", asked.watch, least=1)
@@ -56,7 +56,7 @@ class Outputs:
         if asked.save is not None:
             check_writable("save", asked.save)
         self.callbacks: tuple[Callback, ...] = ()
-        """What saves the run while it is in progress."""
+        """The callbacks that save the run while it is in progress."""
         if asked.checkpoint is not None:
             if asked.save is None:
                 raise ValueError("--checkpoint needs --save, the file that it writes")
@@ -80,7 +80,7 @@ class Outputs:
         self._opened.__exit__(kind, error, traceback)
 
     def keep(self, run: Run, optimum: "Optimum | None" = None) -> None:
-        """Saves and plots a run, finished or interrupted. It prints nothing, which may fail: ``written`` says where.
+        """Saves and plots a run, finished or interrupted. Prints nothing, as that may fail: ``written`` has the lines.
 
         Raises:
             OSError: if a file cannot be written.
@@ -107,7 +107,7 @@ class Outputs:
             self._say(f"Showing {last_episodes(len(run.recordings))}")
             different = replay_all(self._screen, run)
         if different:
-            returned = f"{different} of them returned something else than in training"
+            returned = f"{different} of them had another return than in training"
             self._say(f"{returned}: the environment keeps state besides its random generator")
 
 

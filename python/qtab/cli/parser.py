@@ -15,7 +15,7 @@ from qtab.config.unknown import meant
 REQUIRED = object()
 """The default of an argument that must be given."""
 ENV_OF_RUN = (
-    "The environment's id with its package, package:Name-v0, where one registers it: loading a run imports none."
+    "The environment's id with its package, package:Name-v0, if one registers it: loading a run imports no package."
 )
 """The help of ``--env`` beside the file of a run."""
 _MESSAGES = {"expected one argument": "needs a value", "ignored explicit argument": "takes no value, got"}
@@ -27,7 +27,7 @@ class Parser(argparse.ArgumentParser):
 
     Args:
         command: The command, such as ``qtab train``.
-        description: What it does, for ``--help``.
+        description: The description of the command, for ``--help``.
         words: The words after the command.
     """
 
@@ -51,7 +51,7 @@ class Parser(argparse.ArgumentParser):
         """Adds an argument without a flag. See :meth:`option`."""
         metavar = metavar or name.upper()
         self.usage = f"{self.usage} {metavar}" if default is REQUIRED else f"{self.usage} [{metavar}]"
-        # It takes no words from argparse, which would read all arguments where the first of them stands.
+        # It takes no words from argparse, which would read all arguments at the position of the first.
         taken = argparse.SUPPRESS
         action = self.add_argument(name, nargs=taken, default=default, metavar=metavar, help=_help(text, default))
         self._without_flag.append((action, read))
@@ -68,10 +68,10 @@ class Parser(argparse.ArgumentParser):
 
         Args:
             name: The name in Python. The flag has hyphens in place of underscores.
-            read: Returns the value of the word. Its ArgumentTypeErrors say what the word must be.
+            read: Returns the value of the word. Its ArgumentTypeErrors name the accepted words.
             text: The help.
             default: The value without the option. If it is None, the word None is read as None, too.
-            metavar: What ``--help`` shows for the value; None takes it from ``read``.
+            metavar: The name of the value in ``--help``; None takes it from ``read``.
         """
         self.add_argument(
             flag(name),
@@ -92,7 +92,7 @@ class Parser(argparse.ArgumentParser):
         self.switch("json", "Print one JSON object instead of text; progress is shown on standard error only.")
 
     def read(self) -> argparse.Namespace:
-        """Returns the arguments by their names; or prints the help and exits, if that is asked for.
+        """Returns the arguments by their names; or prints the help and exits, if asked for.
 
         Beside them are ``command``, ``words``, and the names of the ``flags`` and of the ``positionals``.
 

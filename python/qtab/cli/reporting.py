@@ -1,4 +1,4 @@
-"""What a command prints: text for people, one JSON object for programs, or nothing."""
+"""The output of a command: text for people, one JSON object for programs, or nothing."""
 
 import dataclasses
 import json
@@ -21,9 +21,9 @@ from qtab.cli.interruption import discard_output
 
 
 class Report:
-    """The output of a command. A context manager, at whose end the JSON object is printed, if that was asked for.
+    """The output of a command. A context manager that prints the JSON object at its end, if that was asked for.
 
-    After an exception it is printed as well, with what was added until then.
+    After an exception it is printed as well, with the keys that were added before.
 
     Args:
         options: The arguments of the command, with those of :meth:`~qtab.cli.parser.Parser.output_flags`.
@@ -95,7 +95,7 @@ def _without_messages() -> Iterator[None]:
 
 
 def json_text(value: Any) -> str:
-    """Returns a value as JSON in one line, without what JSON does not have: NaN and infinities become null."""
+    """Returns a value as JSON in one line; NaN and infinities, which JSON lacks, become null."""
     return json.dumps(_to_json(value), allow_nan=False)
 
 

@@ -32,16 +32,16 @@ _READERS: Mapping[Any, tuple[Callable[[Any], Any], str, bool]] = {
     tuple[float, ...]: (values.numbers, "FLOAT", True),
     tuple[int, ...]: (values.integers, "INT", True),
 }
-"""By the name or type of a setting: how its words are read, what ``--help`` shows for them, whether it has several."""
+"""By the name or type of a setting: the reader of its words, their name in ``--help``, and whether it has several."""
 _EXPLANATIONS = {
     "edges": "The inner edges between the bins of each component of the observation, such as [-0.5,0,0.5] [0].",
     "actions": "The actions to choose from if the action space is a Box: the number of evenly spaced values along each "
     "component, or the actions themselves, [X,Y] if they have several components.",
-    "action_mask": "Whether to take only the actions that the environment's masks leave: by its method action_masks(), "
-    "or else in info['action_mask'].",
+    "action_mask": "Whether to take only the actions that the environment's masks allow: those of its method "
+    "action_masks(), or else of info['action_mask'].",
     "initial_q": "The initial Q table: drawn uniformly from a range, one number everywhere, or that of a saved run.",
 }
-"""The settings whose values look different on the command line."""
+"""The help of the settings whose values look different on the command line."""
 _LONG = 60
 """Choices that take more characters are listed in the help text."""
 
@@ -113,7 +113,7 @@ def read_config(path: Path) -> dict[str, Any]:
 
 
 def with_initial_q(settings: Mapping[str, Any]) -> dict[str, Any]:
-    """Returns the settings with the Q table of a saved run where ``initial_q`` is its file.
+    """Returns the settings with the Q table of a saved run if ``initial_q`` is its file.
 
     Raises:
         OSError: if the file cannot be read.

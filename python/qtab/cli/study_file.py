@@ -19,7 +19,7 @@ _DESIGNS = {"random": designs.random, "sobol": designs.sobol}
 
 @dataclass(frozen=True)
 class StudyFile:
-    """What a study file holds."""
+    """The content of a study file."""
 
     env: str
     """The environment's id."""
@@ -34,7 +34,7 @@ class StudyFile:
 
 
 def read_study(path: Path) -> StudyFile:
-    """Returns what a study file holds. The values of settings are checked later, by :func:`qtab.sweep`.
+    """Returns the content of a study file. The values of settings are checked later, by :func:`qtab.sweep`.
 
     Raises:
         UsageError: if the file cannot be read.
@@ -59,7 +59,7 @@ def _study(content: Mapping[str, Any]) -> StudyFile:
     config = _table("config", content.get("config", {}))
     for key in config:
         if key in KEYS:
-            raise ValueError(f"{key} must stand before the first [table], not in [config]")
+            raise ValueError(f"{key} must be before the first [table], not in [config]")
     check_names(config, [name for name in DEFAULTS if name != "env"])
     return StudyFile(
         env=_text("env", content["env"]),
@@ -113,7 +113,7 @@ def _table(key: str, value: Any) -> dict[str, Any]:
 
 def _text(key: str, value: Any) -> str:
     if not isinstance(value, str) or not value:
-        raise ValueError(f"{key} must be a text, got {value!r:.100}")
+        raise ValueError(f"{key} must be a string, got {value!r:.100}")
     return value
 
 

@@ -10,7 +10,7 @@ from qtab.cli.errors import reading
 
 
 def read_toml(argument: str, path: Path) -> dict[str, Any]:
-    """Returns what a TOML file holds.
+    """Returns the content of a TOML file.
 
     Args:
         argument: The argument that names the file, for messages.

@@ -1,4 +1,4 @@
-"""The training of ``qtab train`` and ``qtab resume``, and what they report of the run."""
+"""The training of ``qtab train`` and ``qtab resume``, and their reports of the run."""
 
 from collections.abc import Callable
 from contextlib import closing
@@ -30,7 +30,7 @@ OPTIMUM = "Report how far the run is from the optimum, and draw it. Always done 
 
 
 def backend_words(config: Config) -> str:
-    """Returns the environment and where it is stepped."""
+    """Returns the environment and the backend that steps it, as text."""
     return f"{config.env} {'in Rust' if config.backend == 'rust' else 'stepped by Gymnasium in Python'}"
 
 
@@ -51,7 +51,7 @@ def optimum_of(resolved: ResolvedRun, always: bool, progress: bool | None) -> "O
 
 @dataclass(frozen=True)
 class Training:
-    """A run to be trained, and where it goes."""
+    """A run to train, and its output files."""
 
     resolved: ResolvedRun
     report: Report
@@ -67,7 +67,7 @@ class Training:
         """Trains and reports. An interrupted run is reported, saved and plotted as well.
 
         Raises:
-            Exception: what the training raises.
+            Exception: any error of the training.
         """
         block = default_block(self.resolved.config.episodes)
         done = 0 if self.earlier is None else len(self.earlier.episode_returns)
@@ -98,7 +98,7 @@ class Training:
         """Saves and plots a run before anything is printed, and then reports it; an interrupted one with its averages.
 
         Raises:
-            Exception: what saving raises, after the report.
+            Exception: any error of saving, after the report.
         """
         try:
             self.outputs.keep(run, self.best)
@@ -140,7 +140,7 @@ def _summary_text(run: Run) -> str:
 
 
 def _best_mean(run: Run) -> float | None:
-    """The best mean return over 100 consecutive episodes; None if there are fewer."""
+    """Returns the best mean return over 100 consecutive episodes; None if there are fewer."""
     if len(run.episode_returns) < SOLVED_EPISODES:
         return None
     return float(best_mean_returns(run.episode_returns[np.newaxis])[0])
@@ -152,7 +152,7 @@ def _final_return(run: Run) -> float:
 
 
 def _verdict_text(run: Run, verdict: Verdict) -> str | None:
-    """Returns whether the run solved its task, and which preset does; None if nothing defines that."""
+    """Describes whether the run solved its task, and the preset that does; None if nothing defines that."""
     if verdict.solved is None:
         return None if verdict.goal.registered is None else f"Not known whether solved: {verdict.why_unknown}"
     if verdict.solved:
@@ -166,7 +166,7 @@ def _verdict_text(run: Run, verdict: Verdict) -> str | None:
 
 
 def _gap_text(run: Run, gap: "Gap[float] | None") -> str | None:
-    """Returns the gap to the optimum; None where it is not known, or not without a search."""
+    """Describes the gap to the optimum; None if it is not known, or only by a search."""
     if gap is not None:
         text = str(gap)
         return text[0].upper() + text[1:]
@@ -178,7 +178,7 @@ def _gap_text(run: Run, gap: "Gap[float] | None") -> str | None:
 
 
 def _summary(run: Run, verdict: Verdict, gap: "Gap[float] | None") -> dict[str, Any]:
-    """Returns what the JSON object says of a run; the page on the command line lists the keys."""
+    """Returns the JSON object of a run; the page on the command line lists its keys."""
     finished = len(run.episode_returns)
     columns = summarize(run.episode_returns[None], run.episode_lengths[None], run.terminated[None]) if finished else {}
     numbers = {name: column.item() for name, column in columns.items()}

@@ -1,4 +1,4 @@
-"""How the words that follow a flag are read, with messages that say what they must be."""
+"""Readers of the words that follow a flag, with messages that name the accepted words."""
 
 import ast
 import json
@@ -11,7 +11,7 @@ from qtab._utils.shown import shown
 from qtab._utils.suggestions import did_you_mean
 
 Words: TypeAlias = list[str]
-"""What follows a flag on the command line."""
+"""The words that follow a flag on the command line."""
 
 
 def choice(names: Sequence[str]) -> Callable[[str], str]:

@@ -58,10 +58,10 @@ def measure(
 ) -> dict[str, NDArray[np.float64]]:
     """Returns the nanoseconds per step of benchmarks in each round, (rounds,), after a round that is not counted.
 
-    In a round all benchmarks take turns, so that a slow moment of the machine slows them down alike.
+    In a round all benchmarks take turns, so that a slow moment of the machine affects all of them.
 
     Args:
-        benchmarks: From the number of a round to the number of steps that were made, by name.
+        benchmarks: Functions from the number of a round to the number of steps made, by name.
         seconds: The approximate duration, if ``rounds`` is None; there are at least three rounds.
         rounds: The number of rounds.
     """
@@ -77,7 +77,7 @@ def measure(
 
 
 def q_learning(episodes: int, seed: int) -> tuple[NDArray[np.float64], int]:
-    """The article's training loop and settings: NumPy and Gymnasium's environment only.
+    """Runs the article's training loop with its settings, on NumPy and Gymnasium's environment only.
 
     Returns:
         The Q table, (19, 15, 3), and the number of steps.
@@ -116,4 +116,4 @@ BENCHMARKS: Mapping[str, Callable[[int], int]] = {
     ARTICLE: lambda seed: q_learning(EPISODES, seed)[1],
     TRAIN: lambda seed: int(train(ENV, seed=seed, progress=False).episode_lengths.sum()),
 }
-"""From a seed to the number of steps of its run."""
+"""Functions from a seed to the number of steps of its run."""

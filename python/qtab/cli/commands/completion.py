@@ -1,4 +1,4 @@
-"""Print the script with which a shell completes qtab's commands, flags, choices and ids of environments."""
+"""Print the script that completes qtab's commands, flags, choices and ids of environments in a shell."""
 
 from argparse import Namespace
 from collections.abc import Iterable, Mapping
@@ -44,7 +44,7 @@ def run(options: Namespace) -> int:
 def script(shell: str) -> str:
     """Returns the script for ``bash`` or ``zsh``."""
     words: Mapping[str, Iterable[str]] = {**CHOICES, "env": ENTRIES, "env_flag": ENTRIES, "shell": SHELLS}
-    # The cases are the command, the word before and the word to be completed; the first that matches counts.
+    # The cases are the command, the previous word and the word to complete; the first match counts.
     values, flags, others = [], [], []
     for command in SUBCOMMANDS:
         actions = parser_of(command)._actions

@@ -46,7 +46,7 @@ def run(options: Namespace) -> int:
 
 
 def _facts(tried: WhatIf) -> dict[str, Any]:
-    """Returns what the JSON object says of the changes that were tried."""
+    """Returns the entry of the JSON object for the changes that were tried."""
     return {
         "seeds": tried.seeds,
         "mean_return": float(np.mean(tried.returns)),

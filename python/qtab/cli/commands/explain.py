@@ -15,7 +15,7 @@ def add_arguments(parser: Parser) -> None:
     parser.positional("run", "A file written by qtab train --save.")
     parser.output_flags()
     parser.option("episode", integer, "The number of the episode, from 0.", 0)
-    parser.option("steps", integer, "How many steps to show.", 5)
+    parser.option("steps", integer, "The number of steps to show.", 5)
     parser.option("start", integer, "The first of these steps, from 0.", 0)
 
 

@@ -13,7 +13,7 @@ FACTS = (
     *("env", "env_kwargs", "max_episode_steps", "discount", "method", "exact", "label"),
     *("expected_return", "reward_threshold", "seconds"),
 )
-"""What the JSON object holds, beside the stationary policy of a transition table."""
+"""The keys of the JSON object, besides the stationary policy of a transition table."""
 
 
 def add_arguments(parser: Parser) -> None:

@@ -1,4 +1,4 @@
-"""Open a page that trains agents in the browser: move a slider, and the agent learns anew."""
+"""Open a page that trains agents in the browser: move a slider, and the agent learns again."""
 
 import tempfile
 import webbrowser
@@ -15,7 +15,7 @@ FILE = "qtab-playground.html"
 
 def add_arguments(parser: Parser) -> None:
     """Adds the arguments of the command."""
-    out = "Where to write the page, one HTML file that needs nothing else; by default into a temporary folder."
+    out = "The file to write the page to, one self-contained HTML file; by default in a temporary folder."
     parser.option("out", Path, out, metavar="PATH")
     parser.switch("no_open", "Write the page without opening it.")
 

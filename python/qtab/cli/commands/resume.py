@@ -29,12 +29,12 @@ def add_arguments(parser: Parser) -> None:
     parser.option("save", Path, save)
     every = "Save the run so far, to the same file as the result, each time this many more episodes are finished."
     parser.option("checkpoint", integer, every, metavar="EPISODES")
-    parser.option("plot", Path, "Draw the learning curve of the whole run to this file. Its ending gives the format.")
+    parser.option("plot", Path, "Draw the learning curve of the whole run to this file; its suffix sets the format.")
     snapshots = "Keep this many copies of the tables, evenly spaced over the whole run, besides those of RUN."
     parser.option("snapshots", integer, snapshots)
     parser.option("env", str, ENV_OF_RUN, metavar="ENV")
     parser.switch("optimum", OPTIMUM)
-    parser.set_defaults(watch=None, record=None)  # which qtab train has
+    parser.set_defaults(watch=None, record=None)  # options of qtab train only
 
 
 def run(asked: Namespace) -> int:

@@ -44,10 +44,10 @@ def add_arguments(parser: Parser) -> None:
         "Train the best settings again with this many other seeds: their means in the sweep are too high on average."
     )
     parser.option("confirm", integer, confirm)
-    parser.option("top", integer, "How many settings --confirm trains again; by default 1.")
-    per = "Train the best settings again for each value of this setting in the grid, such as algorithm."
+    parser.option("top", integer, "The number of settings that --confirm trains again; by default 1.")
+    per = "Train the best settings of each value of this setting in the grid, such as algorithm, again."
     parser.option("per", str, per)
-    confirm_store = "The SQLite file for the results of --confirm, which can then be interrupted, too."
+    confirm_store = "The SQLite file for the results of --confirm, which can then be interrupted and resumed."
     parser.option("confirm_store", Path, confirm_store)
 
 
@@ -96,7 +96,7 @@ def _run(options: Namespace, report: Report) -> None:
 
 
 def _check_confirmation(options: Namespace, settings: Sequence[Mapping[str, Any]], store: Path) -> None:
-    """Refuses before the sweep what cannot be confirmed after it.
+    """Checks the options of the confirmation before the sweep.
 
     Raises:
         OSError: if the store of the confirmation cannot be written.
@@ -122,7 +122,7 @@ def _check_confirmation(options: Namespace, settings: Sequence[Mapping[str, Any]
 
 
 def _facts(result: Sweep) -> dict[str, Any]:
-    """Returns what the JSON object says of a sweep: its settings, the best first."""
+    """Returns the JSON object of a sweep: its settings, the best first."""
     means = result.mean_final_returns().tolist()
     return {
         "env": result.env,
@@ -140,12 +140,12 @@ def _facts(result: Sweep) -> dict[str, Any]:
 
 @contextmanager
 def _names_file(path: Path) -> Iterator[None]:
-    """Names the study file in the errors that what it holds causes."""
+    """Names the study file in the errors that its content causes."""
     try:
         yield
     except StoreError:
         raise
-    except RuntimeError as error:  # a worker process was killed; the message tells how to resume
+    except RuntimeError as error:  # a worker process was killed; the message explains how to resume
         raise UsageError(one_line(error)) from error
     except (ValueError, TypeError, OverflowError, MemoryError, gym.error.Error) as error:
         raise UsageError(f"{path}: {one_line(error)}") from error
@@ -153,7 +153,7 @@ def _names_file(path: Path) -> Iterator[None]:
 
 @contextmanager
 def _says_what_is_kept(store: Path, report: Report) -> Iterator[None]:
-    """Prints on Ctrl-C what is kept in the store."""
+    """On Ctrl-C, prints the number of runs kept in the store."""
     try:
         yield
     except KeyboardInterrupt as error:

@@ -31,7 +31,7 @@ def add_arguments(parser: Parser) -> None:
     parser.output_flags()
     parser.add_argument("--env", dest="env_flag", metavar="ENV", help="The environment's id, given as an option.")
     parser.option("config", Path, "A TOML file of settings. Flags override it.")
-    parser.option("plot", Path, "Draw the learning curve to this file. Its ending gives the format.")
+    parser.option("plot", Path, "Draw the learning curve to this file; its suffix sets the format.")
     save = (
         "Save the run to this file, for qtab.load, qtab verify and --initial-q. Ctrl-C saves what was learned so far."
     )
@@ -69,7 +69,7 @@ def run(asked: Namespace) -> int:
 
 
 def shown_defaults(words: Sequence[str]) -> Mapping[str, Any]:
-    """Returns the defaults that ``--help`` shows beside other arguments: of the environment, the preset and the file.
+    """Returns the defaults that ``--help`` shows: those of the given environment, preset and file.
 
     Raises:
         UsageError: for settings that do not fit, and a file that cannot be read.
@@ -98,7 +98,7 @@ def env_and_settings(asked: Namespace) -> tuple[str, dict[str, Any]]:
 
 
 def _flags(asked: Namespace, settings: Mapping[str, Any]) -> tuple[str, ...]:
-    """Returns the arguments that messages spell as flags: all but the settings that only the file gives."""
+    """Returns the arguments that messages spell as flags: all but the settings given only in the file."""
     in_file = settings.keys() - given_settings(asked).keys()
     return tuple(name for name in asked.flags if name not in in_file and name != "env")
 

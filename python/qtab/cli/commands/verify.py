@@ -55,7 +55,7 @@ def _import_environment(saved: Run, env: str) -> None:
 
 
 def _announcer(env: str, bar: ProgressBar) -> Callable[[int, int], None]:
-    """Returns the callback of :func:`qtab.verify` that moves a bar; where none is shown, it reports once."""
+    """Returns the callback of :func:`qtab.verify` that advances a bar; if none is shown, it reports once."""
     began, announced = time.monotonic(), bar.is_shown
 
     def callback(done: int, total: int) -> None:
