@@ -17,7 +17,7 @@ class LineSetting(LineStyle):
     """The fields that the settings of all experiments have."""
 
     max_runs: int | None = None
-    """The maximum number of runs, where the book has fewer runs of this setting than of the others."""
+    """The maximum number of runs, if the book has fewer runs of this setting than of the others."""
     each_run: bool = False
     """Whether each run is a separate line, with the number of the run in its name."""
 

@@ -1,4 +1,4 @@
-"""``KeepBest``: keeps the run as it was at the best evaluation."""
+"""``KeepBest``: keeps the run of the best evaluation."""
 
 import os
 from pathlib import Path

@@ -90,7 +90,7 @@ class MetricsLogger(BaseCallback):
         self._episodes = finished
 
     def measure(self, progress: Progress) -> dict[str, float | int | None]:
-        """Returns the metrics of the episodes since the last call; None where there is no value."""
+        """Returns the metrics of the episodes since the last call; None if there is no value."""
         since, self._episodes = self._episodes, progress.episodes
         interval = _Interval(progress, progress.returns[since:], progress.lengths[since:])
         values = {name: METRICS[name](interval) for name in self.metrics}

@@ -19,7 +19,7 @@ class TensorBoardLogger(MetricsLogger):
     its earlier part continue.
 
     Args:
-        folder: The folder, created if it is missing. A run adds a file; give each run a folder to tell them apart.
+        folder: The folder, created if it is missing. A run adds a file; use one folder per run to tell runs apart.
         every: The number of episodes between two points; None takes ``callback_every``.
         metrics: The names of the metrics to write: those of :class:`qtab.callbacks.CSVLogger`. None writes all of them.
         evaluation: A callback that evaluates the run, whose mean returns are the curve ``evaluation_return``. It

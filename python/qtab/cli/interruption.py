@@ -33,7 +33,7 @@ def sigterm_as_ctrl_c() -> Iterator[None]:
 
 
 def discard_output() -> None:
-    """Discards what is printed from now on: the reader of the output has closed it."""
+    """Discards all further output, whose reader has closed it."""
     # Python would report the closed pipe again when it flushes at exit.
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 

@@ -36,7 +36,7 @@ class Parser(argparse.ArgumentParser):
         self.help_wanted = "-h" in words or "--help" in words
         self.words = [word for word in words if word not in ("-h", "--help")]
         self.set_defaults(command=command, words=self.words)
-        # argparse's own refuses -1e3 and -inf
+        # argparse's pattern does not match -1e3 and -inf
         self._negative_number_matcher = re.compile(r"-(\d|\.\d|inf|nan)", re.IGNORECASE)
         self._without_flag: list[tuple[argparse.Action, Callable[[str], Any]]] = []
 

@@ -1,1 +1,1 @@
-"""Why a run did not solve its environment, and what to change: one file for each kind of finding."""
+"""Reasons why a run did not solve its environment, and changes to try: one file for each kind of finding."""

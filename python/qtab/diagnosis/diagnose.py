@@ -16,7 +16,7 @@ from qtab.results.run import Run
 
 
 def diagnose(run: Run, optimum: Optimum | None = None, seeds: int | None = None) -> Diagnosis:
-    """Looks for reasons why a run did not solve its environment, and for what to change.
+    """Looks for reasons why a run did not solve its environment, and for changes to try.
 
     Each finding is computed from the run and from its environment: some checks repeat the run in Rust, and train other
     seeds. A run that solved its environment has no findings, except for settings that are mistakes.

@@ -15,18 +15,18 @@ SEEDS = 20
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Diagnosis:
-    """Why a run did not solve its environment: findings with their evidence, and what to change. It prints as text."""
+    """Reasons why a run did not solve its environment: findings with evidence and advice. It prints as text."""
 
     run: Run
     """The run."""
     solved: bool | None
-    """Whether the run solved its environment; None where no threshold and no optimum is known."""
+    """Whether the run solved its environment; None if neither threshold nor optimum is known."""
     findings: tuple[Finding, ...]
     """The findings, the most direct first."""
     unremarkable: tuple[str, ...]
     """The checks that found nothing."""
     not_made: tuple[str, ...]
-    """The checks that could not be made, such as those that repeat the run where Rust does not step the environment."""
+    """The checks that could not be made, such as those that repeat the run if Rust does not step the environment."""
     reasons: Mapping[str, str]
     """The reason why each check of ``not_made`` could not be made."""
     facts: Facts = field(repr=False)

@@ -51,7 +51,7 @@ class Facts:
 
     @cached_property
     def why_not_repeated(self) -> str:
-        """Why the run cannot be repeated quickly, to follow the word "as"; empty if it can."""
+        """The reason why the run cannot be repeated quickly, to follow the word "as"; empty if it can."""
         if self.config.backend != "rust":
             return "Rust cannot repeat this run"
         if not can_be_made(self.config):
@@ -72,7 +72,7 @@ class Facts:
 
     @property
     def solved(self) -> bool | None:
-        """Whether the run solved its environment; None where that is not known."""
+        """Whether the run solved its environment; None if it is not known."""
         return self.verdict.solved
 
     @property
@@ -197,12 +197,12 @@ class Facts:
 
     @cached_property
     def sample(self) -> Sample | None:
-        """The steps of the last episodes; None where they cannot be repeated quickly."""
+        """The steps of the last episodes; None if they cannot be repeated quickly."""
         return None if self.repeated is None else sample_steps(self.repeated)
 
     @cached_property
     def others(self) -> Runs | None:
-        """The runs of the same config with other seeds; None where they would take too long."""
+        """The runs of the same config with other seeds; None if they would take too long."""
         count = self._other_seeds()
         if not self.can_repeat or count == 0 or not self.run.completed:
             return None
@@ -215,5 +215,5 @@ class Facts:
             return self.given_seeds
         work = int(self.run.episode_lengths.sum()) * self.run.discretizer.n_active
         affordable = min(OTHER_SEEDS_STEPS // max(work, 1), MOST_SEEDS)
-        # Fewer seeds tell little, so that FEWEST_SEEDS may take up to twice as long.
+        # Fewer seeds are of little use, so that FEWEST_SEEDS may take up to twice as long.
         return max(affordable, FEWEST_SEEDS) if 2 * affordable >= FEWEST_SEEDS else 0

@@ -59,7 +59,7 @@ def horizon(facts: Facts) -> Finding | Unchecked | None:
         other = {"algorithm": OTHER_ALGORITHM, "exploration": "epsilon_greedy", "discount": better}
         advice = f"use an algorithm that has a discount: {as_keywords(other)}"
     else:
-        title, other = "The discount is too small for the way to the goal.", {"discount": better}
+        title, other = "The discount is too small for the distance to the goal.", {"discount": better}
         advice = f"use {as_keywords(other)}"
     return Finding(
         name="horizon",

@@ -1,4 +1,4 @@
-"""Initial values: so high that they have not been unlearned, or so low that nothing untried is ever chosen."""
+"""Initial values: so high that they are still in the values, or so low that no untried action is ever chosen."""
 
 import numpy as np
 

@@ -49,7 +49,7 @@ def lasting_bonus(facts: Facts) -> Finding | Unchecked | None:
             "bonus of an episode": bonus * length,
             "median of the returns other than 0": paid,
         },
-        meaning="The values are mostly those of the bonus, so that the greedy policy looks for what is rarely visited.",
+        meaning="The values are mostly those of the bonus, so that the greedy policy looks for rarely visited states.",
         advice=f"use a smaller bonus, such as count_bonus={lower:g}",
         changes=changes(config, {"count_bonus": lower}),
     )

@@ -70,7 +70,7 @@ def _varies(facts: Facts) -> bool:
 
 
 def noisy_values(facts: Facts) -> Finding | Unchecked | None:
-    """Finds that the values still jump up and down, because the learning rate stays high where there is chance."""
+    """Finds that the values still jump up and down, because the learning rate stays high while results vary."""
     run, config = facts.run, facts.config
     rate = float(learning_rates(facts.run)[1][-1])
     if rate < LEAST_RATE or config.learning_rate_schedule == "visits":
@@ -78,7 +78,7 @@ def noisy_values(facts: Facts) -> Finding | Unchecked | None:
     if facts.sample is None or len(run.episode_returns) < 10:
         return Unchecked("there are too few episodes" if facts.is_finite else "values overflowed")
     if not _varies(facts) or (facts.reached is not None and not facts.reached.any()):
-        return None  # where no goal was reached, there is nothing to forget
+        return None  # without a reached goal, there is nothing to forget
     if config.count_bonus > 0.0:
         return Unchecked("the count bonus moves the values")
     overwritten = overwrites(facts)

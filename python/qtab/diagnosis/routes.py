@@ -1,4 +1,4 @@
-"""The length of the best policy's way to a goal."""
+"""The length of the best policy's path to a goal."""
 
 from qtab.config import Config
 from qtab.planning.optimum import Optimum
@@ -17,7 +17,7 @@ def shortest_best_episode(config: Config, optimum: Optimum) -> int | None:
         optimum: Its exact optimum.
 
     Returns:
-        The steps; None where none of 20 episodes ends like this, as in a continuing task.
+        The number of steps; None if none of 20 episodes ends like this, as in a continuing task.
     """
     env, lengths, steps = make_run_env(config), [], 0
     try:

@@ -36,7 +36,7 @@ class Trial:
     comparison: "Comparison | None"
     """The comparison with the run's settings, paired by seed; None if those diverge."""
     solved: int | None
-    """The number of seeds that solved the environment; None where neither threshold nor optimum is known."""
+    """The number of seeds that solved the environment; None if neither threshold nor optimum is known."""
 
     def __repr__(self) -> str:
         """Returns one line: the change and its gain."""
@@ -57,7 +57,7 @@ class WhatIf:
     returns: NDArray[np.float64]
     """(seeds,): the mean return of the last 100 episodes without a change; NaN if a run diverged."""
     solved: int | None
-    """The number of seeds that solved the environment without a change; None where that is not known."""
+    """The number of seeds that solved the environment without a change; None if it is not known."""
     results: tuple[Trial, ...]
     """The changes, by their mean return."""
     failed: Mapping[str, str]

@@ -34,7 +34,7 @@ class TabularEnv(_core.ToyText, ToyTextMixin, gym.Env[Any, Any]):
     Raises:
         TypeError: if ``P`` is not such a table, or ``initial_state_distrib`` does not hold numbers.
         ValueError: if a state or an action is missing, probabilities do not sum to 1 within 1e-9, a next state is not
-            in the table, or a reward is not finite. The message says where.
+            in the table, or a reward is not finite. The message names the place.
     """
 
     def __init__(self, P: TransitionTable, initial_state_distrib: ArrayLike) -> None:  # noqa: N803 - Gymnasium's name
@@ -95,7 +95,7 @@ def _check_not_empty(P: TransitionTable) -> None:  # noqa: N803 - Gymnasium's na
 
 
 class _Copies:
-    """Copies of lists of transitions: one copy of a list that stands for several actions, and no copies of tuples."""
+    """Copies of lists of transitions: one copy of a list that several actions share, and no copies of tuples."""
 
     def __init__(self) -> None:
         self._copies: dict[int, tuple[Sequence[Transition], list[Transition]]] = {}

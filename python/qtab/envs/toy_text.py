@@ -14,8 +14,8 @@ from qtab import _core
 class ToyTextMixin:
     """Mixin that resets a toy text environment in Rust; a class of the extension module precedes it in the bases.
 
-    ``_native_reset``, which that class defines, draws the first state from ``np_random`` and returns what ``reset``
-    returns. It calls ``_reset_in_python`` if Rust does not support the distribution of first states.
+    ``_native_reset``, which that class defines, draws the first state from ``np_random`` and returns the result of
+    ``reset``. It calls ``_reset_in_python`` if Rust does not support the distribution of first states.
     """
 
     _native_reset: Any

@@ -1,1 +1,1 @@
-"""Training step by step: what an agent did, why, and how each update was computed."""
+"""Training step by step: each choice of an action with its reason, and each update with its numbers."""

@@ -40,7 +40,7 @@ def explain(
     *,
     progress: bool | None = None,
 ) -> Explanation:
-    """Explains steps of an episode: what the agent saw, why it chose its action, and how it learned from the result.
+    """Explains steps of an episode: the observation, the reason for the action, and the update from the result.
 
     The reference learner in plain NumPy repeats the episode, with the same numbers to the last bit. Rust trains up to
     its start, and the agent's random numbers are skipped up to that point; values and actions are compared with Rust's.

@@ -9,7 +9,7 @@ from qtab.explanation.text import html, text
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Explanation:
-    """Steps of an episode: what the agent saw and did, why, and how it learned. ``print`` shows them."""
+    """Steps of an episode: observations, actions with their reasons, and updates. ``print`` shows them."""
 
     config: Config
     """The config of the run."""

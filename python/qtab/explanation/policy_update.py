@@ -16,7 +16,7 @@ ERROR = {
 }
 """The error of each method in symbols: the target minus the reference."""
 SYMBOL = {"gradient_bandit": "(R - R̄)", "reinforce": "G"}
-"""The symbol of the error in the update, where it is not δ."""
+"""The symbol of the error in the update, if it is not δ."""
 
 
 @dataclass(frozen=True)
@@ -35,9 +35,9 @@ class PolicyUpdate:
     action: int
     """The column of A."""
     reward: float | None
-    """R, where it is in the target; None for REINFORCE, whose target is the return G."""
+    """R, if it is in the target; None for REINFORCE, whose target is the return G."""
     bootstrap: float | None
-    """v(S') in the target of an actor-critic method; None where the next state is terminal, and for others."""
+    """v(S') in the target of an actor-critic method; None if the next state is terminal, and for other methods."""
     target: float
     """The reward of a bandit, the return G, or R + γ v(S')."""
     reference: float

@@ -85,12 +85,12 @@ class Update:
     Dyna-Q+ includes the bonus for the time since the last try: R + κ √τ."""
     bootstrap: float | None
     """The value of the next state in the target, or for Monte Carlo methods the return from the next step on; None
-    where the next state is terminal."""
+    if the next state is terminal."""
     target: float
     error: float
     """The TD error: the target minus ``before``."""
     step_sizes: tuple[float, ...]
-    """(n_active,): the learning rate of each weight; empty where the target was assigned."""
+    """(n_active,): the learning rate of each weight; empty if the target was assigned."""
     traces: tuple[float, ...]
     """(n_active,): the eligibility trace of each weight; empty for algorithms without traces."""
     old_value: float | None
@@ -130,7 +130,7 @@ class Trace:
 
 @dataclass(frozen=True)
 class ExplainedStep:
-    """A step of an episode: what the agent saw, did and learned."""
+    """A step of an episode: the observation, the action and the updates."""
 
     step: int
     """The number of the step, from 0."""

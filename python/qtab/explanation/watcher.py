@@ -188,7 +188,7 @@ class Watcher(Observer):
             seen.traces = changed(seen.traces, Q)
 
     def _reported(self) -> Target:
-        """Returns the target that the learner reported for this update, and forgets it."""
+        """Returns the target that the learner reported for this update, and removes it."""
         reported, self._target = self._target, None
         if reported is None:
             raise AssertionError(f"{self.config.algorithm} did not report the target of an update")

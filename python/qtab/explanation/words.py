@@ -28,7 +28,7 @@ def state_in_words(known: Description, observation: Any, columns: int | None = N
 
 
 def map_columns(env: gym.Env) -> int | None:
-    """Returns the columns of a map whose places are numbered row by row; None where there is no such map."""
+    """Returns the number of columns of a map whose cells are numbered row by row; None if there is no such map."""
     unwrapped: Any = env.unwrapped
     rows, columns = getattr(unwrapped, "nrow", None), getattr(unwrapped, "ncol", None)
     shape = (rows, columns) if columns is not None else getattr(unwrapped, "shape", None)

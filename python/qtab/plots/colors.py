@@ -23,7 +23,7 @@ LINE_STYLES: tuple[Any, ...] = (
     (0, (2.5, 1.5)),
     (0, (7, 2, 1.2, 2, 1.2, 2)),
 )
-"""Styles that tell lines apart without their colors: dashes longer or shorter than those of an optimum, and dots."""
+"""Styles that distinguish lines without their colors: dashes longer or shorter than those of an optimum, and dots."""
 
 SEQUENTIAL = "viridis"
 """The colormap of ordered values."""
@@ -34,7 +34,7 @@ _LIGHTENED = 0.45
 
 
 def color(index: int, ax: "Axes | None" = None) -> Any:
-    """Returns the color of a line by its index, lightened where the axes are dark."""
+    """Returns the color of a line by its index, lightened if the axes are dark."""
     return readable(COLORS[index % len(COLORS)], ax)
 
 
@@ -44,7 +44,7 @@ def line_style(index: int) -> Any:
 
 
 def readable(chosen: str, ax: "Axes | None") -> Any:
-    """Returns a color, lightened where the axes are dark."""
+    """Returns a color, lightened if the axes are dark."""
     if ax is None or not is_dark(ax):
         return chosen
     from matplotlib.colors import to_hex, to_rgb

@@ -39,7 +39,7 @@ def draw_heat_maps(
         norm: Returns the scale of the colors for the grids.
         label: The label of the color bar.
         title: The title of each panel; None names its subject.
-        text: Writes the numbers into their cells, where there is room; None writes none.
+        text: Writes the numbers into their cells, if there is room; None writes none.
         one_scale: Whether all panels have the same scale.
 
     Returns:

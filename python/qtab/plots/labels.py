@@ -41,7 +41,7 @@ def finish(
         x_label: The label of the x axis.
         y_label: The label of the y axis.
         title: The title, above the axes on the left.
-        note: A smaller title on the right, or below the title where there is not enough room beside it.
+        note: A smaller title on the right, or below the title if there is not enough room beside it.
         legend_title: The title of the legend.
     """
     width, height = _size(ax)
@@ -131,7 +131,7 @@ def _broken(text: str, room: int) -> str:
 
 
 def add_titles(ax: "Axes", title: str, note: str) -> None:
-    """Writes a title and a note beside each other, or below each other where they would overlap."""
+    """Writes a title and a note side by side, or one below the other if they would overlap."""
     from matplotlib import rcParams
 
     for text in list(ax.texts):
@@ -228,7 +228,7 @@ def _extend_upwards(ax: "Axes", share: float) -> None:
     transform = ax.yaxis.get_transform()
     low, high = transform.transform(ax.get_ylim())
     top = transform.inverted().transform([low + (high - low) / (1 - share)])[0]
-    ax.set_ylim(top=float(top), auto=True)  # a later plot on the same axes sets the limits anew
+    ax.set_ylim(top=float(top), auto=True)  # a later plot on the same axes sets the limits again
 
 
 def _size(ax: "Axes") -> tuple[float, float]:

@@ -65,7 +65,7 @@ class Subject:
         return axes_of(self.description, self.discretizer)
 
     def action_values(self, rows: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Returns (seeds, ny, nx, actions) values; NaN where no state is, and where nothing was learned.
+        """Returns (seeds, ny, nx, actions) values; NaN where there is no state, or nothing was learned.
 
         Args:
             rows: (ny, nx, n_active): the active rows at each point of a picture, -1 where there is no state.
@@ -100,7 +100,7 @@ class Subject:
         return mean
 
     def greedy_actions(self, rows: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Returns (ny, nx): the greedy action, of several seeds the most frequent one; -1 where none is known."""
+        """Returns (ny, nx): the greedy action, for several seeds the most frequent one; -1 where none is known."""
         values = self.action_values(rows)
         unknown = np.isnan(values).any(axis=-1)
         greedy = np.argmax(np.nan_to_num(values, nan=-np.inf), axis=-1)

@@ -57,5 +57,5 @@ def sample(task: Task, outcomes: Outcomes) -> tuple[float, int | None]:
 
 
 def largest(task: Task, Q: Table, next_state: Rows | None) -> float | None:
-    """Returns max Q(S', a); None where S' is terminal."""
+    """Returns max Q(S', a); None if S' is terminal."""
     return None if next_state is None else float(np.max(task.values(Q, next_state)))

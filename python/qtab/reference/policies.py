@@ -103,7 +103,7 @@ class Ucb:
         self.counts: dict[int, list[int]] = {}
 
     def choose(self, values: Values, state: list[int]) -> int:
-        """Draws one integer to choose among several actions with the largest bound, where ties are random."""
+        """Draws one integer to choose among several actions with the largest bound, if ties are random."""
         candidates = self.candidates(values, state)
         action = candidates[0] if len(candidates) == 1 else candidates[int(self.rng.integers(0, len(candidates)))]
         self.counts[state[0]][action] += 1

@@ -205,7 +205,7 @@ class Task:
         self.observer.after_update(Q, step_sizes)
 
     def end(self, Q: Table, state: Rows, action: int, reward: float, rate: LearningRate | None = None) -> None:
-        """Updates Q(S, A) before a terminal state, where the target is the reward alone. The article assigns it."""
+        """Updates Q(S, A) before a terminal state, where the target is only the reward. The article assigns it."""
         if self.config.terminal_update == "assign":
             self.observer.before_update(Q, state, action, reward)
             Q[state[0], action] = reward

@@ -89,7 +89,7 @@ def write_mp4(frames: Frames, path: Path) -> None:
 
 
 def mp4_uri(frames: Frames) -> str | None:
-    """Returns a data URI of the video as MP4; None where no ffmpeg is installed."""
+    """Returns a data URI of the video as MP4; None if no ffmpeg is installed."""
     try:
         ffmpeg()
     except ModuleNotFoundError:

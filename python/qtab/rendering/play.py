@@ -54,7 +54,7 @@ class Playback:
 
     @property
     def summary(self) -> str:
-        """One line: the environment, the seed and the returns."""
+        """The environment, the seed and the returns, in one line."""
         count = len(self.returns)
         episodes = counted(count, "episode")
         results = [

@@ -102,7 +102,7 @@ class VecEnv(StableBaselines3VecEnv):  # type: ignore[misc]
 
         Returns:
             Observations (num_envs, …), rewards (num_envs,) float32, dones (num_envs,) bool, and an info for each.
-            Where an episode ended, the observation is the first of the next one, and the info is that of the last step.
+            If an episode ended, its observation is the first of the next one, and its info is that of the last step.
         """
         observations, rewards, terminated, truncated, infos = self.venv.step(self._actions)
         last_observations = infos.pop("final_obs", None)

@@ -25,7 +25,7 @@ def probability_of_improvement(
 
     All runs of ``a`` are compared with all runs of ``b`` on the same environment; ties count half. 0.5 means that
     neither is better. The interval is the stratified bootstrap's, as in rliable. Unlike :func:`compare`, it does not
-    pair the runs by their seeds, and it does not tell how large the improvement is.
+    pair the runs by their seeds, and it does not measure the size of the improvement.
 
     Args:
         a: The scores of the first setting: of each environment by name, (runs,) each; an array (runs, environments);

@@ -42,7 +42,7 @@ def profile(
 ) -> list[Interval]:
     """Returns the performance profile with its stratified bootstrap interval at each threshold.
 
-    The intervals hold for each threshold alone, not for the whole curve at once. Where all or none of the runs score
+    The intervals hold for each threshold alone, not for the whole curve at once. If all or none of the runs score
     above a threshold, all resamples agree, and the interval has a width of zero.
 
     Args:

@@ -25,7 +25,7 @@ class Panel:
 
 
 def draw_panels(result: Result, ax: "Axes | None", panels: Sequence[Panel], *, shared_x: bool) -> "Axes":
-    """Draws panels in a new figure, one below the other where they share the x axis, else side by side.
+    """Draws panels in a new figure, one below the other if they share the x axis, else side by side.
 
     Returns the last axes.
 

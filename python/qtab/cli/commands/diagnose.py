@@ -1,4 +1,4 @@
-"""Look for reasons why a saved run did not solve its environment, and for what to change."""
+"""Look for reasons why a saved run did not solve its environment, and for changes to try."""
 
 from argparse import Namespace
 from typing import Any

@@ -1,4 +1,4 @@
-"""Describes an environment as it is now."""
+"""Describes an environment in its current state."""
 
 import hashlib
 import inspect
@@ -198,7 +198,7 @@ def _changed(unwrapped: Any, known_already: Mapping[str, Any]) -> dict[str, Any]
             made = {name: describe_value(value) for name, value in _plain_attributes(new)}
             names = [name for name in held if name in made and not same(describe_value(held[name]), made[name])]
             moving = _moving(new, made) if names else set()
-    except Exception:  # what a constructor or a step of any package may raise
+    except Exception:  # a constructor or a step of any package may raise any error
         return {}
     return {name: describe_value(held[name]) for name in names if name not in moving}
 
@@ -253,7 +253,7 @@ def _changed_table(unwrapped: Any) -> str | None:
             with _new(unwrapped) as new:
                 if _table_digest(new) == table:
                     return None
-        except Exception:  # what a constructor of any package may raise
+        except Exception:  # a constructor of any package may raise any error
             return table
     return table
 

@@ -38,7 +38,7 @@ def what_changes_returns(
         try:
             with closing(make_env(spec, env_kwargs, disable_env_checker=True)) as env:
                 registered = describe(env, is_new=True)
-        except Exception as error:  # what a constructor of any package may raise
+        except Exception as error:  # a constructor of any package may raise any error
             return f"the registered environment cannot be made to compare it ({type(error).__name__})"
     return next(_changes(description, registered), None)
 

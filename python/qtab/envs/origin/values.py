@@ -86,7 +86,7 @@ def restored(content: Any) -> Any:
 
 
 def with_types(stored: Mapping[str, Any], descriptions: Mapping[str, Any]) -> dict[str, Any]:
-    """Returns arguments from JSON with the types that they had, such as tuples, where their descriptions agree."""
+    """Returns arguments from JSON with their original types, such as tuples, if their descriptions agree."""
     return {name: _with_type(value, descriptions.get(name)) for name, value in stored.items()}
 
 

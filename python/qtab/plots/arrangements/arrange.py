@@ -27,7 +27,7 @@ def arrange(
         subject: The subject to draw.
         at: The components of the observation that are held fixed, if it has more than two.
         layout: The map of an environment with numbered states; None takes the known one.
-        sampled: Whether to sample points of a continuous space even where the table has cells.
+        sampled: Whether to sample points of a continuous space even if the table has cells.
 
     Raises:
         TypeError: for an argument of the wrong type.
