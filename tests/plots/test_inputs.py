@@ -121,7 +121,7 @@ NAN = np.where(ARRAY[0, 0] < ARRAY, np.nan, ARRAY)
             {"a": [0.0], "b": SWEEP},
             {},
             ValueError,
-            "returns must have at least 10 episodes beside a sweep whose points average as many, got 1",
+            "returns must have at least 10 episodes, the block of the sweep that is drawn with them, got 1",
         ),
         (plots.learning_curves, SWEEP, {"block": 15}, ValueError, "block must be a multiple of the sweep's block, 10"),
         (

@@ -39,7 +39,7 @@ class Line(LineStyle):
     """The standard error of the mean; NaN with a single run."""
     runs: int
     truncated: "NDArray[np.int64]"
-    """The number of truncated episodes among those of each point."""
+    """The number of truncated episodes of each point."""
     diverged: "NDArray[np.int64]"
     """The number of runs of the setting that diverged."""
 

@@ -7,7 +7,7 @@ ENV = "qtab/ShortCorridor-v0"
 BEST_RETURN = -6.0 - 4.0 * math.sqrt(2.0)
 """The return of the best policy, which goes right with probability 2 - √2."""
 MAX_EPISODE_STEPS = 1_000
-"""The time limit, without which a policy that has become almost deterministic would hardly ever end an episode."""
+"""The time limit: a policy that has become almost deterministic would hardly ever end an episode."""
 RUNS = 1_000
 BOOK_RUNS = "100 runs of 1,000 episodes (1,000 runs here, as a few stuck runs dominate the mean of 100)"
 UNSPECIFIED = "the initial policy (right with probability 0.05 here, as the returns of the book's first episodes show)"

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 class KeepBest(EvaluateEvery):
     """Evaluates the greedy policy as :class:`EvaluateEvery` does, and keeps the run as it was at the best evaluation.
 
-    The mean return of the best of many evaluations is too optimistic: report that of a new :func:`qtab.evaluate`.
+    The mean return of the best of many evaluations is too optimistic: report the result of a new :func:`qtab.evaluate`.
 
     Args:
         path: The file to save the run to, whenever there is a better one; None does not save it.

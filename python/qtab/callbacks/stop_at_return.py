@@ -11,7 +11,7 @@ from qtab.training.progress import Progress
 class StopAtReturn(BaseCallback):
     """Stops the run as soon as the mean return of the last episodes reaches a value.
 
-    The schedules of the run are still those of its full number of episodes.
+    The run keeps the schedules of its full number of episodes.
 
     Args:
         value: The mean return to reach.

@@ -48,5 +48,5 @@ def _largest_possible(facts: Facts) -> float:
     ahead = steps if config.discount == 1.0 else min(steps, 1.0 / (1.0 - config.discount))
     initial = facts.initial_tables[np.isfinite(facts.initial_tables)]
     start = float(np.abs(initial).max(initial=0.0)) * run.discretizer.n_active
-    # A reward that is paid once may be larger than any in the sample, but hardly than the largest return.
+    # A rare reward may be larger than any in the sample, but hardly larger than the largest return.
     return start + max(float(returns.max(initial=0.0)), 1e-9) + reward * ahead

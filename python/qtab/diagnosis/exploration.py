@@ -13,7 +13,7 @@ from qtab.diagnosis.learning_rate import overwrites
 LEAST_REACHED = 0.01
 """A smaller share of the first half's episodes that reach the goal is reported, unless ``ENOUGH_REACHED`` do."""
 ENOUGH_REACHED = 20
-"""The number of episodes that reach the goal from which on nothing is reported."""
+"""With at least this many episodes that reach the goal, nothing is reported."""
 
 
 def exploration(facts: Facts) -> Finding | Unchecked | None:

@@ -103,7 +103,7 @@ def _of_values(facts: Facts) -> Finding | Unchecked | None:
             "typical difference between the actions of a state": typical,
         },
         meaning=f"Of its last actions {percent(share_worse)} are worse than the greedy one, of random actions "
-        f"{percent(share_worse / random)} would be: a {setting} of {getattr(config, setting):g} is large beside the "
+        f"{percent(share_worse / random)} would be: a {setting} of {getattr(config, setting):g} is large for the "
         "differences between the values.",
         advice="explore less: " + ", or ".join(map(as_keywords, advised)),
         changes=advised,

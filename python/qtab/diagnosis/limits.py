@@ -54,7 +54,7 @@ def narrow_limits(facts: Facts) -> Finding | Unchecked | None:
 
 
 def wide_limits(facts: Facts) -> Finding | Unchecked | None:
-    """Finds limits so wide that the states share hardly more than one bin or tile."""
+    """Finds limits so wide that the states lie in hardly more than one bin or tile."""
     found = _limits(facts)
     if isinstance(found, Unchecked):
         return found

@@ -38,6 +38,6 @@ def unlucky_seed(facts: Facts) -> Finding | Unchecked | None:
             "median of the others": float(np.median(returns)),
         },
         meaning=f"With the same settings {percent(solved)} of {len(returns)} other seeds solve the environment.",
-        advice="use another seed, and settings with which all seeds succeed, such as more episodes",
+        advice="use another seed, and settings that succeed with all seeds, such as more episodes",
         changes=changes(facts.config, {"episodes": 2 * facts.config.episodes}),
     )

@@ -1,4 +1,4 @@
-"""Grid worlds as transition tables: those of Sutton & Barto's book, and any that is drawn as text.
+"""Grid worlds as transition tables: those of Sutton & Barto's book, and any given as a map of text.
 
 A state is the number of a cell, counted row by row from the upper left corner.
 """

@@ -185,7 +185,7 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
         return tuple(self.seed_of(index) for index in range(self.num_envs))
 
     def _generator(self, index: int) -> np.random.Generator:
-        """Returns a sub-environment's generator, from which Rust draws from now on."""
+        """Returns a sub-environment's generator, which Rust uses from now on."""
         source = self.rng(index)
         if isinstance(source, tuple):
             words_drawn, buffered_uint32 = source

@@ -53,7 +53,7 @@ def explain(
         episode: The number of the episode, from 0.
         steps: The number of steps to explain; fewer if the episode ends before.
         start: The first of these steps, from 0.
-        env: The environment, if that of the run cannot be made again. It must be the one that was trained on.
+        env: The environment, if that of the run cannot be made again. It must be the environment of the training.
         progress: Whether to show a progress bar. None shows one on a terminal if it takes more than a second.
 
     Raises:

@@ -37,7 +37,7 @@ def common_block(block: int | None, lengths: Sequence[int], units: Sequence[int]
     if block is None:
         if unit > shortest:
             raise ValueError(
-                f"returns must have at least {unit:,} episodes beside a sweep whose points average as many, "
+                f"returns must have at least {unit:,} episodes, the block of the sweep that is drawn with them, "
                 f"got {shortest:,}"
             )
         rounded = math.ceil(fitting_block(shortest) / unit) * unit

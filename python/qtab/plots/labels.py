@@ -72,7 +72,7 @@ def set_x_limits(ax: "Axes", left: float, right: float, earlier: tuple[float, fl
 
 
 def episode_ticks(ax: "Axes") -> None:
-    """Labels the x axis with whole numbers of episodes, as many as fit beside each other."""
+    """Labels the x axis with whole numbers of episodes, as many as fit."""
     from matplotlib.ticker import MaxNLocator
 
     width, _ = _size(ax)

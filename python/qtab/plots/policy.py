@@ -30,8 +30,8 @@ def policy(
 ) -> "Axes":
     """Draws the greedy action of each state: arrows on a map, colors with a legend elsewhere.
 
-    Of several greedy actions the first is shown, which is the one that ``run.predict`` takes; of many seeds the most
-    frequent one. States in which nothing was learned are grey, as in :func:`qtab.plots.values`.
+    Of several greedy actions the first is shown, which is the one that ``run.predict`` takes; for many seeds the
+    most frequent one. States in which nothing was learned are grey, as in :func:`qtab.plots.values`.
 
     Args:
         run: A run; the runs of many seeds with their tables; or an optimum. A sequence of them makes panels.

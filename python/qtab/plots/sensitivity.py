@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from qtab.planning import Optimum
 
 LOG_SCALE_RATIO = 50
-"""The ratio of the largest to the smallest value from which on the x axis is logarithmic."""
+"""The x axis is logarithmic if the largest value is at least this many times the smallest."""
 
 
 def sensitivity(

@@ -57,7 +57,7 @@ class Subject:
     learned: Learned = "action values"
     """The kind of values that :meth:`state_values` returns."""
     state_table: NDArray[np.float64] | None = None
-    """(seeds, rows, 1): the state values that were learned beside preferences; None for other methods."""
+    """(seeds, rows, 1): the state values that were learned with preferences; None for other methods."""
 
     @property
     def axes(self) -> tuple[Axis, ...]:
@@ -89,7 +89,7 @@ class Subject:
         return total.reshape(len(total), *rows.shape[:2], -1)
 
     def state_values(self, rows: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Returns (ny, nx): the state value that was learned, or else the largest action value or preference.
+        """Returns (ny, nx): the learned state value, or else the largest action value or preference.
 
         It is the mean over the seeds; NaN if no seed has learned it.
         """

@@ -88,7 +88,7 @@ def value_label(subjects: Sequence[Subject]) -> str:
     """Returns the label of the color bar of several subjects.
 
     Raises:
-        ValueError: for values beside preferences, which have no common scale.
+        ValueError: for both values and preferences, which have no common scale.
     """
     learned = {subject.learned for subject in subjects}
     if len(learned) == 1:

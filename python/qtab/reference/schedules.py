@@ -62,7 +62,7 @@ class LearningRate:
             self.visits[row, action] += 1
 
     def step(self, row: int, action: int) -> float:
-        """Returns the step size; by visits, that of the n-th visit is 1/n of the first."""
+        """Returns the step size; by visits, that of the n-th visit is 1/n of the first one."""
         if self.by_visits:
             return max(self.schedule.value / int(self.visits[row, action]), self.schedule.minimum) / self.n_active
         return self.schedule.value / self.n_active

@@ -79,7 +79,7 @@ class Task:
         return Q
 
     def critic_table(self) -> Table:
-        """Returns state values beside a table of preferences: 0 at first, unless both tables are given."""
+        """Returns the state values for a table of preferences: 0 at first, unless both tables are given."""
         if isinstance(self.config.initial_q, np.ndarray):
             return self.table(1, tables=2)
         w = np.zeros((self.n_rows, self.n_actions))

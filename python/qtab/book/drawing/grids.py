@@ -44,7 +44,7 @@ def greedy_actions(q_values: FloatArray, tolerance: float = 1e-9) -> NDArray[np.
 
 
 def draw_grids(result: Result, ax: "Axes | None", grids: Sequence[CellMap], columns: int) -> "Axes":
-    """Draws grids beside and below each other in a new figure; returns the last axes.
+    """Draws grids in rows and columns of a new figure; returns the last axes.
 
     Raises:
         ModuleNotFoundError: without matplotlib; the message names the ``pip install``.

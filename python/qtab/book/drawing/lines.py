@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 MAX_MARKERS = 40
-"""A figure in which a line has more points than this is drawn without markers."""
+"""With a line of more points, a figure has no markers."""
 BROAD: Mapping[str, Any] = {"linewidth": 6, "alpha": 0.4, "zorder": 1}
 """The style of a line that would hide others, or be hidden by them."""
 MOST_LABELED = 100

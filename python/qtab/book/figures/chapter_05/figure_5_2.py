@@ -43,7 +43,7 @@ def values_of(table: FloatArray) -> FloatArray:
 
 
 def lowest_stick(values: FloatArray) -> FloatArray:
-    """Returns (usable ace, dealer's cards): the lowest sum from which on the greedy policy sticks."""
+    """Returns (usable ace, dealer's cards): the lowest sum such that the greedy policy sticks on it and all above."""
     sticks = values.argmax(axis=0) == STICK
     from_here_on = np.flip(np.cumprod(np.flip(sticks, axis=1), axis=1), axis=1)
     lowest: FloatArray = SUMS.stop - from_here_on.sum(axis=1).astype(np.float64)
