@@ -23,7 +23,7 @@ class CSVLogger(MetricsLogger):
     Args:
         path: The file, such as ``"log.csv"``.
         every: The number of episodes between two lines; None takes ``callback_every``.
-        metrics: The names of the metrics to write, in this order: ``"steps"`` and ``"seconds"`` since the run began,
+        metrics: The names of the metrics to write, in order: of ``"steps"`` and ``"seconds"`` since the run began,
             ``"mean_return"`` and ``"mean_length"`` of the episodes since the last line, and ``"epsilon"`` and
             ``"learning_rate"`` of the last episode. None writes all of them.
         evaluation: A callback that evaluates the run, whose mean returns are the column ``evaluation_return``. It

@@ -47,7 +47,7 @@ class MetricsLogger(BaseCallback):
 
     Args:
         every: The number of episodes between two lines; None takes ``callback_every``.
-        metrics: The names of the metrics to write, in this order.
+        metrics: The names of the metrics to write, in order.
         evaluation: A callback that evaluates the run, whose mean returns are written too. It must come before the
             logger in the list of callbacks.
 

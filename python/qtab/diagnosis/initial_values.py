@@ -34,7 +34,7 @@ def too_optimistic(facts: Facts) -> Finding | Unchecked | None:
             "share of visited states above it": share,
         },
         meaning=f"In {percent(share)} of the visited states the best value is still higher than any return can be: the "
-        "agent still tries what looks promising only because it is new.",
+        "agent still tries actions that look promising only because they are new.",
         advice=f"use lower initial values, such as initial_q={possible:g}, or train longer",
         changes=changes(facts.config, {"initial_q": possible}),
     )

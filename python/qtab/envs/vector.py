@@ -48,8 +48,8 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
         copy: Whether each step returns new arrays of observations. If False, it returns the same arrays each time.
         autoreset_mode: The reset of sub-environments whose episode has ended: an ``AutoresetMode`` or its value.
         threads: The largest number of threads; None means one per core. Threads start at each step, so that fewer are
-            used if each would have less than some hundreds to thousands of sub-environments. The number does not
-            change the results.
+            used unless each has at least some hundreds to thousands of sub-environments. The number does not change
+            the results.
         kwargs: Further arguments of ``gymnasium.make``.
 
     It deep-copies and pickles: the copy continues the episodes with the same numbers.

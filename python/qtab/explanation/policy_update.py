@@ -80,7 +80,7 @@ class PolicyUpdate:
 
 
 def equations_of(config: Config, update: PolicyUpdate) -> list[tuple[str, str]]:
-    """Returns the equations of an update and their numbers, the two fields of ``update`` that are not read."""
+    """Returns the equations of an update and their numbers; ``update`` has neither yet."""
     algorithm, action = config.algorithm, update.action
     if update.traces:
         # A preference changes once, however often its row is active.

@@ -32,7 +32,7 @@ def runs_at_snapshots(run: Run) -> list[tuple[int, Run]]:
     """
     if run.snapshots is None or not len(run.snapshots):
         raise ValueError("run must have snapshots: qtab.train(..., snapshots=50) keeps them")
-    # With one number as the initial value, a table shows the states learned by then. Otherwise the final visits do.
+    # With one number as the initial value, a table shows what was learned by then; else the visits of all episodes do.
     visits = None if isinstance(run.config.initial_q, int | float) else run.visits
     tables = zip(run.snapshots.episodes.tolist(), run.snapshots.tables, strict=True)
     return [(done, dataclasses.replace(run, tables=table, visits=visits)) for done, table in tables]

@@ -33,5 +33,5 @@ def run(options: Namespace) -> int:
         temporary.write_text(html, encoding="utf-8")
     print_above(f"Saved the playground to {path}")
     if not options.no_open and not webbrowser.open(path.absolute().as_uri()):
-        print_above("No browser was found: open the file in one")
+        print_above("No browser was found: open the file in a browser")
     return 0

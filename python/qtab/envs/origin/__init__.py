@@ -1,4 +1,4 @@
-"""The origin of a run: the description of its environment, its comparison with others, and its making again."""
+"""The origin of a run: the description of its environment, its comparison with others, and its re-creation."""
 
 from qtab.envs.origin.again import make_again, needs_object
 from qtab.envs.origin.describe import describe
