@@ -120,7 +120,7 @@ class Function:
 
 
 class AssignedRows:
-    """Rows in the order in which their cells are seen, and one more."""
+    """Rows in the order in which their cells are first seen, and one more."""
 
     n_active = 1
 
