@@ -65,7 +65,7 @@ WORDS: dict[str, dict[str, str]] = {
         "say_limit": "log_default_limit",
         "SubEnvironments": "PythonVectorEnv",
         "TableTruth": "TabularSolver",
-        "train_to_the_end": "train_unless_stopped",
+        "train_to_the_end": "trained_in_python",
         "ValleyTruth": "MountainCarSolver",
     },
     "tests": {

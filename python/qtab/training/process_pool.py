@@ -81,24 +81,6 @@ def process_pool(workers: int, task: bytes | None = None) -> Iterator[ProcessPoo
         executor.shutdown(cancel_futures=True)
 
 
-def train_unless_stopped(trainer: _core.Trainer, episodes: int) -> None:
-    """Trains all episodes, unless the parent process stops the pool.
-
-    Raises:
-        InterruptedError: if it does.
-        OverflowError: if the values of the tables have overflowed.
-    """
-    _Worker.training = True
-    try:
-        for episode in range(episodes):
-            if _Worker.stop is not None and _Worker.stop.is_set():
-                raise InterruptedError(STOPPED)
-            trainer.advance(episode + 1)
-        trainer.check_tables()
-    finally:
-        _Worker.training = False
-
-
 @contextmanager
 def trained_in_python(
     env: Any, settings: Mapping[str, Any], seed: int, memory: tuple[int, int]
@@ -112,11 +94,21 @@ def trained_in_python(
         memory: What :func:`qtab._utils.memory.memory_left` returns.
 
     Raises:
-        Exception: what the environment or the settings raise; see also :func:`train_unless_stopped`.
+        InterruptedError: if this is a worker process, and its parent stops the pool.
+        OverflowError: if the values of the tables have overflowed.
+        Exception: what the environment or the settings raise.
     """
     with closing(resolve(env() if callable(env) else env, {**settings, "seed": seed}, owns_env=True)) as resolved:
         trainer = _core.Trainer(resolved.spec(), resolved.seed, memory=memory)
-        train_unless_stopped(trainer, resolved.config.episodes)
+        _Worker.training = True
+        try:
+            for episode in range(resolved.config.episodes):
+                if _Worker.stop is not None and _Worker.stop.is_set():
+                    raise InterruptedError(STOPPED)
+                trainer.advance(episode + 1)
+            trainer.check_tables()
+        finally:
+            _Worker.training = False
         yield resolved, trainer
 
 
