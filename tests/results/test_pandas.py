@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 import qtab
-from qtab._utils.columns import cell_column
-from qtab._utils.data_frames import arrow_table
+from qtab._utils.data_frames import arrow_table, cell_column
 
 GRID: dict[str, list[Any]] = {"learning_rate": [0.1, 2.0]}
 DIVERGES: dict[str, Any] = {

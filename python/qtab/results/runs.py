@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils import checks, html, svg
-from qtab._utils.columns import integer_column
-from qtab._utils.data_frames import data_frame
+from qtab._utils.data_frames import data_frame, integer_column
 from qtab._utils.fields import with_fields
 from qtab.config import Config
 from qtab.config.config import replace_checked

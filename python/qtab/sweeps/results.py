@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils import checks, html, svg
-from qtab._utils.columns import cell_column, integer_column
-from qtab._utils.data_frames import arrow_table, data_frame
+from qtab._utils.data_frames import arrow_table, cell_column, data_frame, integer_column
 from qtab._utils.shown import counted
 from qtab._utils.suggestions import did_you_mean
 from qtab.sweeps.again import plan_again, trained_again
@@ -21,7 +20,7 @@ from qtab.sweeps.run_records import SUMMARY_COLUMNS
 from qtab.sweeps.run_versions import Versions, different_versions, versions_note, versions_of_runs
 from qtab.sweeps.store_format import Contents
 from qtab.sweeps.study import Study, to_cell
-from qtab.sweeps.training import Callback, run_study
+from qtab.sweeps.training import SweepCallback, run_study
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -187,7 +186,7 @@ class Sweep:
         executor: Executor | None = None,
         threads: int | None = None,
         memory_limit: int | None = None,
-        callback: Callback | None = None,
+        callback: SweepCallback | None = None,
         progress: bool | None = None,
     ) -> Confirmation:
         """Trains settings again with seeds that the sweep did not use, by default the best, which gives unbiased means.

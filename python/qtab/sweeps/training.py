@@ -41,13 +41,15 @@ class SweepProgress:
     """The wall-clock time since this call began."""
 
 
-Callback = Callable[[SweepProgress], Any]
+SweepCallback = Callable[[SweepProgress], Any]
 
 
-class ProgressReporter:
+class SweepReporter:
     """Moves the progress bar, and calls the callback with the progress since the reporter was created."""
 
-    def __init__(self, total: int, finished: Callable[[], int], callback: Callback | None, bar: ProgressBar) -> None:
+    def __init__(
+        self, total: int, finished: Callable[[], int], callback: SweepCallback | None, bar: ProgressBar
+    ) -> None:
         self._total, self._finished, self._callback, self._bar = total, finished, callback, bar
         self._started = time.perf_counter()
         self._already_finished = finished()
@@ -69,7 +71,7 @@ def run_study(
     executor: Executor | None,
     threads: int | None,
     memory_limit: int | None,
-    callback: Callback | None,
+    callback: SweepCallback | None,
     progress: bool | None,
 ) -> T:
     """Trains the runs of a study that its store does not have, and returns the table of all.
@@ -103,7 +105,7 @@ def run_study(
             return build(finished)
     with closing(Store(path, stored)) as opened, ProgressBar(study.runs, "run", progress, "sweep") as bar:
         try:
-            report = ProgressReporter(study.runs, opened.finished, callback, bar)
+            report = SweepReporter(study.runs, opened.finished, callback, bar)
             if executor is not None:
                 ExecutorTraining(study, opened, executor, report).run(MAX_PENDING_CHUNKS)
             elif all(resolved.is_native for resolved in study.resolved):
