@@ -161,7 +161,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::random::Mt19937;
+    use crate::random::{Mt19937, Rng};
 
     #[test]
     fn the_first_draws_of_seed_0_match_numpy() {
