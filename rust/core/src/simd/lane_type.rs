@@ -1,5 +1,7 @@
 //! What the types of lanes have in common.
 
+#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
+
 /// What an operation in lanes takes: `L`, or a number that is the same in all lanes.
 pub(crate) trait InLanes<S, L> {
     fn in_lanes(self, simd: S) -> L;
