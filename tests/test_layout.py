@@ -38,6 +38,31 @@ ORDER = (
 )
 """The packages in the order of their imports: each imports only those before it and those in the same set."""
 
+CRATE_ORDERS = {
+    "core": (
+        {"checkpoint", "simd", "stop_flag"},
+        {"memory", "numeric"},
+        {"random", "schedules", "training_error"},
+        {"features", "policies", "q_table"},
+        {"envs"},
+        {"planning", "vector"},
+        {"tasks"},
+        {"learners"},
+        {"prediction", "trainer"},
+        {"batch"},
+    ),
+    "python": (
+        {"error", "interrupt"},
+        {"convert"},
+        {"rng"},
+        {"spec", "vector"},
+        {"discretizer", "runs"},
+        {"envs"},
+        {"planning", "training"},
+    ),
+}
+"""The top-level modules of each crate in the order of their uses: each uses only those in the sets before its own."""
+
 Graph = dict[str, set[str]]
 
 
@@ -152,6 +177,54 @@ def test_packages_import_only_those_below_them() -> None:
 
 def test_a_circle_of_imports_would_be_found() -> None:
     assert cycle({"a": {"b"}, "b": {"c"}, "c": {"a"}, "d": {"a"}})
+
+
+def without_tests(source: str) -> str:
+    """Rust code without comments, and without the modules and imports that are compiled for tests only."""
+    source = re.sub(r"//.*", "", source)
+    source = re.sub(r"^#\[cfg\(test\)\]\n(?:pub\S* )?mod \w+ \{.*?^\}$", "", source, flags=re.MULTILINE | re.DOTALL)
+    return re.sub(r"^#\[cfg\(test\)\]\n[^;{]*;", "", source, flags=re.MULTILINE)
+
+
+def used_in_crate(source: str, depth: int) -> set[str]:
+    """The names at the root of its crate that Rust code uses, so many modules below the root."""
+    root = r"(?:\bcrate::|(?<![\w:])" + "super::" * depth + ")"
+    groups = re.findall(root + r"\{([^;]*)\};", source)
+    return set(re.findall(root + r"(\w+)", source)) | {
+        name for group in groups for name in re.findall(r"(?:^|, )\s*(\w+)", re.sub(r"\{[^}]*\}", "", group))
+    }
+
+
+def module_graph(crate: str) -> Graph:
+    """For each top-level module of a crate the others that it uses, by path or by a name that ``lib.rs`` exports."""
+    sources = ROOT / "rust" / crate / "src"
+    exports = re.findall(r"^pub use (\w+)::\{?([^;}]+)\}?;", (sources / "lib.rs").read_text(), re.MULTILINE)
+    home = {name: module for module, names in exports for name in re.findall(r"\w+", names)}
+    graph: Graph = {}
+    for path in sources.rglob("*.rs"):
+        parts = path.relative_to(sources).with_suffix("").parts
+        if parts == ("lib",) or "tests" in parts or parts[-1] in {"tests", "test_support"}:
+            continue
+        depth = len(parts) - (parts[-1] == "mod")
+        used = used_in_crate(without_tests(path.read_text(encoding="utf-8")), depth)
+        graph.setdefault(parts[0], set()).update(home.get(name, name) for name in used)
+    return {module: (used & graph.keys()) - {module} for module, used in graph.items()}
+
+
+@pytest.mark.parametrize("crate", CRATE_ORDERS)
+def test_modules_of_a_crate_use_only_those_below_them(crate: str) -> None:
+    graph = module_graph(crate)
+    place = {module: index for index, group in enumerate(CRATE_ORDERS[crate]) for module in group}
+    assert place.keys() == graph.keys()
+    assert sum(map(len, graph.values())) > 20, "the uses were not found"
+    upwards = [f"{module} uses {used}" for module in graph for used in graph[module] if place[used] >= place[module]]
+    assert upwards == []
+
+
+def test_uses_in_rust_are_found() -> None:
+    source = "use crate::{Task, envs::Env};\nuse super::random::Rng;\n"
+    test = "#[cfg(test)]\nmod tests {\n    use crate::trainer;\n}\n"
+    assert used_in_crate(without_tests(source + test), 1) == {"Task", "envs", "random"}
 
 
 @pytest.mark.parametrize("crate", ["core", "python"])
