@@ -5,7 +5,7 @@ use numpy::{PyArray1, PyArrayMethods};
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use qtab_core::memory::{self, collect};
+use qtab_core::memory::{collect, filled};
 use qtab_core::vector::States;
 use qtab_core::{Env, StopFlag, VectorEnv};
 
@@ -108,7 +108,7 @@ impl<'py> Infos<'py> {
     ) -> PyResult<()> {
         let (py, num_envs) = (self.py, self.num_envs);
         let mask = || self.mask(states.clone().map(|(index, _)| index));
-        let mut probabilities = filled(0.0, num_envs)?;
+        let mut probabilities = repeated(0.0, num_envs)?;
         states.clone().for_each(|(index, state)| probabilities[index] = (info.probability)(&state));
         let name = intern!(py, "prob");
         if as_integers {
@@ -118,7 +118,7 @@ impl<'py> Infos<'py> {
         }
         dict.set_item(intern!(py, "_prob"), mask()?)?;
         if let Some(ActionMasks { masks, index: index_of }) = &info.action_masks {
-            let mut rows = filled([0_i8; 6], num_envs)?;
+            let mut rows = repeated([0_i8; 6], num_envs)?;
             states.clone().for_each(|(index, state)| rows[index] = masks[index_of(&state)]);
             dict.set_item(intern!(py, "action_mask"), rows_array(py, &rows)?)?;
             dict.set_item(intern!(py, "_action_mask"), mask()?)?;
@@ -127,12 +127,13 @@ impl<'py> Infos<'py> {
     }
 
     fn mask(&self, indices: impl Iterator<Item = usize>) -> PyResult<Bound<'py, PyArray1<bool>>> {
-        let mut mask = filled(false, self.num_envs)?;
+        let mut mask = repeated(false, self.num_envs)?;
         indices.for_each(|index| mask[index] = true);
         Ok(PyArray1::from_vec(self.py, mask))
     }
 }
 
-fn filled<T: Clone>(value: T, count: usize) -> PyResult<Vec<T>> {
-    memory::filled(&value, count, &StopFlag::new()).map_err(allocation)
+/// So many copies of a value.
+pub(super) fn repeated<T: Clone>(value: T, count: usize) -> PyResult<Vec<T>> {
+    filled(&value, count, &StopFlag::new()).map_err(allocation)
 }

@@ -4,11 +4,11 @@ use pyo3::exceptions::PyAssertionError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use qtab_core::checkpoint::{Checkpoint, CheckpointError, Persist};
-use qtab_core::memory::{filled, with_capacity};
+use qtab_core::memory::with_capacity;
 use qtab_core::vector::{Autoreset, States, StepBuffers};
-use qtab_core::{Env, StopFlag, VectorEnv};
+use qtab_core::{Env, VectorEnv};
 
-use super::infos::{EnvInfo, Infos};
+use super::infos::{EnvInfo, Infos, repeated};
 use super::{BatchAction, BatchObservation, SubEnvRng};
 use crate::convert::array_from;
 use crate::error::allocation;
@@ -63,11 +63,25 @@ where
     E: Env<State: Send + Sync, Action: BatchAction, Observation: BatchObservation + Sync> + Send + Sync + 'static,
     S: States<E> + Send + Sync + 'static,
 {
-    Ok(Box::new(NativeVectorEnv::<E, S>::new(py, env, info, options)?))
-}
-
-fn repeated<T: Clone>(value: T, count: usize) -> PyResult<Vec<T>> {
-    filled(&value, count, &StopFlag::new()).map_err(allocation)
+    let VectorOptions { num_envs, max_episode_steps, autoreset, copy, threads } = options;
+    // Threads start at each step: with fewer sub-environments each of them would make the step slower.
+    let cores = || std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = threads.unwrap_or_else(cores).min(num_envs / info.envs_per_thread);
+    let envs = VectorEnv::<E, S>::new(env, num_envs, max_episode_steps, autoreset, threads).map_err(allocation)?;
+    let mut observations = with_capacity(num_envs).map_err(allocation)?;
+    observations.extend(envs.states().map(|state| envs.env().observe(&state)));
+    let out = if copy { None } else { Some(E::Observation::batched(py, &observations)?.unbind()) };
+    Ok(Box::new(NativeVectorEnv {
+        envs,
+        info,
+        actions: [repeated(E::Action::NONE, num_envs)?, repeated(E::Action::NONE, num_envs)?],
+        observations,
+        rewards: repeated(0.0, num_envs)?,
+        terminated: repeated(false, num_envs)?,
+        truncated: repeated(false, num_envs)?,
+        autoreset,
+        out,
+    }))
 }
 
 struct NativeVectorEnv<E: Env, S> {
@@ -89,28 +103,6 @@ where
     E: Env<Action: BatchAction, Observation: BatchObservation>,
     S: States<E>,
 {
-    fn new(py: Python<'_>, env: E, info: EnvInfo<E>, options: VectorOptions) -> PyResult<Self> {
-        let VectorOptions { num_envs, max_episode_steps, autoreset, copy, threads } = options;
-        // Threads start at each step: with fewer sub-environments each of them would make the step slower.
-        let cores = || std::thread::available_parallelism().map_or(1, usize::from);
-        let threads = threads.unwrap_or_else(cores).min(num_envs / info.envs_per_thread);
-        let envs = VectorEnv::new(env, num_envs, max_episode_steps, autoreset, threads).map_err(allocation)?;
-        let mut observations = with_capacity(num_envs).map_err(allocation)?;
-        observations.extend(envs.states().map(|state| envs.env().observe(&state)));
-        let out = if copy { None } else { Some(E::Observation::batched(py, &observations)?.unbind()) };
-        Ok(Self {
-            envs,
-            info,
-            actions: [repeated(E::Action::NONE, num_envs)?, repeated(E::Action::NONE, num_envs)?],
-            observations,
-            rewards: repeated(0.0, num_envs)?,
-            terminated: repeated(false, num_envs)?,
-            truncated: repeated(false, num_envs)?,
-            autoreset,
-            out,
-        })
-    }
-
     fn batched_observations<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let Some(out) = &self.out else { return E::Observation::batched(py, &self.observations) };
         let out = out.bind(py).clone();

@@ -8,7 +8,7 @@ use pyo3::types::PyDict;
 use qtab_core::envs::classic_control::{Acrobot, AcrobotState};
 
 use super::reset::reset;
-use super::snapshot::{set_f32_state, set_state};
+use super::step::{set_f32_state, set_state};
 use super::trigonometry::{f32_cos_sin, f32_cos_sin_of_any_angle, numpy_uses_libm};
 use super::{ClassicEnv, EnvLayout, ResetResult, StepResult};
 use crate::convert::{StateArray, double, small_array};

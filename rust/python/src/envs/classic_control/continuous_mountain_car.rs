@@ -10,9 +10,8 @@ use qtab_core::numeric::Scalar;
 use qtab_core::random::NoRng;
 
 use super::reset::reset_f64;
-use super::snapshot::{set_f32_state, set_state};
-use super::training::runs_with_discrete_actions;
-use super::{ClassicEnv, EnvLayout, ResetResult, StepResult, StoredState};
+use super::step::{set_f32_state, set_state};
+use super::{ClassicEnv, EnvLayout, ResetResult, StepResult, StoredState, runs_with_discrete_actions};
 use crate::convert::{StateArray, box_action};
 use crate::runs::RunFactory;
 use crate::spec::RunSpec;

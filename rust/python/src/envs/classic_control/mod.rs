@@ -5,13 +5,10 @@ mod cart_pole;
 mod cart_pole_batch;
 mod continuous_mountain_car;
 mod dyn_env;
-mod env_layout;
 mod mountain_car;
 mod pendulum;
 mod reset;
-mod snapshot;
 mod step;
-mod training;
 mod trigonometry;
 
 use std::sync::Arc;
@@ -20,19 +17,50 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use qtab_core::Env;
 use qtab_core::envs::Parameters;
+use qtab_core::envs::wrappers::DiscreteActions;
+use qtab_core::numeric::Scalar;
 use qtab_core::vector::States;
 
 pub(crate) use cart_pole_batch::step_cart_poles;
-pub(super) use env_layout::EnvLayout;
 pub(super) use reset::ResetResult;
 pub(super) use step::{StepResult, StoredState};
 pub(crate) use trigonometry::numpy_uses_libm;
 
 use super::native_env::NativeEnv;
 use crate::convert::StateArray;
-use crate::runs::RunFactory;
+use crate::runs::{RunFactory, generic_box};
 use crate::spec::RunSpec;
 use crate::vector::{BatchAction, BatchObservation};
+
+/// The attributes of a Gymnasium class, besides its parameters.
+pub(crate) struct EnvLayout {
+    /// How many numbers the state has.
+    pub(crate) state_len: usize,
+    /// Whether a step leaves the state as a tuple, not as an array.
+    pub(crate) state_is_tuple: bool,
+    /// How many actions `step` accepts, where it asks the action space.
+    pub(crate) num_actions: Option<usize>,
+    /// Whether `step` calls `np.sin` or `np.cos`.
+    pub(crate) calls_numpy_trigonometry: bool,
+    /// The attribute that is None during an episode, and 0 once it reached a terminal state.
+    pub(crate) terminal_counter: Option<&'static str>,
+    /// The attribute that is None after a reset, and holds the last action after a step.
+    pub(crate) last_action: Option<&'static str>,
+}
+
+impl EnvLayout {
+    /// A state of so many numbers, kept in an array, and no attributes besides.
+    const fn new(state_len: usize) -> Self {
+        Self {
+            state_len,
+            state_is_tuple: false,
+            num_actions: None,
+            calls_numpy_trigonometry: false,
+            terminal_counter: None,
+            last_action: None,
+        }
+    }
+}
 
 /// A classic-control environment: what differs from one to the next. All else follows from it and from the core.
 pub(super) trait ClassicEnv:
@@ -112,4 +140,17 @@ pub(super) trait DynClassicEnv: Send + Sync {
         state: &StateArray,
         action: &Bound<'py, PyAny>,
     ) -> PyResult<Option<StepResult<'py>>>;
+}
+
+/// Runs that choose from some of an environment's continuous actions.
+fn runs_with_discrete_actions<E, const M: usize>(
+    env: E,
+    actions: &[f32],
+    spec: &Arc<RunSpec>,
+) -> PyResult<Box<dyn RunFactory>>
+where
+    E: Env<Action = Scalar, Observation = [f32; M], State: Send> + Clone + Send + Sync + 'static,
+{
+    let actions = actions.iter().copied().map(Scalar::Single).collect();
+    generic_box(DiscreteActions { env, actions }, spec)
 }

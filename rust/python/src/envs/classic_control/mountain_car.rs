@@ -12,7 +12,7 @@ use qtab_core::random::NoRng;
 use qtab_core::vector::LaneStates;
 
 use super::reset::reset_f64;
-use super::snapshot::set_state;
+use super::step::set_state;
 use super::{ClassicEnv, EnvLayout, ResetResult, StepResult};
 use crate::convert::{StateArray, discrete_action, numpy_scalar};
 use crate::runs::{OneStepBatching, RunFactory, specialized, tiled_box};

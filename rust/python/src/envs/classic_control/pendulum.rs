@@ -11,9 +11,8 @@ use qtab_core::numeric::Scalar;
 use qtab_core::random::NoRng;
 
 use super::reset::reset_f64;
-use super::snapshot::set_state;
-use super::training::runs_with_discrete_actions;
-use super::{ClassicEnv, EnvLayout, ResetResult, StepResult};
+use super::step::set_state;
+use super::{ClassicEnv, EnvLayout, ResetResult, StepResult, runs_with_discrete_actions};
 use crate::convert::{StateArray, box_action, numpy_scalar};
 use crate::runs::RunFactory;
 use crate::spec::RunSpec;

@@ -1,11 +1,13 @@
-//! Steps of Gymnasium's classes: the core's step, with the types that Gymnasium returns.
+//! Steps of Gymnasium's classes: the core's step, with the types that Gymnasium returns, and the states as Gymnasium keeps
+//! them.
 
+use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::types::PyFloat;
+use pyo3::types::{PyDict, PyFloat};
 use qtab_core::Env;
 use qtab_core::envs::Step;
 
-use crate::convert::small_array;
+use crate::convert::{array_from, small_array};
 
 /// The state of a Gymnasium class, which its steps leave in Rust until Python asks for it.
 pub(crate) enum StoredState {
@@ -60,4 +62,16 @@ impl<'py> StepResult<'py> {
     pub(super) fn if_finite(self) -> Option<Self> {
         self.finite.then_some(self)
     }
+}
+
+/// Writes the attribute `state`, an array of float64.
+pub(super) fn set_state<const N: usize>(attributes: &Bound<'_, PyDict>, state: impl Into<[f64; N]>) -> PyResult<()> {
+    let py = attributes.py();
+    attributes.set_item(intern!(py, "state"), small_array(py, &state.into()))
+}
+
+/// Writes the attribute `state`, an array of float32.
+pub(super) fn set_f32_state(attributes: &Bound<'_, PyDict>, state: &[f32]) -> PyResult<()> {
+    let py = attributes.py();
+    attributes.set_item(intern!(py, "state"), array_from(py, state)?)
 }
