@@ -10,8 +10,7 @@ use crate::random::Rng;
 /// The bounds of each component of the initial state, which is uniform.
 const RESET_BOUNDS: [(&str, f64); 2] = [("low", -0.1), ("high", 0.1)];
 const GRAVITY: f64 = 9.8;
-/// The largest angle that is wrapped. Gymnasium subtracts full turns one by one; the dynamics never reach such an
-/// angle.
+/// The largest angle that is wrapped: Gymnasium subtracts full turns one by one. The dynamics never reach it.
 const MAX_ANGLE: f64 = 1e6;
 
 /// The parameters, with Gymnasium's names in lower case.
@@ -226,8 +225,7 @@ fn runge_kutta(derivative: impl Fn([f64; 4]) -> [f64; 4], start: [f64; 4], dt: f
     std::array::from_fn(|i| start[i] + dt / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]))
 }
 
-/// An angle wrapped to [-π, π] by subtracting full turns, as Gymnasium does. NaN if its magnitude exceeds
-/// [`MAX_ANGLE`].
+/// An angle wrapped to [-π, π] by subtracting full turns, as Gymnasium does; NaN above [`MAX_ANGLE`].
 #[inline]
 fn wrap(mut angle: f64) -> f64 {
     if angle.abs() > MAX_ANGLE {
