@@ -10,16 +10,16 @@ import pytest
 
 import qtab
 from qtab.discretizers import Discretizer, Identity
-from qtab.envs.descriptions import DESCRIPTIONS, UNKNOWN, describe
+from qtab.envs.quantities import QUANTITIES, UNKNOWN, quantities_of
 from qtab.envs.registry import ENTRIES, EXTRA
-from qtab.results.axes import description_of
+from qtab.results.axes import run_quantities
 
 IDS = [*ENTRIES, *EXTRA]
 
 
 @pytest.mark.parametrize("env", IDS)
 def test_every_environment_is_described_as_its_spaces_are(env: str) -> None:
-    described = describe(env)
+    described = quantities_of(env)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeprecationWarning)  # an old version of CartPole
         made = gym.make(env)
@@ -44,7 +44,7 @@ def test_every_environment_is_described_as_its_spaces_are(env: str) -> None:
 
 
 def test_no_description_is_for_an_environment_that_does_not_exist() -> None:
-    assert set(DESCRIPTIONS) == set(IDS)
+    assert set(QUANTITIES) == set(IDS)
 
 
 @pytest.mark.parametrize("env", ["MountainCar-v0", "qtab/MountainCar-v0"])
@@ -157,7 +157,7 @@ def test_a_class_of_the_same_name_has_neutral_names() -> None:
 
 @pytest.mark.parametrize("version", ["CliffWalking-v7", "mine/CliffWalking-v1"])
 def test_an_id_of_another_version_or_namespace_has_neutral_names(version: str) -> None:
-    assert describe(version) is UNKNOWN
+    assert quantities_of(version) is UNKNOWN
     gym.register(version, CliffWalking)
     try:
         assert qtab.train(version, episodes=1, seed=0, max_episode_steps=5).action_names[0] == "action 0"
@@ -167,15 +167,17 @@ def test_an_id_of_another_version_or_namespace_has_neutral_names(version: str) -
 
 def test_another_environment_under_the_same_id_has_neutral_names() -> None:
     of_gymnasium = gym.registry["CliffWalking-v1"]
-    assert describe("CliffWalking-v1") is describe("somewhere:CliffWalking-v1") is DESCRIPTIONS["CliffWalking-v1"]
+    assert (
+        quantities_of("CliffWalking-v1") is quantities_of("somewhere:CliffWalking-v1") is QUANTITIES["CliffWalking-v1"]
+    )
     try:
         with pytest.warns(UserWarning, match="Overriding environment"):
             gym.register("CliffWalking-v1", CliffWalking)
-        assert describe("CliffWalking-v1") is UNKNOWN
+        assert quantities_of("CliffWalking-v1") is UNKNOWN
         assert qtab.train("CliffWalking-v1", episodes=1, seed=0, max_episode_steps=5).action_names[0] == "action 0"
         wrapped = gym.envs.registration.WrapperSpec("A", "gymnasium.wrappers:FlattenObservation", {})
         gym.registry["CliffWalking-v1"] = dataclasses.replace(of_gymnasium, additional_wrappers=(wrapped,))
-        assert describe("CliffWalking-v1") is UNKNOWN
+        assert quantities_of("CliffWalking-v1") is UNKNOWN
     finally:
         gym.registry["CliffWalking-v1"] = of_gymnasium
 
@@ -219,4 +221,4 @@ def test_only_what_no_wrapper_changes_is_named(env: str, wrap: Any, named: tuple
 @pytest.mark.parametrize("env", IDS)
 def test_every_environment_of_the_registry_is_described_in_its_runs(env: str) -> None:
     run = qtab.train(env, episodes=1, seed=0, max_episode_steps=2)
-    assert description_of(run.config, run.discretizer) is describe(env)
+    assert run_quantities(run.config, run.discretizer) is quantities_of(env)

@@ -21,7 +21,7 @@ from qtab.explanation.words import map_columns, state_in_words
 from qtab.reference import LEARNERS
 from qtab.reference.observer import observed_by
 from qtab.reference.schedules import LearningRate
-from qtab.results.axes import description_of
+from qtab.results.axes import run_quantities
 from qtab.results.rates import ONLY_FIRST, repeatable
 from qtab.results.run import Run
 from qtab.results.time_steps import rows_of
@@ -167,7 +167,7 @@ def _explained(run: Run, watcher: Watcher, index: int, columns: int | None) -> E
     pending: tuple[int, ...] = ()
     if run.config.algorithm in N_STEP:
         pending = tuple(range(sum(len(seen.updates) for seen in watcher.steps[: index + 1]), index + 1))
-    known = description_of(run.config, run.discretizer)
+    known = run_quantities(run.config, run.discretizer)
     return ExplainedStep(
         step=index,
         observation=step.observation,

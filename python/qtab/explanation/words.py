@@ -6,12 +6,12 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 
-from qtab.envs.descriptions import Description
+from qtab.envs.quantities import Quantities
 
 _PLACES = ("red", "green", "yellow", "blue")
 
 
-def state_in_words(known: Description, observation: Any, columns: int | None = None) -> str:
+def state_in_words(known: Quantities, observation: Any, columns: int | None = None) -> str:
     """Returns an observation in words: its components by name, or a place on a map with ``columns`` columns."""
     if columns is not None:
         return f"row {int(observation) // columns}, column {int(observation) % columns}"

@@ -11,8 +11,8 @@ import numpy as np
 from qtab._utils.versions import versions
 from qtab.config.options import n_tables
 from qtab.config.presets import presets
-from qtab.envs.descriptions import describe
 from qtab.envs.grid_worlds import ACTION_NAMES
+from qtab.envs.quantities import quantities_of
 from qtab.explanation.equations import bootstrap_symbol
 from qtab.playground.environments import ENVIRONMENTS, Entry
 from qtab.playground.settings import LEFT_OUT, OFFERED, rules, settings
@@ -79,7 +79,7 @@ def _gymnasium(entry: Entry) -> dict[str, Any]:
     env = gym.make(entry.env, **entry.env_kwargs)
     spec, unwrapped = env.spec, env.unwrapped
     assert spec is not None  # noqa: S101 - made by its id
-    description = describe(entry.env)
+    description = quantities_of(entry.env)
     space: Any = env.observation_space
     tabular = isinstance(space, gym.spaces.Discrete)
     given = {

@@ -15,10 +15,10 @@ from qtab.config.options import PREFERENCES, WITH_STATE_VALUES
 from qtab.discretizers import Discretizer
 from qtab.discretizers.edges import Edges
 from qtab.envs.actions import Actions
-from qtab.envs.descriptions import Description, describe
+from qtab.envs.quantities import Quantities, quantities_of
 from qtab.planning.optimum import Optimum
 from qtab.results.action_values import read_by_policy
-from qtab.results.axes import Axis, action_names, axes_of, description_of
+from qtab.results.axes import Axis, action_names, axes_of, run_quantities
 from qtab.results.run import Run
 from qtab.results.runs import Runs
 from qtab.results.time_steps import at_step, checked_step
@@ -40,7 +40,7 @@ class Subject:
     """The environment's id, or the name of its class."""
     env_kwargs: Mapping[str, Any]
     """Keyword arguments of the environment's constructor."""
-    description: Description
+    quantities: Quantities
     """The names and units of its observations and actions."""
     name: str
     """The default title."""
@@ -62,7 +62,7 @@ class Subject:
     @property
     def axes(self) -> tuple[Axis, ...]:
         """The components of the observation."""
-        return axes_of(self.description, self.discretizer)
+        return axes_of(self.quantities, self.discretizer)
 
     def action_values(self, rows: NDArray[np.int64]) -> NDArray[np.float64]:
         """Returns (seeds, ny, nx, actions) values; NaN where there is no state, or nothing was learned.
@@ -139,7 +139,7 @@ def subject_of(name: str, source: Any, step: Any = 0) -> Subject:
             raise ValueError(f"{name} must hold tables: train_many(..., tables=True) keeps them")
         if not len(source):
             raise ValueError(f"{name} must hold at least one run, got none")
-        names = action_names(description_of(source.config, source.discretizer), source.actions)
+        names = action_names(run_quantities(source.config, source.discretizer), source.actions)
         return _of_runs(source, source.config, source.tables, names, f"{len(source):,} seeds")
     if isinstance(source, Optimum):
         return _of_optimum(source)
@@ -162,7 +162,7 @@ def _of_runs(
         source,
         config.env,
         config.env_kwargs,
-        description_of(config, source.discretizer),
+        run_quantities(config, source.discretizer),
         f"{config.env}: {ALGORITHM_NAMES[config.algorithm]}, {which}",
         source.discretizer,
         summed,
@@ -205,7 +205,7 @@ def _of_optimum(best: Optimum) -> Subject:
         solver: Any = best.solver  # of a transition table
         discretizer, actions = solver.cells, solver.actions
     tables = best.q_values.reshape(1, -1, len(actions))
-    description = describe(best.env)
-    names = action_names(description, actions)
+    quantities = quantities_of(best.env)
+    names = action_names(quantities, actions)
     name = f"{best.env}: {best.label}"
-    return Subject(best, best.env, best.env_kwargs, description, name, discretizer, tables, None, names, best.discount)
+    return Subject(best, best.env, best.env_kwargs, quantities, name, discretizer, tables, None, names, best.discount)

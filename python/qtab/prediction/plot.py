@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab.envs.descriptions import describe, describe_observed, observation_quantities
+from qtab.envs.quantities import observation_quantities, observed_quantities, quantities_of
 from qtab.plots.axes import axes_or_new
 from qtab.plots.labels import finish
 from qtab.plots.subject import Subject
@@ -37,7 +37,7 @@ def subject_of_values(estimates: "ValueEstimates") -> Subject:
         estimates,
         estimates.env,
         env_kwargs,
-        describe_observed(estimates.env, discretizer.low, discretizer.high),
+        observed_quantities(estimates.env, discretizer.low, discretizer.high),
         name,
         discretizer,
         values[..., np.newaxis],
@@ -63,7 +63,7 @@ def draw_values(estimates: "ValueEstimates", ax: "Axes | None", true_values: NDA
         if true_values is not None:
             ax.plot(states, true_values, color="0.5", linestyle="--", linewidth=1.2, label="true values")
         return finish(ax, "state", "value", title)
-    first, second, *others = observation_quantities(describe(estimates.env), mean.ndim)
+    first, second, *others = observation_quantities(quantities_of(estimates.env), mean.ndim)
     notes: list[str] = []
     for known in reversed(others):
         middle = mean.shape[-1] // 2

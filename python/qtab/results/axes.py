@@ -12,13 +12,13 @@ from qtab.config import Config
 from qtab.config.origin import trained_on
 from qtab.discretizers.time_aware import TimeAware
 from qtab.envs.actions import Actions
-from qtab.envs.descriptions import (
+from qtab.envs.quantities import (
     UNKNOWN,
-    Description,
+    Quantities,
     Quantity,
     behind,
-    describe_observed,
     observation_quantities,
+    observed_quantities,
 )
 from qtab.envs.registry import TABULAR, entry_for_id
 
@@ -53,9 +53,9 @@ class Axis:
         return f"<Axis {self.label}: {counted(cells, 'cell')} {within}>"
 
 
-def description_of(config: Config, discretizer: "Discretizer") -> Description:
-    """Returns what the numbers of a run's environment mean, as far as it is one that is described."""
-    known = describe_observed(config.env, discretizer.low, discretizer.high)
+def run_quantities(config: Config, discretizer: "Discretizer") -> Quantities:
+    """Returns what the numbers of a run's environment mean, as far as that is known."""
+    known = observed_quantities(config.env, discretizer.low, discretizer.high)
     environment = trained_on(config)
     if environment is None:  # a file of an earlier version
         return known
@@ -65,7 +65,7 @@ def description_of(config: Config, discretizer: "Discretizer") -> Description:
     return behind(known, (wrapper.cls for wrapper in environment.wrappers))
 
 
-def axes_of(known: Description, discretizer: "Discretizer") -> tuple[Axis, ...]:
+def axes_of(known: Quantities, discretizer: "Discretizer") -> tuple[Axis, ...]:
     """Returns an axis for each component of the observations of an environment; the steps taken are the first one."""
     edges = discretizer.cell_edges()
     if isinstance(discretizer, TimeAware):
@@ -75,7 +75,7 @@ def axes_of(known: Description, discretizer: "Discretizer") -> tuple[Axis, ...]:
     return tuple(Axis(one.name, one.unit, found, one.values) for one, found in zip(quantities, edges, strict=True))
 
 
-def action_names(known: Description, actions: Actions) -> tuple[str, ...]:
+def action_names(known: Quantities, actions: Actions) -> tuple[str, ...]:
     """Returns a name for each action: Gymnasium's word, the value of a continuous action, or ``"action 2"``."""
     if actions.values is not None:
         quantities = known.continuous_actions

@@ -18,7 +18,7 @@ from qtab.discretizers import Discretizer
 from qtab.envs.actions import Actions
 from qtab.envs.origin.description import EnvironmentDescription
 from qtab.results import action_values, behaviour, plain_data, run_file, saving, time_steps
-from qtab.results.axes import Axis, action_names, axes_of, description_of
+from qtab.results.axes import Axis, action_names, axes_of, run_quantities
 from qtab.results.consistency import check_consistent
 from qtab.results.optional_arrays import optional_arrays
 from qtab.results.page import WithPage
@@ -144,12 +144,12 @@ class Run(WithPage):
     @property
     def axes(self) -> tuple[Axis, ...]:
         """For each component of the observation its name, its unit and the edges of its cells."""
-        return axes_of(description_of(self.config, self.discretizer), self.discretizer)
+        return axes_of(run_quantities(self.config, self.discretizer), self.discretizer)
 
     @property
     def action_names(self) -> tuple[str, ...]:
         """(actions,): Gymnasium's words for the actions, such as "push left", or the values of continuous ones."""
-        return action_names(description_of(self.config, self.discretizer), self.actions)
+        return action_names(run_quantities(self.config, self.discretizer), self.actions)
 
     def _require_cells(self, attribute: str, method: str) -> None:
         if not self.discretizer.has_cells:

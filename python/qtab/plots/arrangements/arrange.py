@@ -35,7 +35,7 @@ def arrange(
     """
     shape = subject.discretizer.shape
     has_components = subject.discretizer.has_component_axes
-    kind = subject.description.layout if has_components else ""  # other rows are not the states of a known map
+    kind = subject.quantities.layout if has_components else ""  # other rows are not the states of a known map
     numbered = subject.discretizer.low.ndim == 0 and len(shape) == 1 and has_components
     if layout is not None and not numbered:
         raise ValueError(f"layout must be None for observations that are not numbered states, got {layout!r}")

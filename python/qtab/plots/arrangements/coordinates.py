@@ -38,9 +38,9 @@ class Coordinate:
 def coordinates(subject: Subject) -> tuple[Coordinate, ...]:
     """Returns the quantities that can be axes: angles first, then the remaining components in order."""
     axes = subject.axes
-    description = subject.description
-    named = tuple(axis.name for axis in axes) == tuple(one.name for one in description.observation)
-    angles = description.angles if named else ()
+    quantities = subject.quantities
+    named = tuple(axis.name for axis in axes) == tuple(one.name for one in quantities.observation)
+    angles = quantities.angles if named else ()
     used = {index for angle in angles for index in (angle.cosine, angle.sine)}
     turns = [
         Coordinate(angle.quantity.name, angle.quantity.label, -np.pi, np.pi, (angle.cosine, angle.sine), None)

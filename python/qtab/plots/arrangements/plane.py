@@ -68,7 +68,7 @@ def plane(subject: Subject, at: Mapping[str, float] | None, sampled: bool = Fals
 
 def _decorate(ax: "Axes", ink: str, subject: Subject, chosen: list[Coordinate]) -> None:
     """Draws the marks of the environment, such as a goal, and the ticks of named values and of angles."""
-    for mark in subject.description.marks:
+    for mark in subject.quantities.marks:
         for line, one in zip((ax.axvline, ax.axhline), chosen, strict=False):
             if one.name == mark.name:
                 line(mark.value, color=ink, linewidth=1, linestyle=(0, (4, 3)), zorder=3)
@@ -106,7 +106,7 @@ def _choose(
         raise ValueError(
             f"at must leave two components as the axes of the picture, got values for {', '.join(map(repr, fixed))}"
         )
-    preferred = [one for one in free if one.name in subject.description.plane]
+    preferred = [one for one in free if one.name in subject.quantities.plane]
     chosen = preferred if len(preferred) == 2 and len(free) > 2 else free[:2]
     return chosen, fixed | {one.name: one.default for one in free if one not in chosen}
 

@@ -55,7 +55,7 @@ class Mark:
 
 
 @dataclass(frozen=True)
-class Description:
+class Quantities:
     """The names and units of an environment's numbers, and their place in pictures."""
 
     observation: tuple[Quantity, ...] = ()
@@ -82,7 +82,7 @@ _CAR = ((-1.2, -0.07), (0.6, 0.07))
 _TILT = 24 * 2 * math.pi / 360
 """The largest angle of CartPole's pole."""
 
-_CART_POLE = Description(
+_CART_POLE = Quantities(
     (
         Quantity("cart position", "m"),
         Quantity("cart velocity", "m/s"),
@@ -94,14 +94,14 @@ _CART_POLE = Description(
     bounds=((-4.8, -math.inf, -_TILT, -math.inf), (4.8, math.inf, _TILT, math.inf)),
 )
 
-DESCRIPTIONS: Mapping[str, Description] = {
-    "MountainCar-v0": Description(
+QUANTITIES: Mapping[str, Quantities] = {
+    "MountainCar-v0": Quantities(
         (_POSITION, _VELOCITY),
         ("push left", "no push", "push right"),
         marks=(Mark("position", 0.5, "flag"),),
         bounds=_CAR,
     ),
-    "MountainCarContinuous-v0": Description(
+    "MountainCarContinuous-v0": Quantities(
         (_POSITION, _VELOCITY),
         continuous_actions=(Quantity("force"),),
         marks=(Mark("position", 0.45, "flag"),),
@@ -109,7 +109,7 @@ DESCRIPTIONS: Mapping[str, Description] = {
     ),
     "CartPole-v0": _CART_POLE,
     "CartPole-v1": _CART_POLE,
-    "Acrobot-v1": Description(
+    "Acrobot-v1": Quantities(
         (
             Quantity("cos θ1"),
             Quantity("sin θ1"),
@@ -123,43 +123,43 @@ DESCRIPTIONS: Mapping[str, Description] = {
         plane=("θ1", "θ2"),
         bounds=((-1, -1, -1, -1, -4 * math.pi, -9 * math.pi), (1, 1, 1, 1, 4 * math.pi, 9 * math.pi)),
     ),
-    "Pendulum-v1": Description(
+    "Pendulum-v1": Quantities(
         (Quantity("cos θ"), Quantity("sin θ"), Quantity("angular velocity", "rad/s")),
         continuous_actions=(Quantity("torque", "N m"),),
         angles=(Angle(Quantity("θ", "rad"), 0, 1),),
         plane=("θ", "angular velocity"),
         bounds=((-1, -1, -8), (1, 1, 8)),
     ),
-    "FrozenLake-v1": Description(_STATE, ("left", "down", "right", "up"), layout="map"),
-    "FrozenLake8x8-v1": Description(_STATE, ("left", "down", "right", "up"), layout="map"),
-    "CliffWalking-v1": Description(_STATE, ("up", "right", "down", "left"), layout="map"),
-    "CliffWalkingSlippery-v1": Description(_STATE, ("up", "right", "down", "left"), layout="map"),
-    "Taxi-v4": Description(_STATE, ("south", "north", "east", "west", "pick up", "drop off"), layout="taxi"),
-    "Blackjack-v1": Description(
+    "FrozenLake-v1": Quantities(_STATE, ("left", "down", "right", "up"), layout="map"),
+    "FrozenLake8x8-v1": Quantities(_STATE, ("left", "down", "right", "up"), layout="map"),
+    "CliffWalking-v1": Quantities(_STATE, ("up", "right", "down", "left"), layout="map"),
+    "CliffWalkingSlippery-v1": Quantities(_STATE, ("up", "right", "down", "left"), layout="map"),
+    "Taxi-v4": Quantities(_STATE, ("south", "north", "east", "west", "pick up", "drop off"), layout="taxi"),
+    "Blackjack-v1": Quantities(
         (Quantity("player's sum"), Quantity("dealer's card"), Quantity("usable ace", values=("no", "yes"))),
         ("stick", "hit"),
         layout="blackjack",
     ),
-    "qtab/AccessControlQueue-v0": Description(_STATE, ("reject", "accept")),
-    "qtab/BlockingMaze-v0": Description(_STATE, ("up", "right", "down", "left")),
-    "qtab/DynaMaze-v0": Description(_STATE, ("up", "right", "down", "left")),
-    "qtab/Racetrack-v0": Description(
+    "qtab/AccessControlQueue-v0": Quantities(_STATE, ("reject", "accept")),
+    "qtab/BlockingMaze-v0": Quantities(_STATE, ("up", "right", "down", "left")),
+    "qtab/DynaMaze-v0": Quantities(_STATE, ("up", "right", "down", "left")),
+    "qtab/Racetrack-v0": Quantities(
         _STATE, tuple(f"{up:+} up, {right:+} right" for up in (-1, 0, 1) for right in (-1, 0, 1))
     ),
-    "qtab/ShortcutMaze-v0": Description(_STATE, ("up", "right", "down", "left")),
-    "qtab/GamblersProblem-v0": Description(
+    "qtab/ShortcutMaze-v0": Quantities(_STATE, ("up", "right", "down", "left")),
+    "qtab/GamblersProblem-v0": Quantities(
         (Quantity("capital", "$"),), tuple(f"stake {stake}" for stake in range(1, 51))
     ),
-    "qtab/GridWorld4x4-v0": Description(_STATE, ("up", "right", "down", "left")),
-    "qtab/GridWorld5x5-v0": Description(_STATE, ("up", "right", "down", "left")),
-    "qtab/JacksCarRental-v0": Description(_STATE, tuple(f"move {moved}" for moved in range(-5, 6))),
-    "qtab/RandomMdp-v0": Description(_STATE, ("first", "second")),
-    "qtab/RandomWalk-v0": Description(_STATE, ("left", "right")),
-    "qtab/KArmedBandit-v0": Description(
+    "qtab/GridWorld4x4-v0": Quantities(_STATE, ("up", "right", "down", "left")),
+    "qtab/GridWorld5x5-v0": Quantities(_STATE, ("up", "right", "down", "left")),
+    "qtab/JacksCarRental-v0": Quantities(_STATE, tuple(f"move {moved}" for moved in range(-5, 6))),
+    "qtab/RandomMdp-v0": Quantities(_STATE, ("first", "second")),
+    "qtab/RandomWalk-v0": Quantities(_STATE, ("left", "right")),
+    "qtab/KArmedBandit-v0": Quantities(
         (Quantity("state", values=("bandit",)),), tuple(f"arm {number}" for number in range(1, 11))
     ),
-    "qtab/ShortCorridor-v0": Description((Quantity("state", values=("corridor",)),), ("left", "right")),
-    "qtab/MaximizationBias-v0": Description((Quantity("state", values=("A", "B", "end")),), ("right", "left")),
+    "qtab/ShortCorridor-v0": Quantities((Quantity("state", values=("corridor",)),), ("left", "right")),
+    "qtab/MaximizationBias-v0": Quantities((Quantity("state", values=("A", "B", "end")),), ("right", "left")),
 }
 """The environments by their id."""
 
@@ -170,12 +170,12 @@ _WRAPPERS = {
 }
 """The part of an environment that the wrappers in each module of Gymnasium change."""
 
-UNKNOWN = Description()
-"""The description of an environment that is not listed."""
+UNKNOWN = Quantities()
+"""Those of an environment that is not listed: nothing is known."""
 
 
-def describe(env: str) -> Description:
-    """Returns the description of an id, of Gymnasium's or of this package's; ``UNKNOWN`` for any other.
+def quantities_of(env: str) -> Quantities:
+    """Returns the quantities of an id, of Gymnasium's or of this package's; ``UNKNOWN`` for any other.
 
     It is also ``UNKNOWN`` if another class, or wrappers, are registered under the id.
     """
@@ -185,15 +185,15 @@ def describe(env: str) -> Description:
         return UNKNOWN
     if spec.entry_point not in (entry.gymnasium_entry_point, entry.entry_point):
         return UNKNOWN
-    return DESCRIPTIONS.get(bare) or DESCRIPTIONS[gymnasium_id(bare)]
+    return QUANTITIES.get(bare) or QUANTITIES[gymnasium_id(bare)]
 
 
-def describe_observed(env: str, low: NDArray[Any], high: NDArray[Any]) -> Description:
-    """Returns the description of an environment whose observations have these bounds, (d,) or ().
+def observed_quantities(env: str, low: NDArray[Any], high: NDArray[Any]) -> Quantities:
+    """Returns the quantities of an environment whose observations have these bounds, (d,) or ().
 
-    If the bounds are not the environment's, a wrapper changes its observations, which are then not described.
+    If the bounds are not the environment's, a wrapper changes its observations, which are then unknown.
     """
-    known = describe(env)
+    known = quantities_of(env)
     if known.bounds is None:
         return known
     own = np.array(known.bounds)
@@ -202,8 +202,8 @@ def describe_observed(env: str, low: NDArray[Any], high: NDArray[Any]) -> Descri
     return _actions_of(known)
 
 
-def behind(known: Description, wrappers: Iterable[str]) -> Description:
-    """Returns the part of a description that is valid behind wrappers, which are given as ``"module:Class"``.
+def behind(known: Quantities, wrappers: Iterable[str]) -> Quantities:
+    """Returns the quantities that are still known behind wrappers, which are given as ``"module:Class"``.
 
     Gymnasium's wrappers of rewards keep all of it, those of observations keep the actions, and those of actions keep
     the observations. Any other wrapper may change everything.
@@ -217,11 +217,11 @@ def behind(known: Description, wrappers: Iterable[str]) -> Description:
     return known
 
 
-def _actions_of(known: Description) -> Description:
-    return Description(actions=known.actions, continuous_actions=known.continuous_actions)
+def _actions_of(known: Quantities) -> Quantities:
+    return Quantities(actions=known.actions, continuous_actions=known.continuous_actions)
 
 
-def observation_quantities(known: Description, count: int) -> tuple[Quantity, ...]:
+def observation_quantities(known: Quantities, count: int) -> tuple[Quantity, ...]:
     """Returns the ``count`` components of an environment's observations; neutral names if they do not fit."""
     if len(known.observation) == count:
         return known.observation
