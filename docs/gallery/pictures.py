@@ -1,4 +1,4 @@
-"""Makes the pictures of docs/gallery/index.md by its code: each block's last figure becomes the picture below it.
+"""Makes the pictures of docs/gallery/index.md by running its code: the last figure of a block is the picture below it.
 
 python docs/gallery/pictures.py               # all of them, in about a minute
 python docs/gallery/pictures.py lake windy    # only some; the code is run from the top in any case
@@ -18,7 +18,7 @@ BLOCK = re.compile(r"^```python\n(?P<code>.*?)^```\n\n!\[[^\]]*\]\((?P<picture>[
 
 
 def blocks(page: Path) -> dict[str, str]:
-    """Returns the code of each picture of a page, by the picture's path from the page."""
+    """Returns the code of each picture of a page, by the path of the picture relative to the page."""
     return {found["picture"]: found["code"] for found in BLOCK.finditer(page.read_text(encoding="utf-8"))}
 
 

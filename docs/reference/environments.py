@@ -1,6 +1,6 @@
-"""Prints the table of docs/reference/environments.md, every preset over fresh seeds.
+"""Prints the table of docs/reference/environments.md, with every preset over fresh seeds.
 
-With an environment, the row of one preset:
+With an environment and a preset, it prints one row:
 
     python docs/reference/environments.py MountainCar-v0 solved
 """
@@ -29,7 +29,7 @@ SEEDS = {
     ("Taxi-v4", "solved"): (range(20_000, 20_100), range(50_000, 51_000)),
     ("qtab/Racetrack-v0", "solved"): (range(20_000, 20_010), range(40_000, 40_100)),
 }
-"""The seeds on which a preset was chosen among others, and the fresh ones on which it was confirmed."""
+"""The seeds used to choose a preset, and the fresh seeds used to confirm it."""
 OTHERS = (NO_SEEDS, range(40_000, 40_100))
 """The same for presets that were chosen without a search."""
 GREEDY_SEEDS = 100
@@ -104,7 +104,7 @@ def print_row(cells: Cells) -> None:
 
 
 def main() -> None:
-    """Prints the table, or the row of the preset that was asked for."""
+    """Prints the table, or the row of one preset."""
     parser = argparse.ArgumentParser()
     parser.add_argument("env", nargs="?")
     parser.add_argument("preset", nargs="?", default="solved")
@@ -116,5 +116,5 @@ def main() -> None:
         print_row(row(env, preset))
 
 
-if __name__ == "__main__":  # processes train where Python steps the environment
+if __name__ == "__main__":  # worker processes import this file if Python steps the environment
     main()
