@@ -8,7 +8,7 @@ SEEDS = 20
 
 
 def search(batches: int = 10, size: int = 4, episodes: int = 300) -> optuna.Study:
-    """Maximises the mean return of the last 100 episodes of MountainCar-v0.
+    """Maximizes the mean return of the last 100 episodes of MountainCar-v0.
 
     Args:
         batches: The number of sweeps.
