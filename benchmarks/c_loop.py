@@ -1,4 +1,4 @@
-"""The article's training loop in C, where there is a compiler."""
+"""The article's training loop in C, if a compiler is installed."""
 
 import ctypes
 import shutil
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 COMPILERS = ("cc", "gcc", "clang")
 FLAGS = ("-O3", "-march=native", "-ffp-contract=off", "-shared", "-fPIC")
-"""Contraction would fuse multiplications with additions, which Gymnasium and NumPy do not."""
+"""Contraction would fuse multiplications and additions, which Gymnasium and NumPy do not do."""
 
 
 def build() -> Any:

@@ -26,7 +26,7 @@ PARTS: Mapping[str, Sequence[Callable[[], Table]]] = {
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Times the parts that are named, or all."""
+    """Times the named parts, or all of them."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("parts", nargs="*", metavar="PART", help=f"{', '.join(PARTS)}; by default all of them")
     parser.add_argument("--seconds", type=float, default=10.0, help="the approximate duration of a table (10)")

@@ -8,7 +8,7 @@ from qtab.config.presets import preset
 from tables import Benchmark, Column, Table, relative_to
 
 EPISODES = {"FrozenLake-v1": 400, "Taxi-v4": 40, "CartPole-v1": 100}
-"""The episodes of the plain loop in a round; the schedules of the rates are compressed to them."""
+"""The episodes of the plain loop in a round; the schedules of the rates extend over these episodes."""
 TABLES = ("FrozenLake-v1", "Taxi-v4")
 """The environments with a transition table, over which Numba's loop runs."""
 PLAIN, NUMBA = "a plain loop: NumPy on gymnasium.make", "a loop over the table under numba"

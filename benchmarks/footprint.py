@@ -33,7 +33,7 @@ def footprint(repeats: int = 5) -> str:
     times = [[float(seconds) for seconds in _output(_IMPORTS).split()] for _ in range(repeats)]
     gymnasium, package = np.median(times, axis=0) * 1e3
     text = f"import qtab adds {package:.1f} ms to the {gymnasium:.0f} ms of import gymnasium"
-    if sys.platform == "win32":  # which does not report the peak memory in this way
+    if sys.platform == "win32":  # Windows has no resource module
         return text
     return f"{text}; a default run adds {float(_output(_MEMORY)):.1f} MB to the peak memory after the imports"
 

@@ -23,7 +23,7 @@ GYMNASIUM_MAKE, QTAB_MAKE = "Gymnasium's env of gymnasium.make", "qtab's env of 
 
 
 def training() -> Table:
-    """Returns the table of training: the article's loop, the same in C and under Numba where they are, and qtab."""
+    """Returns the table of training: the article's loop, the same in C and under Numba if available, and qtab."""
     loops: dict[str, Benchmark] = {bench.ARTICLE: bench.BENCHMARKS[bench.ARTICLE]}
     in_c = c_loop.build()
     if in_c is not None:

@@ -1,6 +1,6 @@
 """The article's training loop and Sarsa(λ) with tile coding, on MountainCar, written for Numba.
 
-Without Numba they are functions of Python, and are not timed.
+Without Numba they are plain Python functions and are not timed.
 """
 
 import math

@@ -1,7 +1,7 @@
 """The table of a group of benchmarks: nanoseconds per step, and how the benchmarks compare with each other.
 
 Ratios are computed within each round, in which all benchmarks of a table take turns. pytest-benchmark and pyperf time
-one benchmark after the other, and asv interleaves processes only, in each of which Numba would compile again.
+one benchmark after another, and asv interleaves only processes, each of which would compile Numba's loops again.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -20,17 +20,17 @@ Times: TypeAlias = NDArray[np.float64]
 
 
 def speed_up(times: Times, base: Times) -> Times:
-    """Returns how many times as fast a benchmark is as the one that it is compared with, in each round."""
+    """Returns the speed-up of a benchmark over its base, in each round."""
     return base / times
 
 
 def relative_time(times: Times, base: Times) -> Times:
-    """Returns the time of a benchmark relative to the one that it is compared with, in each round."""
+    """Returns the time of a benchmark relative to its base, in each round."""
     return times / base
 
 
 def added_time(times: Times, base: Times) -> Times:
-    """Returns the nanoseconds per step that a benchmark takes longer, in each round."""
+    """Returns the nanoseconds per step that a benchmark takes in addition to its base, in each round."""
     return times - base
 
 
@@ -40,7 +40,7 @@ class Column:
 
     head: str
     bases: Mapping[str, str]
-    """For each benchmark with an entry in the column: the one that it is compared with."""
+    """For each benchmark with an entry in the column, its base: the benchmark that it is compared with."""
     compare: Callable[[Times, Times], Times] = speed_up
 
 

@@ -60,7 +60,7 @@ def _envpool() -> dict[str, Benchmark]:
 
 def _steps(env: Any, actions: int, count: int) -> Benchmark:
     """Returns the benchmark of ``count`` steps of all sub-environments with random actions drawn in advance."""
-    size = getattr(env, "num_envs", NUM_ENVS)  # EnvPool's has no such attribute
+    size = getattr(env, "num_envs", NUM_ENVS)  # EnvPool's environments have no such attribute
     drawn = list(np.random.default_rng(0).integers(0, actions, (64, size)))
     action_batches = [drawn[index % len(drawn)] for index in range(count)]
     env.reset()

@@ -26,14 +26,14 @@ def sphinx(quick: bool) -> int:
     if quick:
         options += ["-D", "nb_execution_mode=off"]
     command = [sys.executable, "-m", "sphinx", *options, str(HERE), str(SITE)]
-    returncode = subprocess.run(command, check=False).returncode  # noqa: S603 - our own words
-    # The theme's template, which it keeps among its static files, is no page.
+    returncode = subprocess.run(command, check=False).returncode  # noqa: S603 - a fixed command
+    # The theme keeps this template among its static files, but it is not a page.
     (SITE / "_static" / "webpack-macros.html").unlink(missing_ok=True)
     return returncode
 
 
 def main() -> None:
-    """Runs the steps; the exit code is 1 if any of them finds something."""
+    """Builds and checks the site; the exit code is 1 if there is any problem."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--quick", action="store_true", help="without notebooks and browser")
     parser.add_argument("--browser", action=argparse.BooleanOptionalAction, default=True, help="open every page")

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import qtab
 
-# A module that autosummary can import by its public name.
+# Lets autosummary import this module by its public name.
 sys.modules["qtab.designs"] = qtab.designs
 
 HERE = Path(__file__).parent
@@ -25,7 +25,7 @@ extensions = [
     "sphinx.ext.napoleon",
     "sphinx_copybutton",
     "sphinx_design",
-    # Of this folder:
+    # From docs/_extensions:
     "local_mathjax",
     "notebooks",
     "outside_links",
@@ -48,7 +48,7 @@ nb_execution_mode = "force"
 nb_execution_timeout = 120
 nb_execution_raise_on_error = True
 nb_execution_show_tb = True
-nb_ipywidgets_js: dict[str, dict[str, str]] = {}  # by default two scripts of a content delivery network
+nb_ipywidgets_js: dict[str, dict[str, str]] = {}  # the default loads two scripts from a content delivery network
 nb_merge_streams = True
 
 # The reference
@@ -68,7 +68,7 @@ napoleon_custom_sections = [
     (title, "params_style") for title in ("Environment", "Run", "Learning", "Exploration", "Discretizer")
 ]
 
-# Inventories that are kept here, because the build has no network. Their names are those that our pages use.
+# The inventories are kept here because the build has no network. They list only the names that our pages use.
 intersphinx_mapping = {
     name: (url, str(HERE / "_inventories" / f"{name}.txt"))
     for name, url in {
@@ -82,7 +82,7 @@ intersphinx_mapping = {
     }.items()
 }
 
-# The look
+# Appearance
 html_theme = "pydata_sphinx_theme"
 html_title = "qtab"
 html_static_path = ["_static"]

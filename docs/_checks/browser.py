@@ -1,6 +1,6 @@
 """Opens every page of the built site in Chromium: nothing is loaded from elsewhere, and the console shows no error.
 
-A page that looks local may still load things by its scripts, which only a browser tells.
+A page without external addresses may still load things through its scripts, which only a browser detects.
 """
 
 import functools
@@ -20,14 +20,14 @@ NO_NETWORK = "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1"
 
 
 class Quiet(http.server.SimpleHTTPRequestHandler):
-    """Serves files without a line for each."""
+    """Serves files without logging the requests."""
 
     def log_message(self, format: str, *arguments: Any) -> None:  # noqa: A002 - the name in the standard library
         """Prints nothing."""
 
 
 class Server(http.server.ThreadingHTTPServer):
-    """Does not mind a browser that leaves a page before all of it was sent."""
+    """Ignores early disconnects."""
 
     def handle_error(self, request: Any, client_address: Any) -> None:
         """Prints nothing."""
@@ -35,7 +35,7 @@ class Server(http.server.ThreadingHTTPServer):
 
 @contextmanager
 def served(site: Path) -> Iterator[str]:
-    """Serves a folder on this machine, as the site will be; yields its address."""
+    """Serves a folder on this machine, as the site will be served; yields its address."""
     handler = functools.partial(Quiet, directory=str(site))
     with Server(("127.0.0.1", 0), handler) as server:
         thread = threading.Thread(target=server.serve_forever, daemon=True)
@@ -48,7 +48,7 @@ def served(site: Path) -> Iterator[str]:
 
 
 def problems(site: Path) -> list[str]:
-    """Returns a line for each foreign request, failed request and error on the console."""
+    """Returns a line for each external request, failed request and error on the console."""
     if CHROMIUM is None:
         return ["no browser: install Chromium, or set CHROMIUM to its path"]
     from playwright.sync_api import sync_playwright

@@ -1,4 +1,4 @@
-"""Where the links within the built site lead: to a page or file that exists, and to an anchor that the page has."""
+"""Checks that the links within the built site lead to a page or file that exists, and to an anchor on the page."""
 
 import os.path
 from collections.abc import Iterable, Iterator
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def problems(site: Path, pages: Iterable["Page"]) -> Iterator[str]:
-    """Yields a line for each link of the pages that leads nowhere; what is outside of the site is not asked."""
+    """Yields a line for each broken link of the pages; links to other sites are not checked."""
     known = {_normal(page.path): page for page in pages}
     for page in known.values():
         for address in dict.fromkeys([*page.links, *page.loaded]):
@@ -20,7 +20,7 @@ def problems(site: Path, pages: Iterable["Page"]) -> Iterator[str]:
 
 
 def _problem(site: Path, page: "Page", address: str, known: dict[Path, "Page"]) -> str | None:
-    """What is wrong with an address on a page."""
+    """Returns what is wrong with an address on a page; None if nothing is."""
     parts = urlsplit(address)
     if parts.scheme or parts.netloc:
         return None
@@ -32,12 +32,12 @@ def _problem(site: Path, page: "Page", address: str, known: dict[Path, "Page"]) 
     if not target.is_file():
         return "no file"
     anchor = unquote(parts.fragment)
-    # A browser scrolls to the top of any page; the playground keeps its settings where others have anchors.
+    # A browser scrolls to the top of any page; the playground stores its settings in the anchor.
     if anchor in ("", "top") or target not in known or "=" in anchor:
         return None
     return None if anchor in known[target].anchors else f"no anchor of {target.relative_to(_normal(site))}"
 
 
 def _normal(path: Path) -> Path:
-    """A path without `..`, as a browser understands it."""
+    """Returns a path without `..`, as a browser resolves it."""
     return Path(os.path.normpath(path))

@@ -1,4 +1,4 @@
-"""What can be said of a built page without opening it: its pictures, its links, and where it loads things from."""
+"""Checks the built pages without a browser: their pictures, and the addresses from which they load things."""
 
 import re
 from collections.abc import Iterator
@@ -27,7 +27,7 @@ CSS_URL = re.compile(r"url\(\s*['\"]?([^'\")]+)|@import\s+['\"]([^'\"]+)")
 
 @dataclass
 class Page(HTMLParser):
-    """What a page loads, what it links to and can be linked at, and its pictures without a description."""
+    """The addresses that a page loads, its links, its anchors, and its pictures without a description."""
 
     path: Path
     loaded: list[str] = field(default_factory=list)
@@ -41,7 +41,7 @@ class Page(HTMLParser):
         self.feed(self.path.read_text(encoding="utf-8"))
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        """Takes note of an element."""
+        """Records the addresses, the anchors and the missing description of an element."""
         given = {name: value or "" for name, value in attrs}
         self._in_style = tag == "style"
         self.anchors |= {given[name] for name in ("id", "name") if name in given}
@@ -59,7 +59,7 @@ class Page(HTMLParser):
             self.undescribed.append(self.get_starttag_text() or tag)
 
     def handle_data(self, data: str) -> None:
-        """Takes note of what a style sheet in the page loads."""
+        """Records the addresses that a style sheet in the page loads."""
         if self._in_style:
             self.loaded += css_urls(data)
 
@@ -70,31 +70,31 @@ def css_urls(text: str) -> list[str]:
 
 
 def needs_description(tag: str, given: dict[str, str]) -> bool:
-    """Whether an element is a picture that means something: not the logo, beside which its name is written."""
+    """Whether an element is a picture that needs a description; the logo does not, as the name is next to it."""
     if given.get("aria-hidden") == "true" or "logo__image" in given.get("class", ""):
         return False
     return tag in ("img", "iframe", "video", "object") or (tag == "svg" and given.get("role") == "img")
 
 
 def description(given: dict[str, str]) -> str:
-    """Returns the words for those who do not see a picture; Sphinx writes its path where there are none."""
+    """Returns the alternative text of a picture; "" if it is only a path, which Sphinx writes if there is none."""
     words = next((given[name] for name in ("alt", "aria-label", "aria-labelledby", "title") if given.get(name)), "")
     return "" if re.fullmatch(r"\S+\.(png|jpe?g|gif|svg|webp)", words.strip()) else words.strip()
 
 
 def is_foreign(address: str) -> bool:
-    """Whether loading an address asks another server."""
+    """Whether an address is on another server."""
     parts = urlsplit(address)
     return bool(parts.netloc) or parts.scheme not in ("", "data", "blob")
 
 
 def read(site: Path) -> list[Page]:
-    """Returns what the pages of a built site hold."""
+    """Reads the pages of a built site."""
     return [Page(path) for path in sorted(site.rglob("*.html"))]
 
 
 def problems(site: Path, pages: list[Page]) -> list[str]:
-    """Returns a line for each undescribed picture and foreign address of a built site."""
+    """Returns a line for each picture without a description and each external address of a built site."""
     return [*_page_problems(site, pages), *_css_problems(site)]
 
 

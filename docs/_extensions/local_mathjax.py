@@ -1,7 +1,7 @@
-"""MathJax from a package on this machine: a page with mathematics loads nothing from the network.
+"""Copies MathJax from an installed package, so that a page with mathematics loads nothing from the network.
 
-Sphinx adds MathJax only to pages that need it. Of the package ``sphinx-mathjax-offline``, which holds all of MathJax 3
-(30 MB), the site gets one component and its fonts.
+Sphinx adds MathJax only to pages that need it. The package ``sphinx-mathjax-offline`` contains all of MathJax 3
+(30 MB); only one component and its fonts are copied.
 """
 
 import shutil

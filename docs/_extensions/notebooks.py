@@ -1,7 +1,7 @@
-"""The notebooks of ``examples/`` as pages: copied to ``docs/notebooks`` before the build, and run by myst-nb.
+"""Makes pages of the notebooks in ``examples/``: copies them to ``docs/notebooks`` before the build; myst-nb runs them.
 
-The stored notebooks have no outputs, and no descriptions of their pictures. ``notebook_pictures.json`` has these: for
-each notebook, the ids of the cells that show a picture.
+The stored notebooks have no outputs, and no descriptions of their pictures. ``notebook_pictures.json`` has the
+descriptions: for each notebook, by the id of the cell that shows the picture.
 """
 
 import json
@@ -35,7 +35,7 @@ def copy_notebooks(app: Sphinx) -> None:
 
 
 def drop_blank_outputs(app: Sphinx, doctree: nodes.document) -> None:
-    """Removes what a progress bar leaves behind when it is closed: an output without a word."""
+    """Removes the empty output that a progress bar leaves when it is closed."""
     for output in list(doctree.findall(nodes.literal_block)):
         if not output.astext().strip():
             output.parent.remove(output)

@@ -1,7 +1,7 @@
-"""Links that leave ``docs/``: they lead to files on GitHub, and to the pages that the site has instead of them.
+"""Rewrites links that leave ``docs/``: they lead to files on GitHub, and on the site to the corresponding pages.
 
 ``[a notebook](../../examples/study.ipynb)`` becomes the page of that notebook, ``[README](../../README.md#install)``
-the page with the same text, and any other file a download. So each page reads well in both places.
+the page with the same text, and any other file a download. So the links of a page work in both places.
 """
 
 import json
@@ -20,7 +20,7 @@ PAGES = {
     "README.md": "docs/index.md",
     "README.md#install": "docs/install.md",
 }
-"""What the site shows instead of a file outside of ``docs/``, or of one of its sections."""
+"""The page that the site shows instead of a file outside of ``docs/``, or of a section of such a file."""
 
 LINK = re.compile(r"(?<!!)(\[(?:[^\[\]]|\[[^\]]*\])*\]\()([^)\s#:]+)(#[^)\s]*)?(\))")
 

@@ -1,6 +1,6 @@
 """The playground on the site: its files in ``playground/``, and the directive ``{playground}``, a frame that shows it.
 
-``.ci/run docs`` builds its WebAssembly first. Without it the site is built all the same, and says what is missing.
+``.ci/run docs`` builds its WebAssembly first. Without it, the site is still built, with a note that it is missing.
 """
 
 from pathlib import Path
@@ -24,7 +24,7 @@ def is_built() -> bool:
 
 
 class Playground(Directive):
-    """Shows the playground in a frame, or says that it is missing."""
+    """Shows the playground in a frame, or a note that it is missing."""
 
     def run(self) -> list[nodes.Node]:
         """Returns the frame."""

@@ -1,4 +1,4 @@
-"""Links to the public name of what the reference shows: ``qtab.Run`` for a type that is ``qtab.results.run.Run``."""
+"""Links types in the reference by their public names, such as ``qtab.Run`` for ``qtab.results.run.Run``."""
 
 import importlib
 from functools import cache
@@ -53,7 +53,7 @@ SHORT = {
     "pa.Table": "pyarrow.Table",
     "stable_baselines3.common.vec_env.base_vec_env.VecEnv": "stable_baselines3.common.vec_env.VecEnv",
 }
-"""The full names of the types in signatures, which show them by their last part, and of those defined elsewhere."""
+"""The full names of types that signatures shorten to their last part, and of types defined elsewhere."""
 WITHOUT_A_PAGE = ("Estimates", "SharedSettings", "ValuesVerification", "WhatIf")
 """Types of this package that have no page and are named without their module."""
 MODULES = ("book", "callbacks", "designs", "planning", "playground", "plots", "prediction", "stats")

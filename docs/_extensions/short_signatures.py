@@ -1,7 +1,7 @@
-"""Signatures that one can read: types by their short names, and the settings of ``train`` as ``**settings``.
+"""Makes signatures readable: types have short names, and the settings of ``train`` are ``**settings``.
 
-The docstrings list the settings in groups; each gets its type and its default there. Results, which no one constructs,
-have no signature; their attributes are listed.
+The docstrings list the settings in groups; each gets its type and its default there. Classes of results, which users
+do not construct, have no signature; their attributes are listed.
 """
 
 import dataclasses
@@ -97,7 +97,7 @@ def _owner(function: Any) -> tuple[Any, str]:
 
 
 def edit_docstring(app: Sphinx, kind: str, name: str, value: Any, options: Any, lines: list[str]) -> None:
-    """Leaves out what is listed elsewhere, adds the types of settings, and protects the stars of shapes."""
+    """Leaves out attributes that are listed elsewhere, adds the types of settings, and escapes the stars of shapes."""
     if kind == "class" and dataclasses.is_dataclass(value) and "Attributes:" in lines:
         del lines[lines.index("Attributes:") :]
     if "**settings" in str(lines):

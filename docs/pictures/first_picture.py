@@ -36,13 +36,13 @@ def greedy_episode(run: qtab.Run, env: gym.Env) -> tuple[NDArray[np.float32], li
 
 
 def key_steps(observations: NDArray[np.float32]) -> list[int]:
-    """The first step, the steps at which the car changes direction, and one shortly before the end."""
+    """Returns the first step, the steps at which the car changes direction, and one shortly before the end."""
     reversals = np.flatnonzero(np.diff(np.sign(observations[1:, 1]))) + 1
     return [0, *reversals.tolist(), len(observations) - 1 - BEFORE_THE_FLAG]
 
 
 def draw_car(ax: Axes, observations: NDArray[np.float32], frames: list[NDArray[np.uint8]], steps: list[int]) -> None:
-    """Draws the frame of the last key step, and faded behind it the car at the earlier ones."""
+    """Draws the frame of the last key step, with the car at the earlier key steps faded."""
     earlier = [255 - FADE * (255.0 - frames[step]) for step in steps[:-1]]
     ax.imshow(np.min([frames[steps[-1]], *earlier], axis=0).astype(np.uint8))
     pixels = 600 / 1.8  # Gymnasium draws the 1.8 m from -1.2 to 0.6 on 600 pixels

@@ -10,7 +10,7 @@ THRESHOLD = -110.0
 
 
 def trained(name: str, **settings: str) -> qtab.Runs:
-    """Trains 1,000 seeds, and prints how long that takes and how it ends."""
+    """Trains 1,000 seeds, and prints the time and the results."""
     began = time.perf_counter()
     runs = qtab.train_many("MountainCar-v0", seeds=1000, **settings)
     final = runs.final_returns(100)
