@@ -4,14 +4,13 @@ The extension parses it once into its own enums. The words of each union stand t
 and its like); a test holds the two lists together.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
 from typing_extensions import Required
 
-from qtab._algorithm_spec import AlgorithmSpec as AlgorithmSpec
 from qtab._discretizer_spec import DiscretizerSpec as DiscretizerSpec
 from qtab.config.choices import BitGenerator, OnTruncation, TerminalUpdate, Ties
 
@@ -58,6 +57,9 @@ MaskSourceSpec: TypeAlias = ConventionalMaskSource | FunctionMaskSource
 EnvironmentSpec: TypeAlias = NativeEnvSpec | PythonEnvSpec
 
 # The agent
+
+AlgorithmSpec: TypeAlias = Mapping[str, Any]
+"""``type``, the name of the algorithm, and its options by the names of the config."""
 
 
 class ConstantSpec(TypedDict):

@@ -10,10 +10,10 @@ import pytest
 
 import qtab
 from qtab import _core
-from qtab.config import DEFAULTS, choices, validation
+from qtab.config import DEFAULTS, choices
 from qtab.config.discretizer import FUNCTION, MAPPING
 from qtab.config.explanations import explanations, groups
-from qtab.config.options import OPTIONS
+from qtab.config.options import OPTIONS, SETTINGS
 from qtab.config.settings import ConfigSettings, Settings, SharedSettings
 
 STORED = get_type_hints(qtab.Config)
@@ -43,8 +43,9 @@ def test_every_choice_is_in_the_table_of_choices() -> None:
 
 
 def test_every_setting_is_checked() -> None:
-    assert {*validation._CHECKS, "seed"} == STORED.keys()
-    assert validation._OPTIONAL | {"seed"} == {name for name in STORED if may_be_none(STORED[name])}
+    assert list(SETTINGS) == [name for name in STORED if name != "discretizer"]
+    may_not_be_given = {name for name, setting in SETTINGS.items() if setting.may_be_none}
+    assert may_not_be_given == {name for name in STORED if may_be_none(STORED[name])}
 
 
 def test_the_options_are_the_settings_that_are_not_given_by_default() -> None:

@@ -3,14 +3,14 @@
 import dataclasses
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, get_args
 
 import gymnasium as gym
 import numpy as np
 import pytest
 
 import qtab
-from qtab.config.algorithms import ALGORITHMS
+from qtab.config.choices import Algorithm
 from qtab.config.options import FIXED, PREFERENCES
 from qtab.envs.random_mdp import random_mdp
 
@@ -125,7 +125,7 @@ def is_refused(algorithm: str, name: str, pair: Pair) -> bool:
     return False
 
 
-@pytest.mark.parametrize("algorithm", ALGORITHMS)
+@pytest.mark.parametrize("algorithm", get_args(Algorithm))
 def test_a_setting_changes_what_is_learned_or_is_refused(algorithm: str) -> None:
     refused = {name for name, pair in PAIRS.items() if is_refused(algorithm, name, pair)}
     fixed = set(FIXED[algorithm].values) if algorithm in FIXED else set()

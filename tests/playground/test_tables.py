@@ -11,8 +11,9 @@ import pytest
 from numpy.typing import NDArray
 
 import qtab
+from qtab.config.compatibility import defaults
 from qtab.config.config import DEFAULTS
-from qtab.config.options import OPTIONS, defaults, is_set
+from qtab.config.options import OPTIONS, is_set
 from qtab.playground import definitions
 from qtab.playground.assemble import data_script
 from qtab.playground.bundle import bundle

@@ -33,7 +33,7 @@ class _Annotation:
         self._owner, self._name, self._type = owner, name, type_
 
     def __repr__(self) -> str:
-        for name, annotation, _ in _fields(self._owner):
+        for name, annotation, _ in source_fields(self._owner):
             if name == self._name:
                 return annotation
         return inspect.formatannotation(self._type)
@@ -48,7 +48,7 @@ class _Docstring:
     def __get__(self, instance: object, owner: type) -> str:
         entries = [
             textwrap.fill(f"{name} ({annotation}): {text}", 112, initial_indent=" " * 4, subsequent_indent=" " * 8)
-            for name, annotation, text in _fields(owner)
+            for name, annotation, text in source_fields(owner)
             if text
         ]
         if not entries:
@@ -57,7 +57,7 @@ class _Docstring:
 
 
 @cache
-def _fields(cls: type) -> tuple[tuple[str, str, str], ...]:
+def source_fields(cls: type) -> tuple[tuple[str, str, str], ...]:
     """Returns the name, the annotation and the docstring of each field, as the source has them."""
     try:
         (tree,) = ast.parse(textwrap.dedent(inspect.getsource(cls))).body

@@ -1,14 +1,11 @@
 """The explanation of each setting, for the docstrings of functions and the help of the command line."""
 
-import ast
-import inspect
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from functools import cache
-from itertools import pairwise
 from types import MappingProxyType
 from typing import Any
 
-from qtab.config import config
+from qtab._utils.fields import source_fields
 from qtab.config.config import DEFAULTS, Config
 from qtab.config.options import OPTIONS, listed
 
@@ -25,19 +22,7 @@ _TITLES = {
 @cache
 def explanations() -> Mapping[str, str]:
     """Returns the docstring of each of the config's fields, in one line; nothing if the source is not installed."""
-    try:
-        tree = ast.parse(inspect.getsource(config))
-    except (OSError, TypeError):
-        return MappingProxyType({})
-    (class_,) = (node for node in tree.body if isinstance(node, ast.ClassDef) and node.name == Config.__name__)
-    return MappingProxyType(dict(_attribute_docstrings(class_)))
-
-
-def _attribute_docstrings(class_: ast.ClassDef) -> Iterator[tuple[str, str]]:
-    for statement, following in pairwise(class_.body):
-        match statement, following:
-            case ast.AnnAssign(target=ast.Name(id=name)), ast.Expr(value=ast.Constant(value=str(text))):
-                yield name, " ".join(text.split())
+    return MappingProxyType({name: text for name, _, text in source_fields(Config) if text})
 
 
 def applicability(name: str) -> str:

@@ -1,6 +1,6 @@
 """The check of the setting ``discretizer``, in which each key of the observation may have one of its own."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 from qtab._utils import checks
@@ -9,20 +9,18 @@ from qtab._utils.suggestions import did_you_mean
 from qtab.config.choices import CHOICES
 from qtab.config.options import OPTIONS, is_set, listed
 
-Check = Callable[[str, Any], Any]
 _OPTIONS = [
     name for name, option in OPTIONS.items() if option.choice == "discretizer" and name not in ("shape", "max_rows")
 ]
 """The options that the discretizer of a key can have."""
 
 
-def checked_discretizer(name: str, value: Any, check_of: Mapping[str, Check]) -> Any:
+def checked_discretizer(name: str, value: Any) -> Any:
     """Returns the setting, checked: for each key as a mapping that holds the name and all options that apply.
 
     Args:
         name: The name of the setting.
         value: Its value: a name, a function, or a mapping from keys to names or to mappings.
-        check_of: The checks of the options.
 
     Raises:
         TypeError: for a value of the wrong type.
@@ -31,7 +29,7 @@ def checked_discretizer(name: str, value: Any, check_of: Mapping[str, Check]) ->
     if isinstance(value, Mapping):
         if not value:
             raise ValueError(f"{name} must name a discretizer for at least one key of the observation, got {{}}")
-        return {_key(name, key): _of_key(f"{name}[{key!r}]", given, check_of) for key, given in value.items()}
+        return {_key(name, key): _of_key(f"{name}[{key!r}]", given) for key, given in value.items()}
     if callable(value):
         return value
     return checks.choice(name, value, CHOICES[name])
@@ -57,7 +55,7 @@ def _key(name: str, key: Any) -> str:
     return str(key)
 
 
-def _of_key(name: str, given: Any, check_of: Mapping[str, Check]) -> dict[str, Any]:
+def _of_key(name: str, given: Any) -> dict[str, Any]:
     options = {"discretizer": given} if isinstance(given, str) else given
     if not isinstance(options, Mapping) or not isinstance(options.get("discretizer"), str):
         raise TypeError(
@@ -74,7 +72,7 @@ def _of_key(name: str, given: Any, check_of: Mapping[str, Check]) -> dict[str, A
         if chosen not in applies_to:
             raise ValueError(f"{name}: {option} applies to {listed(applies_to)}, not to {chosen!r}, got {shown(value)}")
         try:
-            complete[option] = check_of[option](option, value)
+            complete[option] = OPTIONS[option].check(option, value)
         except (TypeError, ValueError) as error:
             raise type(error)(f"{name}: {error}") from None
     try:

@@ -10,8 +10,9 @@ import gymnasium as gym
 from gymnasium.envs.registration import EnvSpec
 
 from qtab._utils.shown import shown
+from qtab.config.compatibility import applicable, turned_off
 from qtab.config.config import DEFAULTS, Config, replace_checked
-from qtab.config.options import applicable, freed_settings, is_set, turned_off
+from qtab.config.options import freed_settings, is_set
 from qtab.config.origin import copied
 from qtab.config.unknown import check_names
 from qtab.envs.registry import versioned

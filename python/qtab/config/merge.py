@@ -6,8 +6,9 @@ from typing import Any
 
 from qtab._utils.shown import shown
 from qtab.config.algorithm_defaults import algorithm_defaults
+from qtab.config.compatibility import applicable
 from qtab.config.config import DEFAULTS, Config
-from qtab.config.options import applicable, is_set
+from qtab.config.options import is_set
 from qtab.config.presets import preset
 from qtab.config.rates import implied_schedules, without_rates
 from qtab.config.unknown import check_names

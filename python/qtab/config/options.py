@@ -1,16 +1,40 @@
-"""Settings that apply only beside certain choices: the default of each, and the check that it applies."""
+"""The table of settings: for each its check, where it applies, its default there, and what else it is called.
+
+The fields of :class:`qtab.Config` have the types, the explanations, and the defaults of the settings that always apply.
+"""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
-from qtab._utils.shown import shown
-from qtab.config.choices import CHOICES
-from qtab.config.discretizer import FUNCTION, MAPPING, kind, uses_tiles
+from qtab._utils import checks
+from qtab.config import value_checks as check
+from qtab.config.action_mask import mask_setting
+from qtab.config.discretizer import FUNCTION, MAPPING
+from qtab.config.value_checks import Check
+
+MAX_TILINGS = 32
+MAX_TILES = 2**32 - 1
+MAX_BINS = 1_000_000
+MAX_ROWS = 2**32 - 2
 
 
 @dataclass(frozen=True)
-class Option:
+class Setting:
+    """A setting of a run."""
+
+    check: Check
+    """The check of its value."""
+    other_names: str = field(default="", kw_only=True)
+    """What other libraries and textbooks call it, separated by spaces."""
+    may_be_none: bool = field(default=False, kw_only=True)
+    """Whether None means "not given"; it is not checked then."""
+    added: bool = field(default=False, kw_only=True)
+    """Whether earlier versions do not have it: files hold it only where it differs from its default."""
+
+
+@dataclass(frozen=True)
+class Option(Setting):
     """A setting that applies only for some values of another setting, such as the trace decay of Sarsa(λ)."""
 
     choice: str
@@ -19,6 +43,9 @@ class Option:
     """The values of the other setting for which this one applies."""
     default: Any
     """The default where it applies. None: it has none, or is found from the observation space."""
+    off_by_none: bool = field(default=False, kw_only=True)
+    """Whether None is a real value, not just "not set"."""
+    may_be_none: bool = field(default=True, kw_only=True)
 
 
 @dataclass(frozen=True)
@@ -55,47 +82,6 @@ FIXED: Mapping[str, Fixed] = {
 }
 """The algorithms for which some settings are fixed."""
 
-# A choice comes before the options that depend on it.
-OPTIONS: Mapping[str, Option] = {
-    "trace_decay": Option("algorithm", (*_WITH_TRACES, "true_online_sarsa_lambda", "actor_critic_lambda"), 0.9),
-    "traces": Option("algorithm", _WITH_TRACES, "replacing"),
-    "trace_cutoff": Option("algorithm", (*_WITH_TRACES, "true_online_sarsa_lambda"), 0.0),
-    "n_steps": Option("algorithm", ("n_step_sarsa", *_WITH_TARGET_POLICY), 4),
-    "sigma": Option("algorithm", ("n_step_q_sigma",), 0.5),
-    "target_policy": Option("algorithm", _WITH_TARGET_POLICY, "greedy"),
-    "planning_steps": Option("algorithm", ("dyna_q", "dyna_q_plus", "prioritized_sweeping"), 10),
-    "time_weight": Option("algorithm", ("dyna_q_plus",), 1e-3),
-    "model": Option("algorithm", ("dyna_q",), "deterministic"),
-    "priority_threshold": Option("algorithm", ("prioritized_sweeping",), 1e-4),
-    "reward_learning_rate": Option("algorithm", AVERAGE_REWARD, 0.01),
-    "baseline": Option("algorithm", ("gradient_bandit",), True),
-    "value_learning_rate": Option("algorithm", WITH_STATE_VALUES, 0.1),
-    "min_learning_rate": Option("learning_rate_schedule", (*_FALLING, "visits"), 0.0),
-    "learning_rate_decay": Option("learning_rate_schedule", ("exponential",), 0.999),
-    "learning_rate_warm_up": Option("learning_rate_schedule", _FALLING, 0),
-    "epsilon": Option("exploration", ("epsilon_greedy",), 0.8),
-    "epsilon_schedule": Option("exploration", ("epsilon_greedy",), "linear"),
-    "ties": Option("exploration", ("epsilon_greedy", "ucb"), "first"),
-    "min_epsilon": Option("epsilon_schedule", _FALLING, 0.0),
-    "epsilon_decay": Option("epsilon_schedule", ("exponential",), 0.999),
-    "epsilon_warm_up": Option("epsilon_schedule", _FALLING, 0),
-    "temperature": Option("exploration", ("softmax",), 1.0),
-    "confidence": Option("exploration", ("ucb",), 2.0),
-    "shape": Option("discretizer", (FUNCTION,), None),
-    "max_rows": Option("discretizer", ("round", "bins", "edges", "identity", FUNCTION, MAPPING), None),
-    "scale": Option("discretizer", ("round",), None),
-    "tilings": Option("discretizer", ("tiles",), 8),
-    "tiles": Option("discretizer", ("tiles",), (8,)),
-    "hashed_rows": Option("discretizer", ("tiles",), None),
-    "bins": Option("discretizer", ("bins",), (10,)),
-    "edges": Option("discretizer", ("edges",), None),
-    "low": Option("discretizer", ("bins", "tiles"), None),
-    "high": Option("discretizer", ("bins", "tiles"), None),
-}
-
-OFF_BY_NONE = ("hashed_rows", "max_rows")
-"""The options for which None is a real value, not just "not set"."""
-
 ONE_STEP = (
     "q_learning",
     "sarsa",
@@ -115,80 +101,157 @@ They update states after the next one is seen, and only the mask of the last one
 """
 
 
-_CHECKED = (
-    *("terminal_update", "learning_rate_schedule", "discount", "algorithm", "exploration", "action_mask"),
-    *("time_aware", "on_truncation"),
-)
-"""The settings, no options, of which some values exclude each other."""
+# A choice comes before the options that depend on it.
+SETTINGS: Mapping[str, Setting] = {
+    "env": Setting(check.text, other_names="env_id env_name environment"),
+    "env_kwargs": Setting(check.keywords, other_names="environment_kwargs make_kwargs"),
+    "max_episode_steps": Setting(
+        check.count, other_names="max_steps max_steps_per_episode time_limit horizon", may_be_none=True
+    ),
+    "time_aware": Setting(checks.boolean, added=True),
+    "backend": Setting(check.choice),
+    "episodes": Setting(check.count, other_names="n_episodes num_episodes max_episodes total_episodes n_eps"),
+    "seed": Setting(check.integer(0), other_names="random_seed random_state rng", may_be_none=True),
+    "bit_generator": Setting(check.choice),
+    "preset": Setting(check.text, may_be_none=True),
+    "algorithm": Setting(check.choice, other_names="algo agent method"),
+    "learning_rate": Setting(checks.finite, other_names="alpha lr step_size stepsize"),
+    "discount": Setting(check.real(0, 1), other_names="gamma discount_factor discount_rate"),
+    "learning_rate_schedule": Setting(check.choice, other_names="alpha_schedule lr_schedule"),
+    "min_learning_rate": Option(
+        check.not_negative,
+        "learning_rate_schedule",
+        (*_FALLING, "visits"),
+        0.0,
+        other_names="alpha_min min_alpha min_lr lr_min",
+    ),
+    "learning_rate_decay": Option(
+        check.real(0, 1), "learning_rate_schedule", ("exponential",), 0.999, other_names="alpha_decay lr_decay"
+    ),
+    "learning_rate_warm_up": Option(check.integer(0, checks.LARGEST_COUNT), "learning_rate_schedule", _FALLING, 0),
+    "trace_decay": Option(
+        check.real(0, 1),
+        "algorithm",
+        (*_WITH_TRACES, "true_online_sarsa_lambda", "actor_critic_lambda"),
+        0.9,
+        other_names="lam lambda_ lambd lmbda td_lambda",
+    ),
+    "traces": Option(check.choice, "algorithm", _WITH_TRACES, "replacing", other_names="trace_type eligibility_traces"),
+    "trace_cutoff": Option(check.real(0, 1), "algorithm", (*_WITH_TRACES, "true_online_sarsa_lambda"), 0.0),
+    "n_steps": Option(
+        check.integer(1, 1_000_000), "algorithm", ("n_step_sarsa", *_WITH_TARGET_POLICY), 4, other_names="n n_step"
+    ),
+    "sigma": Option(check.real(0, 1), "algorithm", ("n_step_q_sigma",), 0.5, other_names="sampling_degree", added=True),
+    "target_policy": Option(check.choice, "algorithm", _WITH_TARGET_POLICY, "greedy", added=True),
+    "planning_steps": Option(
+        check.integer(0, 1_000_000),
+        "algorithm",
+        ("dyna_q", "dyna_q_plus", "prioritized_sweeping"),
+        10,
+        other_names="n_planning n_planning_steps planning",
+    ),
+    "time_weight": Option(check.not_negative, "algorithm", ("dyna_q_plus",), 1e-3, other_names="kappa"),
+    "model": Option(check.choice, "algorithm", ("dyna_q",), "deterministic", added=True),
+    "priority_threshold": Option(
+        check.not_negative,
+        "algorithm",
+        ("prioritized_sweeping",),
+        1e-4,
+        other_names="theta priority_tolerance",
+        added=True,
+    ),
+    "reward_learning_rate": Option(
+        check.real(0, 1),
+        "algorithm",
+        AVERAGE_REWARD,
+        0.01,
+        other_names="beta eta average_reward_rate reward_step_size",
+        added=True,
+    ),
+    "baseline": Option(checks.boolean, "algorithm", ("gradient_bandit",), True, added=True),
+    "value_learning_rate": Option(
+        checks.finite,
+        "algorithm",
+        WITH_STATE_VALUES,
+        0.1,
+        other_names="alpha_w critic_learning_rate critic_lr value_lr",
+        added=True,
+    ),
+    "initial_q": Setting(check.initial_q, other_names="init_q q_init q_table initial_value optimistic_value"),
+    "terminal_update": Setting(check.choice),
+    "on_truncation": Setting(check.choice),
+    "exploration": Setting(
+        check.choice, other_names="policy policy_type behaviour_policy behavior_policy policy_kwargs"
+    ),
+    "epsilon": Option(
+        check.real(0, 1),
+        "exploration",
+        ("epsilon_greedy",),
+        0.8,
+        other_names="eps exploration_rate epsilon_start eps_start exploration_initial_eps",
+    ),
+    "epsilon_schedule": Option(check.choice, "exploration", ("epsilon_greedy",), "linear"),
+    "min_epsilon": Option(
+        check.real(0, 1),
+        "epsilon_schedule",
+        _FALLING,
+        0.0,
+        other_names="epsilon_min epsilon_end eps_min eps_end exploration_final_eps final_epsilon",
+    ),
+    "epsilon_decay": Option(
+        check.real(0, 1), "epsilon_schedule", ("exponential",), 0.999, other_names="eps_decay exploration_decay"
+    ),
+    "epsilon_warm_up": Option(check.integer(0, checks.LARGEST_COUNT), "epsilon_schedule", _FALLING, 0),
+    "ties": Option(
+        check.choice, "exploration", ("epsilon_greedy", "ucb"), "first", other_names="tie_breaking tie_break"
+    ),
+    "temperature": Option(check.above_zero, "exploration", ("softmax",), 1.0, other_names="tau"),
+    "confidence": Option(check.not_negative, "exploration", ("ucb",), 2.0, other_names="ucb_c c ucb", added=True),
+    "count_bonus": Setting(check.not_negative, other_names="exploration_bonus bonus count_based_bonus", added=True),
+    "action_mask": Setting(mask_setting, added=True),
+    "shape": Option(check.counts(1, checks.LARGEST_COUNT), "discretizer", (FUNCTION,), None, added=True),
+    "max_rows": Option(
+        check.integer(1, MAX_ROWS),
+        "discretizer",
+        ("round", "bins", "edges", "identity", FUNCTION, MAPPING),
+        None,
+        off_by_none=True,
+        added=True,
+    ),
+    "scale": Option(check.scale, "discretizer", ("round",), None, may_be_none=False),
+    "tilings": Option(check.integer(1, MAX_TILINGS), "discretizer", ("tiles",), 8, other_names="n_tilings num_tilings"),
+    "tiles": Option(
+        check.counts(1, MAX_TILES), "discretizer", ("tiles",), (8,), other_names="n_tiles num_tiles tiles_per_dim"
+    ),
+    "hashed_rows": Option(
+        check.integer(1, 2**32 - 1),
+        "discretizer",
+        ("tiles",),
+        None,
+        other_names="iht_size hash_size memory_size",
+        off_by_none=True,
+    ),
+    "bins": Option(check.counts(1, MAX_BINS), "discretizer", ("bins",), (10,), other_names="n_bins num_bins buckets"),
+    "edges": Option(check.edges, "discretizer", ("edges",), None),
+    "low": Option(check.each(checks.finite), "discretizer", ("bins", "tiles"), None),
+    "high": Option(check.each(checks.finite), "discretizer", ("bins", "tiles"), None),
+    "actions": Setting(check.actions, other_names="n_actions num_actions", may_be_none=True),
+}
+"""Every setting but ``discretizer``, whose check needs those of its options; see ``keyed_discretizers.py``."""
+OPTIONS: Mapping[str, Option] = {name: setting for name, setting in SETTINGS.items() if isinstance(setting, Option)}
+"""The settings that apply only beside certain choices."""
+OFF_BY_NONE = tuple(name for name, option in OPTIONS.items() if option.off_by_none)
+"""The options for which None is a real value, not just "not set"."""
+
+
+def options_of(choice: str, value: str) -> list[str]:
+    """Returns the names of the options that apply for a value of a choice, such as an algorithm."""
+    return [name for name, option in OPTIONS.items() if option.choice == choice and value in option.values]
 
 
 def n_tables(algorithm: str) -> int:
     """Returns how many tables an algorithm learns."""
     return 2 if algorithm in ("double_q_learning", *WITH_STATE_VALUES) else 1
-
-
-def check_options(fields: Mapping[str, Any]) -> None:
-    """Refuses options that do not apply to the choices made, and choices that do not go together.
-
-    Raises:
-        ValueError: names the option, what it applies to, and what was chosen.
-    """
-    for name in OPTIONS:
-        if is_set(fields[name]) and (reason := mismatch(name, fields[name], fields)):
-            raise ValueError(reason)
-    for name in _CHECKED:
-        if reason := mismatch(name, fields[name], fields):
-            raise ValueError(reason)
-
-
-def mismatch(name: str, value: Any, fields: Mapping[str, Any]) -> str | None:
-    """Returns why a value of a setting does not go with the other settings, ``fields``; None if it does."""
-    if name in OPTIONS:
-        option = OPTIONS[name]
-        chosen = _effective(option.choice, fields)
-        if chosen is None and option.choice in OPTIONS:  # the choice is itself an option that does not apply
-            option = OPTIONS[option.choice]
-            chosen = fields[option.choice]
-        if chosen not in option.values:
-            return f"{name} applies to {option.choice} {listed(option.values)}, not to {chosen!r}, got {shown(value)}"
-    algorithm = fields["algorithm"]
-    with_tiles = uses_tiles(fields["discretizer"])
-    if (name, value) == ("terminal_update", "assign"):
-        if algorithm not in ONE_STEP:
-            return f"terminal_update must be 'target' for algorithm {algorithm!r}, got 'assign'"
-        if with_tiles:
-            return "terminal_update must be 'target' for discretizer 'tiles', got 'assign'"
-    by_episode = ("true_online_sarsa_lambda", *PREFERENCES)
-    if (name, value) == ("learning_rate_schedule", "visits") and algorithm in by_episode:
-        return other_choice(name, value, ("visits",), f"for algorithm {algorithm!r}")
-    if name == "learning_rate_schedule" and value != "visits" and algorithm == "off_policy_monte_carlo":
-        return f"{name} must be 'visits' for algorithm {algorithm!r}, got {shown(value)}"
-    if name in fixed_settings(algorithm) and value != (only := FIXED[algorithm].values[name]):
-        wanted = f"{only:g}" if isinstance(only, float) else repr(only)
-        return (
-            f"{name} must be {wanted} for algorithm {algorithm!r}, which {FIXED[algorithm].reason}, got {shown(value)}"
-        )
-    if name == "algorithm" and value in TABLES_ONLY and with_tiles:
-        others = other_choice(name, value, TABLES_ONLY, "for discretizer 'tiles'")
-        return f"{others}, which works with discretizer 'round', 'bins', 'edges' or 'identity'"
-    if name == "exploration" and algorithm in PREFERENCES and value != "softmax":
-        return f"exploration must be 'softmax' for algorithm {algorithm!r}, got {shown(value)}"
-    if name == "action_mask" and value is not False and algorithm in NO_MASKED_TILES and with_tiles:
-        return f"action_mask must be False for algorithm {algorithm!r} with discretizer 'tiles', got {shown(value)}"
-    if (name, value) == ("on_truncation", "bootstrap") and fields["time_aware"]:
-        return "on_truncation must be 'terminate' for time_aware=True, whose last step nothing follows, got 'bootstrap'"
-    if name == "time_aware" and value and with_tiles:
-        return (
-            "time_aware must be False for discretizer 'tiles', which has no cells, got True; "
-            "gymnasium.wrappers.TimeAwareObservation makes the time a component that it can tile"
-        )
-    if name == "time_aware" and value and fields["max_rows"] is not None:
-        return f"time_aware must be False with max_rows, got True and max_rows={fields['max_rows']}"
-    if (name, value) == ("exploration", "ucb") and with_tiles:
-        return other_choice(name, value, ("ucb",), "for discretizer 'tiles'")
-    if (name, value) == ("exploration", "ucb") and algorithm in WITH_PROBABILITIES:
-        return other_choice(name, value, ("ucb",), f"for algorithm {algorithm!r}")
-    return None
 
 
 def fixed_settings(algorithm: Any) -> Mapping[str, Any]:
@@ -201,59 +264,12 @@ def freed_settings(before: Any, now: Any) -> set[str]:
     return fixed_settings(before).keys() - fixed_settings(now).keys()
 
 
-def turned_off(fields: Mapping[str, Any]) -> dict[str, Any]:
-    """Returns the options that a complete config, such as that of a run, has off, each with its None.
-
-    A config in which options are still open is not complete, and nothing says that another one is not open as well.
-    """
-    if defaults(fields):
-        return {}
-    return {name: None for name in OFF_BY_NONE if fields[name] is None and not mismatch(name, None, fields)}
-
-
-def applicable(fields: Mapping[str, Any], others: Mapping[str, Any]) -> dict[str, Any]:
-    """Returns the settings in ``fields`` that fit the other settings, without the options of choices that do not."""
-    kept = {name: value for name, value in fields.items() if not mismatch(name, value, others)}
-    for name, option in OPTIONS.items():
-        if option.choice in fields and option.choice not in kept:
-            kept.pop(name, None)
-    return kept
-
-
-def other_choice(name: str, value: str, excluded: Sequence[str], where: str) -> str:
-    """Returns the message for a choice that is excluded where something else was chosen."""
-    possible = [word for word in CHOICES[name] if word not in excluded]
-    return f"{name} must be {listed(possible)} {where}, got {shown(value)}"
-
-
 def listed(words: Sequence[str]) -> str:
     """Returns words as English lists them: ``'a', 'b' or 'c'``."""
     *others, last = map(repr, words)
     return f"{', '.join(others)} or {last}" if others else last
 
 
-def defaults(fields: Mapping[str, Any]) -> dict[str, Any]:
-    """Returns the defaults of the options that apply and are not set."""
-    complete, filled = dict(fields), {}
-    for name, option in OPTIONS.items():
-        if option.default is None or is_set(complete[name]):
-            continue
-        if _effective(option.choice, complete) in option.values:
-            complete[name] = filled[name] = option.default
-    return filled
-
-
 def is_set(value: Any) -> bool:
     """Returns whether a setting has a value: None, and an empty scale, mean "not given"."""
     return value is not None and not (isinstance(value, tuple) and not value)
-
-
-def _effective(choice: str, fields: Mapping[str, Any]) -> Any:
-    """The value of a choice, or its default if it is itself an option that applies and is not given."""
-    if choice == "exploration" and fields["algorithm"] in PREFERENCES:
-        return "softmax"
-    value = kind(fields[choice]) if choice == "discretizer" else fields[choice]
-    if value is None and choice in OPTIONS:
-        option = OPTIONS[choice]
-        return option.default if _effective(option.choice, fields) in option.values else None
-    return value

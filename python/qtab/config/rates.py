@@ -3,7 +3,8 @@
 from collections.abc import Mapping
 from typing import Any
 
-from qtab.config.options import OPTIONS, applicable, is_set
+from qtab.config.compatibility import applicable
+from qtab.config.options import OPTIONS, is_set
 
 _SCHEDULES: Mapping[str, tuple[str, tuple[str, ...]]] = {
     "learning_rate": ("learning_rate_schedule", ("min_learning_rate", "learning_rate_warm_up")),

@@ -5,13 +5,9 @@ from typing import Any
 
 from qtab.config.action_mask import STORED
 from qtab.config.config import DEFAULTS, Config
-from qtab.config.options import OPTIONS, fixed_settings
+from qtab.config.options import OPTIONS, SETTINGS, fixed_settings
 
-ADDED = (
-    *("action_mask", "shape", "max_rows", "baseline", "value_learning_rate", "confidence"),
-    *("sigma", "target_policy", "model", "priority_threshold", "reward_learning_rate", "count_bonus"),
-    "time_aware",
-)
+ADDED = tuple(name for name, setting in SETTINGS.items() if setting.added)
 """Settings that earlier versions do not have: files hold them only where they differ from their defaults."""
 
 IMPLIED = ("model",)

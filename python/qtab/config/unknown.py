@@ -7,52 +7,19 @@ from typing import ParamSpec, TypeVar
 
 from qtab._utils.shown import shown
 from qtab._utils.suggestions import nearest
+from qtab.config.options import SETTINGS
 
 P = ParamSpec("P")
 T = TypeVar("T")
 
-_OTHER_NAMES = {
-    "env": ("env_id", "env_name", "environment"),
-    "env_kwargs": ("environment_kwargs", "make_kwargs"),
-    "max_episode_steps": ("max_steps", "max_steps_per_episode", "time_limit", "horizon"),
-    "episodes": ("n_episodes", "num_episodes", "max_episodes", "total_episodes", "n_eps"),
-    "seed": ("random_seed", "random_state", "rng"),
-    "algorithm": ("algo", "agent", "method"),
-    "learning_rate": ("alpha", "lr", "step_size", "stepsize"),
-    "discount": ("gamma", "discount_factor", "discount_rate"),
-    "learning_rate_decay": ("alpha_decay", "lr_decay"),
-    "learning_rate_schedule": ("alpha_schedule", "lr_schedule"),
-    "min_learning_rate": ("alpha_min", "min_alpha", "min_lr", "lr_min"),
-    "trace_decay": ("lam", "lambda_", "lambd", "lmbda", "td_lambda"),
-    "traces": ("trace_type", "eligibility_traces"),
-    "n_steps": ("n", "n_step"),
-    "planning_steps": ("n_planning", "n_planning_steps", "planning"),
-    "time_weight": ("kappa",),
-    "sigma": ("sampling_degree",),
-    "priority_threshold": ("theta", "priority_tolerance"),
-    "reward_learning_rate": ("beta", "eta", "average_reward_rate", "reward_step_size"),
-    "count_bonus": ("exploration_bonus", "bonus", "count_based_bonus"),
-    "initial_q": ("init_q", "q_init", "q_table", "initial_value", "optimistic_value"),
-    "exploration": ("policy", "policy_type", "behaviour_policy", "behavior_policy", "policy_kwargs"),
-    "epsilon": ("eps", "exploration_rate", "epsilon_start", "eps_start", "exploration_initial_eps"),
-    "min_epsilon": ("epsilon_min", "epsilon_end", "eps_min", "eps_end", "exploration_final_eps", "final_epsilon"),
-    "epsilon_decay": ("eps_decay", "exploration_decay"),
-    "ties": ("tie_breaking", "tie_break"),
-    "temperature": ("tau",),
-    "confidence": ("ucb_c", "c", "ucb"),
-    "value_learning_rate": ("alpha_w", "critic_learning_rate", "critic_lr", "value_lr"),
-    "discretizer": ("discretization", "features"),
-    "bins": ("n_bins", "num_bins", "buckets"),
-    "tilings": ("n_tilings", "num_tilings"),
-    "tiles": ("n_tiles", "num_tiles", "tiles_per_dim"),
-    "hashed_rows": ("iht_size", "hash_size", "memory_size"),
-    "actions": ("n_actions", "num_actions"),
-    # Arguments of the functions
-    "seeds": ("n_seeds", "num_seeds", "n_runs", "num_runs", "runs"),
-    "threads": ("n_jobs", "num_workers", "workers", "n_threads", "num_threads"),
-    "progress": ("verbose", "progress_bar"),
+_ARGUMENTS = {
+    "discretizer": "discretization features",
+    "seeds": "n_seeds num_seeds n_runs num_runs runs",
+    "threads": "n_jobs num_workers workers n_threads num_threads",
+    "progress": "verbose progress_bar",
 }
-"""What other libraries and textbooks call the settings."""
+_OTHER_NAMES = {name: setting.other_names for name, setting in SETTINGS.items()} | _ARGUMENTS
+"""What other libraries and textbooks call the settings and the arguments of the functions."""
 _STEPS = ("total_timesteps", "n_timesteps", "num_timesteps", "timesteps", "total_steps")
 
 
@@ -89,7 +56,7 @@ def meant(name: str, known: Collection[str]) -> str | None:
     """Returns the known name that was probably meant; None if there is none."""
     if name in _STEPS and "episodes" in known:
         return "episodes"
-    names = {other: ours for ours, others in _OTHER_NAMES.items() if ours in known for other in others}
+    names = {other: ours for ours, others in _OTHER_NAMES.items() if ours in known for other in others.split()}
     names |= {word: word for word in known}
     found = name if name in names else nearest(name, names)
     return None if found is None else names[found]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from qtab._utils.shown import counted, shown
 from qtab.config import Config
-from qtab.config.validation import MAX_ACTIONS
+from qtab.config.value_checks import MAX_ACTIONS
 
 FLOATS = (np.dtype(np.float32), np.dtype(np.float64))
 """The dtypes of the Box spaces that qtab supports."""

@@ -3,7 +3,7 @@
 import gymnasium as gym
 
 from qtab.config import Config
-from qtab.config.algorithms import Differential
+from qtab.config.algorithms import algorithm_options
 from qtab.reference.average_reward import AverageReward
 from qtab.reference.task import Result, Task, value
 
@@ -12,7 +12,7 @@ def differential_sarsa(env: gym.Env, config: Config, stop_after: int | None = No
     """Trains on ``env``; see :func:`qtab.reference.q_learning`."""
     task = Task(env, config, stop_after)
     Q = task.table()
-    average = AverageReward(task, Q, Differential.of(config).reward_learning_rate)
+    average = AverageReward(task, Q, algorithm_options(config).reward_learning_rate)
 
     for _ in task.episodes():
         state, over = task.reset(), False

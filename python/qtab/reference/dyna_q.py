@@ -4,7 +4,7 @@ import gymnasium as gym
 import numpy as np
 
 from qtab.config import Config
-from qtab.config.algorithms import DynaQ
+from qtab.config.algorithms import algorithm_options
 from qtab.reference.task import Result, Rows, Table, Task
 
 Outcomes = dict[tuple[float, int | None], int]
@@ -14,7 +14,7 @@ Outcomes = dict[tuple[float, int | None], int]
 def dyna_q(env: gym.Env, config: Config, stop_after: int | None = None) -> Result:
     """Trains on ``env``; see :func:`qtab.reference.q_learning`."""
     task = Task(env, config, stop_after)
-    options = DynaQ.of(config)
+    options = algorithm_options(config)
     Q = task.table()
     # Model(S, A) = the outcomes R, S' (None after a terminal state), and their counts. Dicts keep the order of first
     # visits, first tries and first outcomes. A deterministic model keeps only the last outcome.

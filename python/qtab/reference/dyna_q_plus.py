@@ -6,7 +6,7 @@ import gymnasium as gym
 import numpy as np
 
 from qtab.config import Config
-from qtab.config.algorithms import DynaQPlus
+from qtab.config.algorithms import algorithm_options
 from qtab.reference.dyna_q import largest
 from qtab.reference.task import Result, Rows, Task
 
@@ -14,7 +14,7 @@ from qtab.reference.task import Result, Rows, Task
 def dyna_q_plus(env: gym.Env, config: Config, stop_after: int | None = None) -> Result:
     """Trains on ``env``; see :func:`qtab.reference.q_learning`."""
     task = Task(env, config, stop_after)
-    options = DynaQPlus.of(config)
+    options = algorithm_options(config)
     Q = task.table()
     # Model(S, A) = R, S' (None after a terminal state); an untried action leads back to S with a reward of zero.
     model: dict[int, dict[int, tuple[float, Rows | None]]] = {}

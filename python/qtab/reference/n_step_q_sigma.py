@@ -3,15 +3,16 @@
 import gymnasium as gym
 
 from qtab.config import Config
-from qtab.config.algorithms import NStepQSigma
+from qtab.config.algorithms import algorithm_options
 from qtab.reference.backed_up import n_step_backups
 from qtab.reference.task import Result
 
 
 def n_step_q_sigma(env: gym.Env, config: Config, stop_after: int | None = None) -> Result:
     """Trains on ``env``; see :func:`qtab.reference.q_learning`."""
-    options = NStepQSigma.of(config)
-    sigma, greedy = options.sigma, options.target_policy == "greedy"
+    options = algorithm_options(config)
+    sigma: float = options.sigma
+    greedy: bool = options.target_policy == "greedy"
 
     def weight(share: float, ratio: float) -> float:
         return sigma * ratio + (1.0 - sigma) * share

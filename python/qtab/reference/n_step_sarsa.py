@@ -3,14 +3,14 @@
 import gymnasium as gym
 
 from qtab.config import Config
-from qtab.config.algorithms import NStepSarsa
+from qtab.config.algorithms import algorithm_options
 from qtab.reference.task import Result, Task, value
 
 
 def n_step_sarsa(env: gym.Env, config: Config, stop_after: int | None = None) -> Result:
     """Trains on ``env``; see :func:`qtab.reference.q_learning`."""
     task = Task(env, config, stop_after)
-    n = NStepSarsa.of(config).n_steps
+    n = algorithm_options(config).n_steps
     Q = task.table()
 
     for _ in task.episodes():

@@ -5,7 +5,7 @@ import heapq
 import gymnasium as gym
 
 from qtab.config import Config
-from qtab.config.algorithms import PrioritizedSweeping
+from qtab.config.algorithms import algorithm_options
 from qtab.reference.dyna_q import largest
 from qtab.reference.task import Result, Rows, Task
 
@@ -16,7 +16,7 @@ Pair = tuple[int, int]
 def prioritized_sweeping(env: gym.Env, config: Config, stop_after: int | None = None) -> Result:
     """Trains on ``env``; see :func:`qtab.reference.q_learning`."""
     task = Task(env, config, stop_after)
-    options = PrioritizedSweeping.of(config)
+    options = algorithm_options(config)
     Q = task.table()
     # Model(S, A) = R, S' (None after a terminal state), and the pairs predicted to lead to each state.
     model: dict[Pair, tuple[float, Rows | None]] = {}

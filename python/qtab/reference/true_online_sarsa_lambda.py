@@ -4,7 +4,7 @@ import gymnasium as gym
 import numpy as np
 
 from qtab.config import Config
-from qtab.config.algorithms import TrueOnlineSarsaLambda
+from qtab.config.algorithms import algorithm_options
 from qtab.reference.task import Result, Task, value
 from qtab.reference.traces import apply_td_error, decay
 
@@ -12,7 +12,7 @@ from qtab.reference.traces import apply_td_error, decay
 def true_online_sarsa_lambda(env: gym.Env, config: Config, stop_after: int | None = None) -> Result:
     """Trains on ``env``; see :func:`qtab.reference.q_learning`."""
     task = Task(env, config, stop_after)
-    options = TrueOnlineSarsaLambda.of(config)
+    options = algorithm_options(config)
     Q = task.table()
     gamma_lambda = task.discount * options.trace_decay
 

@@ -4,7 +4,7 @@ import gymnasium as gym
 import numpy as np
 
 from qtab.config import Config
-from qtab.config.algorithms import EligibilityTraces
+from qtab.config.algorithms import algorithm_options
 from qtab.reference.task import Result, Task
 from qtab.reference.traces import decay, learn, mark
 
@@ -12,7 +12,7 @@ from qtab.reference.traces import decay, learn, mark
 def watkins_q_lambda(env: gym.Env, config: Config, stop_after: int | None = None) -> Result:
     """Trains on ``env``; see :func:`qtab.reference.q_learning`."""
     task = Task(env, config, stop_after)
-    options = EligibilityTraces.of(config)
+    options = algorithm_options(config)
     Q = task.table()
 
     for _ in task.episodes():

@@ -13,9 +13,9 @@ from qtab._utils import checks
 from qtab._utils.shown import shown
 from qtab.config import DEFAULTS, Config
 from qtab.config.action_mask import STORED
+from qtab.config.compatibility import defaults
 from qtab.config.config import replace_checked
 from qtab.config.discretizer import MissingFunction
-from qtab.config.options import defaults
 from qtab.config.origin import Origin, copied, trained_on
 from qtab.config.stored import corrected_settings, implied_settings
 from qtab.discretizers.base import MAX_TABLE_SIZE

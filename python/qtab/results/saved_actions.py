@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab.config.validation import MAX_ACTIONS
+from qtab.config.value_checks import MAX_ACTIONS
 from qtab.envs.actions import ActionParts, Actions
 
 _KINDS = "biu"

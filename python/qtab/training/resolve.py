@@ -13,10 +13,11 @@ from gymnasium.envs.registration import EnvSpec
 from qtab import discretizers
 from qtab._utils.shown import shown
 from qtab.config import DEFAULTS, Config
-from qtab.config.algorithms import algorithm_settings
+from qtab.config.algorithms import algorithm_spec
+from qtab.config.compatibility import defaults
 from qtab.config.config import replace_checked
 from qtab.config.merge import config_of, merge_layers, naming_preset
-from qtab.config.options import WITH_STATE_VALUES, defaults, n_tables
+from qtab.config.options import WITH_STATE_VALUES, n_tables
 from qtab.config.origin import Origin, copied
 from qtab.config.policies import policy
 from qtab.config.presets import preset
@@ -223,7 +224,7 @@ def _fill_defaults(request: _Request, owns_env: bool) -> ResolvedRun:
         discretizer=discretizer,
         actions=actions,
         masks=masks,
-        algorithm=algorithm_settings(config),
+        algorithm=algorithm_spec(config),
         policy=policy(config),
         learning_rate=learning_rate(config),
         seed=seed,

@@ -6,9 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab import _core
-from qtab._spec import EnvironmentSpec, RunSpec
+from qtab._spec import AlgorithmSpec, EnvironmentSpec, RunSpec
 from qtab.config import Config
-from qtab.config.algorithms import AlgorithmSettings
 from qtab.config.config import replace_checked
 from qtab.config.initial_q import initial_q_spec
 from qtab.config.options import is_set
@@ -30,7 +29,7 @@ class ResolvedRun:
     discretizer: Discretizer
     actions: Actions
     masks: ActionMasks
-    algorithm: AlgorithmSettings
+    algorithm: AlgorithmSpec
     policy: Policy
     learning_rate: LearningRate
     seed: int
@@ -73,7 +72,7 @@ class ResolvedRun:
             "num_actions": len(self.actions),
             "max_episode_steps": self.max_episode_steps,
             "time_aware": config.time_aware,
-            "algorithm": self.algorithm.spec(),
+            "algorithm": self.algorithm,
             "policy": self.policy.spec(),
             "learning_rate": self.learning_rate.spec(),
             "count_bonus": config.count_bonus,
