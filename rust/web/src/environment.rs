@@ -2,9 +2,10 @@
 
 use qtab_core::envs::classic_control::{CartPole, MountainCar};
 use qtab_core::envs::tabular::{Outcome, TabularMdp};
+use serde_json::Value;
 
 use crate::grid_world::{GridWorld, MAX_SIDE};
-use crate::json::Json;
+use crate::json::{integer, numbers};
 
 /// The most outcomes of a transition table.
 const MAX_OUTCOMES: usize = 100_000;
@@ -28,8 +29,8 @@ pub(crate) struct TableMap {
 pub(crate) type Bounds = &'static [(f32, f32)];
 
 impl Environment {
-    pub(crate) fn parse(environment: &Json) -> Result<Self, String> {
-        match environment.get("kind").and_then(Json::text) {
+    pub(crate) fn parse(environment: &Value) -> Result<Self, String> {
+        match environment.get("kind").and_then(Value::as_str) {
             Some("mountain_car") => Ok(Self::MountainCar(MountainCar::default())),
             Some("cart_pole") => Ok(Self::CartPole(CartPole::default())),
             Some("table") => table(environment).map(Self::Table),
@@ -57,20 +58,19 @@ impl Environment {
 }
 
 /// A table as `definitions.py` writes it: `P` with the probabilities by their index.
-fn table(environment: &Json) -> Result<TableMap, String> {
+fn table(environment: &Value) -> Result<TableMap, String> {
     let invalid = || "table must hold probabilities, outcomes and initial".to_string();
     let table = environment.get("table").ok_or_else(invalid)?;
-    let numbers = |name: &str| -> Option<Vec<f64>> { table.get(name)?.array()?.iter().map(Json::number).collect() };
-    let (probabilities, initial) =
-        (numbers("probabilities").ok_or_else(invalid)?, numbers("initial").ok_or_else(invalid)?);
-    let states = table.get("outcomes").and_then(Json::array).ok_or_else(invalid)?;
-    let num_actions = states.first().and_then(Json::array).map_or(0, <[Json]>::len);
+    let numbers = |name: &str| table.get(name).and_then(numbers).ok_or_else(invalid);
+    let (probabilities, initial) = (numbers("probabilities")?, numbers("initial")?);
+    let states = table.get("outcomes").and_then(Value::as_array).ok_or_else(invalid)?;
+    let num_actions = states.first().and_then(Value::as_array).map_or(0, Vec::len);
     let mut pairs = Vec::new();
     let mut count = 0;
     for state in states {
-        let actions = state.array().filter(|actions| actions.len() == num_actions).ok_or_else(invalid)?;
+        let actions = state.as_array().filter(|actions| actions.len() == num_actions).ok_or_else(invalid)?;
         for action in actions {
-            let outcomes = action.array().ok_or_else(invalid)?;
+            let outcomes = action.as_array().ok_or_else(invalid)?;
             count += outcomes.len();
             if count > MAX_OUTCOMES {
                 return Err(format!("table must have at most {MAX_OUTCOMES} outcomes"));
@@ -79,7 +79,8 @@ fn table(environment: &Json) -> Result<TableMap, String> {
             pairs.push(outcomes.ok_or_else(invalid)?);
         }
     }
-    let columns = environment.get("columns").and_then(|columns| columns.integer(MAX_SIDE as u32)).unwrap_or(0) as usize;
+    let columns =
+        environment.get("columns").and_then(|columns| integer(columns, MAX_SIDE as u32)).unwrap_or(0) as usize;
     if columns == 0 || states.len() % columns != 0 {
         return Err(format!("columns must divide the {} states", states.len()));
     }
@@ -87,12 +88,12 @@ fn table(environment: &Json) -> Result<TableMap, String> {
     Ok(TableMap { walls: vec![false; mdp.num_states()], mdp, columns })
 }
 
-fn outcome(entry: &Json, probabilities: &[f64]) -> Option<Outcome> {
-    let [probability, state, reward, terminated] = entry.array()? else { return None };
+fn outcome(entry: &Value, probabilities: &[f64]) -> Option<Outcome> {
+    let [probability, state, reward, terminated] = entry.as_array()?.as_slice() else { return None };
     Some(Outcome {
-        probability: *probabilities.get(probability.integer(u32::MAX)? as usize)?,
-        state: state.integer(u32::MAX)?.into(),
-        reward: reward.number()?,
-        terminated: terminated.integer(1)? == 1,
+        probability: *probabilities.get(integer(probability, u32::MAX)? as usize)?,
+        state: integer(state, u32::MAX)?.into(),
+        reward: reward.as_f64()?,
+        terminated: integer(terminated, 1)? == 1,
     })
 }

@@ -1,8 +1,9 @@
 //! Grid worlds as they are painted: the transition table of a map. `qtab.book.grid_world` makes the same in Python.
 
 use qtab_core::envs::tabular::{Outcome, TabularMdp};
+use serde_json::Value;
 
-use crate::json::Json;
+use crate::json::{integer, shown};
 
 /// The longest side of a grid, in cells.
 pub(crate) const MAX_SIDE: usize = 40;
@@ -20,9 +21,9 @@ pub(crate) struct GridWorld {
 }
 
 impl GridWorld {
-    pub(crate) fn parse(environment: &Json) -> Result<Self, String> {
-        let layout = environment.get("layout").and_then(Json::array).unwrap_or_default();
-        let lines: Option<Vec<&str>> = layout.iter().map(Json::text).collect();
+    pub(crate) fn parse(environment: &Value) -> Result<Self, String> {
+        let layout = environment.get("layout").and_then(Value::as_array);
+        let lines: Option<Vec<&str>> = layout.into_iter().flatten().map(Value::as_str).collect();
         let lines = lines.ok_or("layout must hold texts")?;
         let columns = lines.first().map_or(0, |line| line.len());
         let side = 1..=MAX_SIDE;
@@ -39,12 +40,8 @@ impl GridWorld {
         let wind = match environment.get("wind") {
             None => vec![0; columns],
             Some(wind) => {
-                let shifts = wind
-                    .array()
-                    .unwrap_or_default()
-                    .iter()
-                    .map(|shift| isize::try_from(shift.integer(MAX_SIDE as u32)?).ok());
-                let shifts: Option<Vec<isize>> = shifts.collect();
+                let shift = |shift| isize::try_from(integer(shift, MAX_SIDE as u32)?).ok();
+                let shifts: Option<Vec<isize>> = wind.as_array().into_iter().flatten().map(shift).collect();
                 shifts
                     .filter(|shifts| shifts.len() == columns)
                     .ok_or_else(|| format!("wind must hold {columns} integers from 0 to {MAX_SIDE}"))?
@@ -53,7 +50,7 @@ impl GridWorld {
         let reward = |name: &str, default: f64| match environment.get(name) {
             None => Ok(default),
             Some(given) => {
-                given.number().ok_or_else(|| format!("{name} must be a finite number, got {}", given.shown()))
+                given.as_f64().ok_or_else(|| format!("{name} must be a finite number, got {}", shown(given)))
             }
         };
         let (step_reward, goal_reward) = (reward("step_reward", -1.0)?, reward("goal_reward", 0.0)?);
@@ -63,13 +60,13 @@ impl GridWorld {
         Ok(grid)
     }
 
-    fn set_rewards(&mut self, given: Option<&Json>) -> Result<(), String> {
-        for entry in given.and_then(Json::array).unwrap_or_default() {
-            let Some([row, column, reward]) = entry.array() else {
+    fn set_rewards(&mut self, given: Option<&Value>) -> Result<(), String> {
+        for entry in given.and_then(Value::as_array).into_iter().flatten() {
+            let Some([row, column, reward]) = entry.as_array().map(Vec::as_slice) else {
                 return Err("rewards must hold rows, columns and rewards".into());
             };
-            let (row, column) = (row.integer(self.rows as u32 - 1), column.integer(self.columns as u32 - 1));
-            let (Some(row), Some(column), Some(reward)) = (row, column, reward.number()) else {
+            let (row, column) = (integer(row, self.rows as u32 - 1), integer(column, self.columns as u32 - 1));
+            let (Some(row), Some(column), Some(reward)) = (row, column, reward.as_f64()) else {
                 return Err("rewards must name cells of the grid, with finite rewards".into());
             };
             self.rewards[row as usize * self.columns + column as usize] = reward;

@@ -1,7 +1,9 @@
 //! The cells of a value map: those of a table's map, or of a plane through the observations.
 
+use serde_json::Value;
+
 use crate::environment::{Bounds, Environment};
-use crate::json::Json;
+use crate::json::{integer, numbers};
 use crate::settings::Discretizer;
 
 /// The most cells along an axis; finer grids are shown at so many points.
@@ -34,26 +36,27 @@ impl Cells {
     pub(crate) fn new(
         environment: &Environment,
         discretizer: &Discretizer,
-        map: Option<&Json>,
+        map: Option<&Value>,
     ) -> Result<Self, String> {
         if let Environment::Table(table) = environment {
             return Ok(Self::States { columns: table.columns, walls: table.walls.clone() });
         }
         let bounds = environment.bounds().unwrap_or_default();
         let get = |name: &str| map.and_then(|map| map.get(name));
-        let integer = |name: &str, default: u32, most: u32| match get(name) {
+        let bounded = |name: &str, default: u32, most: u32| match get(name) {
             None => Ok(default),
-            Some(given) => given.integer(most).ok_or_else(|| format!("map.{name} must be an integer from 0 to {most}")),
+            Some(given) => {
+                integer(given, most).ok_or_else(|| format!("map.{name} must be an integer from 0 to {most}"))
+            }
         };
         let last = bounds.len() as u32 - 1;
-        let components = [integer("x", 0, last)? as usize, integer("y", 1.min(last), last)? as usize];
-        let counts = [integer("columns", DEFAULT_CELLS, 128)?.max(1), integer("rows", DEFAULT_CELLS, 128)?.max(1)];
-        let at = match get("at").and_then(Json::array) {
+        let components = [bounded("x", 0, last)? as usize, bounded("y", 1.min(last), last)? as usize];
+        let counts = [bounded("columns", DEFAULT_CELLS, 128)?.max(1), bounded("rows", DEFAULT_CELLS, 128)?.max(1)];
+        let at = match get("at") {
             None => vec![0.0; bounds.len()],
-            Some(at) => {
-                let at: Option<Vec<f64>> = at.iter().map(Json::number).collect();
-                at.filter(|at| at.len() == bounds.len()).ok_or("map.at must hold a number for each component")?
-            }
+            Some(at) => numbers(at)
+                .filter(|at| at.len() == bounds.len())
+                .ok_or("map.at must hold a number for each component")?,
         };
         let [x_edges, mut y_edges] = [0, 1].map(|axis| edges(discretizer, bounds, components[axis], counts[axis]));
         y_edges.reverse();

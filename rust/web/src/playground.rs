@@ -1,14 +1,34 @@
 //! Requests and responses: start a run, train it for a while, report what it has learned.
 
+use serde::Serialize;
+use serde_json::Value;
+
 use crate::best::Planner;
-use crate::json::{Json, write_text};
+use crate::json::{integer, written};
 use crate::report::{Arrays, inspection, report, table};
 use crate::settings::SettingError;
 use crate::subject::Failure;
-use crate::training::{Position, Training};
+use crate::training::{Position, State, Training};
 
 /// The most work of a call: a tenth of a second or less.
 const MAX_WORK: u32 = 10_000_000;
+
+#[derive(Serialize)]
+struct Version {
+    version: &'static str,
+}
+
+#[derive(Serialize)]
+struct Advanced {
+    state: State,
+    done: usize,
+}
+
+/// The response to an inspection of a cell whose updates are not found yet.
+#[derive(Serialize)]
+struct Replaying {
+    state: &'static str,
+}
 
 /// The run that a page shows, with all its seeds.
 #[derive(Default)]
@@ -32,18 +52,7 @@ impl Playground {
     /// The response is a JSON object. It has a member `error` where the request was refused.
     pub fn call(&mut self, request: &[u8]) -> String {
         self.arrays.clear();
-        match self.answer(request) {
-            Ok(response) => response,
-            Err(error) => {
-                let mut response = "{\"error\":".to_string();
-                write_text(&mut response, &error.message);
-                if let Some(setting) = &error.setting {
-                    response.push_str(",\"setting\":");
-                    write_text(&mut response, setting);
-                }
-                response + "}"
-            }
-        }
+        self.answer(request).unwrap_or_else(|error| written(&error))
     }
 
     /// An array of float64 of the last response, by its name: what JavaScript reads by its address.
@@ -52,21 +61,22 @@ impl Playground {
     }
 
     fn answer(&mut self, request: &[u8]) -> Result<String, SettingError> {
-        let request = Json::parse(request).ok_or_else(|| "the request must be JSON".to_string())?;
-        let integer = |name: &str, default: u32, most: u32| match request.get(name) {
-            None | Some(Json::Null) => Ok(default),
-            Some(given) => given.integer(most).ok_or_else(|| format!("{name} must be an integer from 0 to {most}")),
+        let request: Value =
+            serde_json::from_slice(request).map_err(|error| format!("the request must be JSON: {error}"))?;
+        let bounded = |name: &str, default: u32, most: u32| match request.get(name) {
+            None | Some(Value::Null) => Ok(default),
+            Some(given) => integer(given, most).ok_or_else(|| format!("{name} must be an integer from 0 to {most}")),
         };
-        let flag = |name: &str| request.get(name) == Some(&Json::Bool(true));
-        match request.get("call").and_then(Json::text).unwrap_or_default() {
+        let flag = |name: &str| request.get(name) == Some(&Value::Bool(true));
+        match request.get("call").and_then(Value::as_str).unwrap_or_default() {
             "start" => {
                 self.training = None;
                 let training = self.training.insert(Training::new(&request)?);
-                return Ok(training.described());
+                return Ok(written(&training.described()));
             }
-            "version" => return Ok(concat!("{\"version\":\"", env!("CARGO_PKG_VERSION"), "\"}").into()),
+            "version" => return Ok(written(&Version { version: env!("CARGO_PKG_VERSION") })),
             "advance" => {
-                let (work, episodes) = (integer("work", 10_000, MAX_WORK)?, integer("episodes", u32::MAX, u32::MAX)?);
+                let (work, episodes) = (bounded("work", 10_000, MAX_WORK)?, bounded("episodes", u32::MAX, u32::MAX)?);
                 self.started()?.advance(episodes as usize, work.into())?;
             }
             "step" => self.started()?.step()?,
@@ -74,28 +84,28 @@ impl Playground {
                 let Some(training) = &self.training else { return Err(not_started()) };
                 let best = if flag("best") { self.planner.of(training) } else { None };
                 let parts = [flag("returns"), flag("map"), flag("episode")];
-                return Ok(report(training, best, parts, &mut self.arrays));
+                return Ok(written(&report(training, best, parts, &mut self.arrays)));
             }
             "inspect" => {
-                let (cell, work) = (integer("cell", u32::MAX, u32::MAX)?, integer("work", 10_000, MAX_WORK)?);
+                let (cell, work) = (bounded("cell", u32::MAX, u32::MAX)?, bounded("work", 10_000, MAX_WORK)?);
                 let training = self.started()?;
                 let position = training.inspect(cell as usize, work.into())?;
                 if position == Position::Reached {
                     let Some(training) = &self.training else { return Err(not_started()) };
-                    return Ok(inspection(training, cell as usize, &mut self.arrays));
+                    return Ok(written(&inspection(training, cell as usize, &mut self.arrays)));
                 }
-                return Ok("{\"state\":\"replaying\"}".into());
+                return Ok(written(&Replaying { state: "replaying" }));
             }
             "table" => {
-                let index = integer("seed", 0, u32::MAX)?;
+                let index = bounded("seed", 0, u32::MAX)?;
                 let Some(training) = &self.training else { return Err(not_started()) };
-                return table(training, index as usize, &mut self.arrays)
-                    .ok_or_else(|| "no such run".to_string().into());
+                let table = table(training, index as usize, &mut self.arrays);
+                return table.map(|table| written(&table)).ok_or_else(|| "no such run".to_string().into());
             }
             _ => return Err("call must be one of the playground's".to_string().into()),
         }
         let training = self.started()?;
-        Ok(format!("{{\"state\":\"{}\",\"done\":{}}}", training.state().word(), training.done()))
+        Ok(written(&Advanced { state: training.state(), done: training.done() }))
     }
 
     fn started(&mut self) -> Result<&mut Training, SettingError> {

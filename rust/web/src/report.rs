@@ -1,12 +1,14 @@
 //! What a response holds: a JSON object, and arrays that it names by their address.
 
-use std::fmt::Write;
+use std::collections::BTreeMap;
+
+use serde::Serialize;
 
 use crate::best::Best;
 use crate::episode::{Episode, mean_action_value};
-use crate::json::write_number;
-use crate::training::Training;
-use crate::updates::{StepEnd, Update, UpdateKind, Watch};
+use crate::run::Progress;
+use crate::training::{State, Training};
+use crate::updates::{Update, Watch};
 
 /// The longest greedy episode that a page shows, in steps.
 const MAX_SHOWN_STEPS: u64 = 2000;
@@ -39,20 +41,69 @@ impl Arrays {
         })
     }
 
-    /// `"name":["type",address,length]` of each array.
-    fn write(&self, out: &mut String) {
-        out.push_str("\"arrays\":{");
-        for (index, (name, array)) in self.0.iter().enumerate() {
-            let (kind, address, length) = match array {
-                Array::F64(values) => ("f64", values.as_ptr().addr(), values.len()),
-                Array::I32(values) => ("i32", values.as_ptr().addr(), values.len()),
-                Array::U8(values) => ("u8", values.as_ptr().addr(), values.len()),
-            };
-            let comma = if index == 0 { "" } else { "," };
-            let _ = write!(out, "{comma}\"{name}\":[\"{kind}\",{address},{length}]");
-        }
-        out.push('}');
+    /// `"name": ["type", address, length]` of each array.
+    fn described(&self) -> Described {
+        let described = |array: &Array| match array {
+            Array::F64(values) => ("f64", values.as_ptr().addr(), values.len()),
+            Array::I32(values) => ("i32", values.as_ptr().addr(), values.len()),
+            Array::U8(values) => ("u8", values.as_ptr().addr(), values.len()),
+        };
+        self.0.iter().map(|(name, array)| (*name, described(array))).collect()
     }
+}
+
+type Described = BTreeMap<&'static str, (&'static str, usize, usize)>;
+
+/// Where training is, and what was asked for beside its arrays.
+#[derive(Serialize)]
+pub(crate) struct Report {
+    state: State,
+    done: usize,
+    columns: Option<usize>,
+    rows: Option<usize>,
+    episode: Option<GreedyEpisode>,
+    best: Option<BestReturn>,
+    current: Option<Current>,
+    arrays: Described,
+}
+
+#[derive(Serialize)]
+struct GreedyEpisode {
+    components: usize,
+    terminated: bool,
+    truncated: bool,
+    r#return: f64,
+}
+
+#[derive(Serialize)]
+struct BestReturn {
+    kind: &'static str,
+    r#return: Option<f64>,
+}
+
+/// The unfinished episode of the first run.
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+struct Current {
+    cell: usize,
+    next_action: Option<usize>,
+    step: i64,
+    episode_return: f64,
+}
+
+/// The last updates of a cell.
+#[derive(Serialize)]
+pub(crate) struct Inspection<'a> {
+    cell: usize,
+    updates: Vec<&'a Update>,
+    discount: f64,
+    arrays: Described,
+}
+
+/// The arrays of a response that holds nothing else.
+#[derive(Serialize)]
+pub(crate) struct ArraysAlone {
+    arrays: Described,
 }
 
 /// Where training is, with the returns, the map and the greedy episode if asked for.
@@ -61,29 +112,29 @@ pub(crate) fn report(
     best: Option<Best>,
     [returns, map, episode]: [bool; 3],
     arrays: &mut Arrays,
-) -> String {
+) -> Report {
     let done = training.done();
-    let mut out = format!("{{\"state\":\"{}\",\"done\":{done},", training.state().word());
     if returns {
         add_returns(training, done, arrays);
     }
     if map {
         add_map(training, arrays);
-        let _ = write!(out, "\"columns\":{},\"rows\":{},", training.cells.columns(), training.cells.rows());
     }
-    if episode {
-        write_greedy_episode(training, arrays, &mut out);
-    }
-    if let Some(best) = best {
-        let _ = write!(out, "\"best\":{{\"kind\":\"{}\",\"return\":", best.kind);
-        write_number(&mut out, best.expected_return.unwrap_or(f64::NAN));
-        out.push_str("},");
+    let best = best.map(|best| {
         arrays.add("bestValues", Array::F64(best.values));
         arrays.add("bestGreedy", Array::U8(best.greedy));
+        BestReturn { kind: best.kind, r#return: best.expected_return }
+    });
+    Report {
+        state: training.state(),
+        done,
+        columns: map.then(|| training.cells.columns()),
+        rows: map.then(|| training.cells.rows()),
+        episode: if episode { greedy_episode(training, arrays) } else { None },
+        best,
+        current: current(training, arrays),
+        arrays: arrays.described(),
     }
-    write_current(training, arrays, &mut out);
-    arrays.write(&mut out);
-    out + "}"
 }
 
 fn add_returns(training: &Training, done: usize, arrays: &mut Arrays) {
@@ -142,39 +193,31 @@ fn count_of(counts: &[i64], rows: &[u32], num_actions: usize) -> Vec<f64> {
     (0..num_actions).map(mean).collect()
 }
 
-fn write_greedy_episode(training: &Training, arrays: &mut Arrays, out: &mut String) {
+fn greedy_episode(training: &Training, arrays: &mut Arrays) -> Option<GreedyEpisode> {
     let tables = training.runs[0].run.tables();
     let steps = training.settings.max_episode_steps.min(MAX_SHOWN_STEPS);
-    let episode = training.subject.greedy_episode(&tables, training.seeds[0], steps);
-    let Some(Episode { observations, actions, total_reward, terminated }) = episode else { return };
+    let Episode { observations, actions, total_reward, terminated } =
+        training.subject.greedy_episode(&tables, training.seeds[0], steps)?;
     let components = observations.len() / (actions.len() + 1);
     let cells = observations.chunks(components.max(1)).map(|seen| as_i32(training.cells.cell(seen))).collect();
     let truncated = !terminated && actions.len() as u64 == training.settings.max_episode_steps;
-    let _ = write!(out, "\"episode\":{{\"components\":{components},\"terminated\":{terminated},");
-    let _ = write!(out, "\"truncated\":{truncated},\"return\":");
-    write_number(out, total_reward);
-    out.push_str("},");
     arrays.add("observations", Array::F64(observations));
     arrays.add("episodeActions", Array::U8(actions));
     arrays.add("episodeCells", Array::I32(cells));
+    Some(GreedyEpisode { components, terminated, truncated, r#return: total_reward })
 }
 
-/// The unfinished episode of the first run.
-fn write_current(training: &Training, arrays: &mut Arrays, out: &mut String) {
+fn current(training: &Training, arrays: &mut Arrays) -> Option<Current> {
     let started = &training.runs[0];
-    let (Some(progress), Some(observation)) = (started.run.progress(), (started.observation)()) else { return };
+    let (Progress { episode_return, steps, next_action }, observation) =
+        (started.run.progress()?, (started.observation)()?);
     let cell = training.cells.cell(&observation);
-    let next_action = progress.next_action.map_or_else(|| "null".to_string(), |action| action.to_string());
-    let steps = progress.steps;
-    let _ = write!(out, "\"current\":{{\"cell\":{cell},\"nextAction\":{next_action},\"step\":{steps},");
-    out.push_str("\"episodeReturn\":");
-    write_number(out, progress.episode_return);
-    out.push_str("},");
     arrays.add("observation", Array::F64(observation));
+    Some(Current { cell, next_action, step: steps, episode_return })
 }
 
 /// The action values, visits and last updates of a cell, by the first run.
-pub(crate) fn inspection(training: &Training, cell: usize, arrays: &mut Arrays) -> String {
+pub(crate) fn inspection<'a>(training: &'a Training, cell: usize, arrays: &mut Arrays) -> Inspection<'a> {
     let run = &training.runs[0].run;
     let num_actions = training.subject.num_actions();
     let observation = training.cells.observation(cell).unwrap_or_default();
@@ -186,59 +229,13 @@ pub(crate) fn inspection(training: &Training, cell: usize, arrays: &mut Arrays) 
     arrays.add("visits", Array::F64(visits));
     arrays.add("activeRows", Array::I32(rows.iter().map(|&row| as_i32(row as usize)).collect()));
     arrays.add("observation", Array::F64(observation));
-    let mut out = format!("{{\"cell\":{cell},\"updates\":[");
-    for (index, update) in run.watch().into_iter().flat_map(Watch::updates).enumerate() {
-        if index > 0 {
-            out.push(',');
-        }
-        write_update(training, update, &mut out);
-    }
-    out.push_str("],");
-    arrays.write(&mut out);
-    out + "}"
-}
-
-fn write_update(training: &Training, update: &Update, out: &mut String) {
-    let kind = match update.kind {
-        UpdateKind::Target => "target",
-        UpdateKind::Trace => "trace",
-        UpdateKind::DutchTrace => "dutch_trace",
-        UpdateKind::NStep => "n_step",
-        UpdateKind::Planning => "planning",
-    };
-    let end = match update.end {
-        StepEnd::Continues => "continues",
-        StepEnd::Terminal => "terminal",
-        StepEnd::Truncated => "truncated",
-        StepEnd::TruncatedAsTerminal => "truncated_as_terminal",
-        StepEnd::Other => "other",
-    };
-    let _ = write!(out, "{{\"kind\":\"{kind}\",\"end\":\"{end}\"");
-    let (episode, step, action, table) = (update.episode, update.step, update.action, update.table);
-    let _ = write!(out, ",\"episode\":{episode},\"step\":{step},\"action\":{action},\"table\":{table}");
-    let numbers = [
-        ("old", Some(update.old)),
-        ("new", Some(update.new)),
-        ("target", Some(update.target)),
-        ("learningRate", update.learning_rate),
-        ("discount", Some(training.settings.discount)),
-        ("reward", update.reward),
-        ("nextValue", update.next_value),
-        ("trace", update.trace),
-        ("qOld", update.q_old),
-    ];
-    for (name, number) in numbers {
-        let _ = write!(out, ",\"{name}\":");
-        write_number(out, number.unwrap_or(f64::NAN));
-    }
-    out.push('}');
+    let updates = run.watch().into_iter().flat_map(Watch::updates).collect();
+    Inspection { cell, updates, discount: training.settings.discount, arrays: arrays.described() }
 }
 
 /// The action values of a run: of each table, row by row.
-pub(crate) fn table(training: &Training, index: usize, arrays: &mut Arrays) -> Option<String> {
+pub(crate) fn table(training: &Training, index: usize, arrays: &mut Arrays) -> Option<ArraysAlone> {
     let run = &training.runs.get(index)?.run;
     arrays.add("table", Array::F64(run.tables().concat()));
-    let mut out = "{".to_string();
-    arrays.write(&mut out);
-    Some(out + "}")
+    Some(ArraysAlone { arrays: arrays.described() })
 }

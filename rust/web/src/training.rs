@@ -1,7 +1,10 @@
 //! Runs that differ in their seeds alone, advanced in turn so that all of them have about as many episodes.
 
+use serde::Serialize;
+use serde_json::Value;
+
 use crate::environment::Environment;
-use crate::json::Json;
+use crate::json::integer;
 use crate::memory;
 use crate::plane::Cells;
 use crate::run::Run;
@@ -38,22 +41,25 @@ struct Replay {
     run: StartedRun,
 }
 
+/// What does not change during a run.
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct Description {
+    actions: usize,
+    tables: usize,
+    table_rows: usize,
+    active: usize,
+    columns: usize,
+    rows: usize,
+}
+
 /// Where training is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub(crate) enum State {
     Training,
     Finished,
     Diverged,
-}
-
-impl State {
-    pub(crate) fn word(self) -> &'static str {
-        match self {
-            Self::Training => "training",
-            Self::Finished => "finished",
-            Self::Diverged => "diverged",
-        }
-    }
 }
 
 /// Whether a run that is repeated has reached the step of the first one.
@@ -64,12 +70,12 @@ pub(crate) enum Position {
 }
 
 impl Training {
-    pub(crate) fn new(request: &Json) -> Result<Self, SettingError> {
-        let environment = Environment::parse(request.get("environment").unwrap_or(&Json::Null))?;
-        let settings = Settings::parse(request.get("settings").unwrap_or(&Json::Null), environment.bounds())?;
-        let seeds: Option<Vec<u32>> = match request.get("seeds").and_then(Json::array) {
+    pub(crate) fn new(request: &Value) -> Result<Self, SettingError> {
+        let environment = Environment::parse(request.get("environment").unwrap_or(&Value::Null))?;
+        let settings = Settings::parse(request.get("settings").unwrap_or(&Value::Null), environment.bounds())?;
+        let seeds: Option<Vec<u32>> = match request.get("seeds").and_then(Value::as_array) {
             Some(seeds) if (1..=MAX_SEEDS).contains(&seeds.len()) => {
-                seeds.iter().map(|seed| seed.integer(u32::MAX)).collect()
+                seeds.iter().map(|seed| integer(seed, u32::MAX)).collect()
             }
             _ => None,
         };
@@ -92,7 +98,7 @@ impl Training {
 
     /// Starts the runs. The first one watches the cell to inspect, or that of its first state, in its last episodes: they
     /// usually have as many updates as an inspection shows, and watching more of them would slow the run down.
-    fn start(&mut self, inspect: Option<&Json>) -> Result<(), SettingError> {
+    fn start(&mut self, inspect: Option<&Value>) -> Result<(), SettingError> {
         let first = self.cells.cell(&self.subject.first_observation(self.seeds[0]));
         let cell = inspect.and_then(|inspect| self.cell_of(inspect)).unwrap_or(first);
         let mut watch = self.watch(cell, self.settings.episodes - self.settings.episodes / LAST_PART);
@@ -104,10 +110,10 @@ impl Training {
     }
 
     /// The cell of `{cell, columns, rows}`, which came from an earlier map; `None` if this one differs.
-    fn cell_of(&self, inspect: &Json) -> Option<usize> {
-        let integer = |name: &str| inspect.get(name)?.integer(u32::MAX).map(|integer| integer as usize);
-        let same = integer("columns") == Some(self.cells.columns()) && integer("rows") == Some(self.cells.rows());
-        integer("cell").filter(|&cell| same && self.watch(cell, 0).is_some())
+    fn cell_of(&self, inspect: &Value) -> Option<usize> {
+        let index = |name: &str| integer(inspect.get(name)?, u32::MAX).map(|index| index as usize);
+        let same = index("columns") == Some(self.cells.columns()) && index("rows") == Some(self.cells.rows());
+        index("cell").filter(|&cell| same && self.watch(cell, 0).is_some())
     }
 
     /// A watch of a cell from an episode on; `None` if it is not one with action values.
@@ -117,16 +123,15 @@ impl Training {
     }
 
     /// What does not change during the run.
-    pub(crate) fn described(&self) -> String {
-        format!(
-            "{{\"actions\":{},\"tables\":{},\"tableRows\":{},\"active\":{},\"columns\":{},\"rows\":{}}}",
-            self.subject.num_actions(),
-            self.settings.algorithm.n_tables(),
-            self.subject.n_rows(),
-            self.settings.discretizer.n_active(),
-            self.cells.columns(),
-            self.cells.rows(),
-        )
+    pub(crate) fn described(&self) -> Description {
+        Description {
+            actions: self.subject.num_actions(),
+            tables: self.settings.algorithm.n_tables(),
+            table_rows: self.subject.n_rows(),
+            active: self.settings.discretizer.n_active(),
+            columns: self.cells.columns(),
+            rows: self.cells.rows(),
+        }
     }
 
     /// The number of finished episodes, the least of all runs.

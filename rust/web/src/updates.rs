@@ -2,11 +2,14 @@
 
 use std::collections::VecDeque;
 
+use serde::Serialize;
+
 /// How many updates are kept.
 const KEPT: usize = 8;
 
 /// What an update came from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub(crate) enum UpdateKind {
     /// A step from the state, whose target is the reward and the discounted value of the next state.
     Target,
@@ -21,7 +24,8 @@ pub(crate) enum UpdateKind {
 }
 
 /// What followed the step of an update.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub(crate) enum StepEnd {
     Continues,
     Terminal,
@@ -33,7 +37,8 @@ pub(crate) enum StepEnd {
 }
 
 /// An update of a value of the state.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "camelCase")]
 pub(crate) struct Update {
     pub(crate) kind: UpdateKind,
     pub(crate) end: StepEnd,

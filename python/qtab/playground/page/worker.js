@@ -144,7 +144,8 @@ async function inspect() {
   }
   const { actionValues, visits, activeRows, observation } = arraysOf(answer);
   const rows = new Uint32Array(activeRows);
-  send({ type: "inspection", id, cell, observation, rows, actionValues, visits, updates: answer.updates });
+  const updates = answer.updates.map((update) => ({ ...update, discount: answer.discount }));
+  send({ type: "inspection", id, cell, observation, rows, actionValues, visits, updates });
   if (run?.id === id) run.inspectedAt = performance.now();
 }
 

@@ -2,12 +2,16 @@
 
 use std::cell::RefCell;
 
-use crate::json::Json;
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+use crate::json::{integer, numbers, shown};
 
 /// What is wrong with the settings, and which one it is.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct SettingError {
     pub(crate) setting: Option<String>,
+    #[serde(rename = "error")]
     pub(crate) message: String,
 }
 
@@ -19,37 +23,37 @@ impl From<String> for SettingError {
 
 /// The settings of a request, and which of them were read.
 pub(crate) struct Fields<'a> {
-    settings: &'a [(String, Json)],
+    settings: &'a Map<String, Value>,
     used: RefCell<Vec<&'static str>>,
 }
 
 impl<'a> Fields<'a> {
-    pub(crate) fn new(settings: &'a Json) -> Result<Self, SettingError> {
+    pub(crate) fn new(settings: &'a Value) -> Result<Self, SettingError> {
         match settings {
-            Json::Object(settings) => Ok(Self { settings, used: RefCell::default() }),
+            Value::Object(settings) => Ok(Self { settings, used: RefCell::default() }),
             _ => Err("settings must be an object".to_string().into()),
         }
     }
 
-    fn find(&self, name: &'static str) -> Option<&'a Json> {
+    fn find(&self, name: &'static str) -> Option<&'a Value> {
         self.used.borrow_mut().push(name);
-        self.settings.iter().find(|(known, _)| known == name).map(|(_, value)| value)
+        self.settings.get(name)
     }
 
     /// A setting, whatever its type.
-    pub(crate) fn any(&self, name: &'static str) -> Result<&'a Json, SettingError> {
+    pub(crate) fn any(&self, name: &'static str) -> Result<&'a Value, SettingError> {
         let message = || SettingError { setting: Some(name.into()), message: format!("{name} must be given") };
         self.find(name).ok_or_else(message)
     }
 
     /// The error of a setting that must be something else.
     pub(crate) fn invalid(&self, name: &'static str, expected: &str) -> SettingError {
-        let got = self.find(name).map_or_else(|| "nothing".into(), Json::shown);
+        let got = self.find(name).map_or_else(|| "nothing".into(), shown);
         SettingError { setting: Some(name.into()), message: format!("{name} must be {expected}, got {got}") }
     }
 
     pub(crate) fn number(&self, name: &'static str, low: f64, high: f64) -> Result<f64, SettingError> {
-        let number = self.any(name)?.number().filter(|number| (low..=high).contains(number));
+        let number = self.any(name)?.as_f64().filter(|number| (low..=high).contains(number));
         number.ok_or_else(|| match (low, high) {
             (f64::MIN_POSITIVE, f64::MAX) => self.invalid(name, "a finite number above 0"),
             (_, f64::MAX) => self.invalid(name, "a finite number that is not negative"),
@@ -58,13 +62,13 @@ impl<'a> Fields<'a> {
     }
 
     pub(crate) fn integer(&self, name: &'static str, low: u32, high: u32) -> Result<u32, SettingError> {
-        let integer = self.any(name)?.integer(high).filter(|integer| *integer >= low);
-        integer.ok_or_else(|| self.invalid(name, &format!("an integer from {low} to {high}")))
+        let found = integer(self.any(name)?, high).filter(|found| *found >= low);
+        found.ok_or_else(|| self.invalid(name, &format!("an integer from {low} to {high}")))
     }
 
     /// A setting that holds one of these words: what the word stands for.
     pub(crate) fn word<T: Copy>(&self, name: &'static str, words: &[(&str, T)]) -> Result<T, SettingError> {
-        let given = self.any(name)?.text();
+        let given = self.any(name)?.as_str();
         let found = words.iter().find(|(word, _)| given == Some(word));
         found.map(|&(_, value)| value).ok_or_else(|| {
             let known: Vec<String> = words.iter().map(|(word, _)| format!("'{word}'")).collect();
@@ -75,8 +79,7 @@ impl<'a> Fields<'a> {
     /// A number for each of `count` components, if given.
     pub(crate) fn numbers(&self, name: &'static str, count: usize) -> Result<Option<Vec<f64>>, SettingError> {
         let Some(given) = self.find(name) else { return Ok(None) };
-        let numbers: Option<Vec<f64>> = given.array().and_then(|numbers| numbers.iter().map(Json::number).collect());
-        match numbers {
+        match numbers(given) {
             Some(numbers) if numbers.len() == count => Ok(Some(numbers)),
             _ => Err(self.invalid(name, &format!("an array of {count} finite numbers"))),
         }
@@ -85,8 +88,8 @@ impl<'a> Fields<'a> {
     /// An integer for each of `count` components, given as such or as one for all.
     pub(crate) fn integers(&self, name: &'static str, count: usize, high: u32) -> Result<Vec<u32>, SettingError> {
         let given = self.any(name)?;
-        let single = std::slice::from_ref(given);
-        let integers: Option<Vec<u32>> = given.array().unwrap_or(single).iter().map(|i| i.integer(high)).collect();
+        let given = given.as_array().map_or(std::slice::from_ref(given), Vec::as_slice);
+        let integers: Option<Vec<u32>> = given.iter().map(|given| integer(given, high)).collect();
         match integers {
             Some(integers) if integers.contains(&0) => {}
             Some(integers) if integers.len() == count => return Ok(integers),
@@ -99,8 +102,8 @@ impl<'a> Fields<'a> {
     /// Refuses settings that were not read: they do not apply, or do not exist.
     pub(crate) fn check_all_used(&self) -> Result<(), SettingError> {
         let used = self.used.borrow();
-        let unused = self.settings.iter().find(|(name, _)| !used.contains(&name.as_str()));
-        let Some((name, _)) = unused else { return Ok(()) };
+        let unused = self.settings.keys().find(|name| !used.contains(&name.as_str()));
+        let Some(name) = unused else { return Ok(()) };
         let name: String = name.chars().take(40).collect();
         Err(SettingError { message: format!("{name} does not apply to these settings"), setting: Some(name) })
     }

@@ -10,13 +10,14 @@ use qtab_core::q_table::TerminalUpdate;
 use qtab_core::random::{AgentRng, Rng, SeedSequence};
 use qtab_core::schedules::{LearningRate, Schedule};
 use qtab_core::{QTable, StopFlag};
+use serde_json::Value;
 
 pub(crate) use discretizer::Discretizer;
 use fields::Fields;
 pub(crate) use fields::SettingError;
 
 use crate::environment::Bounds;
-use crate::json::Json;
+use crate::json::numbers;
 
 const MAX_EPISODES: u32 = 1_000_000;
 const MAX_STEPS: u32 = 1_000_000;
@@ -57,7 +58,7 @@ enum InitialQ {
 
 impl Settings {
     /// `bounds` are those of the observation space; `None` for numbered states.
-    pub(crate) fn parse(settings: &Json, bounds: Option<Bounds>) -> Result<Self, SettingError> {
+    pub(crate) fn parse(settings: &Value, bounds: Option<Bounds>) -> Result<Self, SettingError> {
         let fields = Fields::new(settings)?;
         let episodes = fields.integer("episodes", 1, MAX_EPISODES)?;
         let discretizer = Discretizer::parse(&fields, bounds)?;
@@ -238,11 +239,10 @@ fn schedule(
 
 fn initial_q(fields: &Fields<'_>) -> Result<InitialQ, SettingError> {
     let given = fields.any("initial_q")?;
-    if let Some(value) = given.number() {
+    if let Some(value) = given.as_f64() {
         return Ok(InitialQ::Constant(value));
     }
-    let range: Option<Vec<f64>> = given.array().and_then(|bounds| bounds.iter().map(Json::number).collect());
-    match range.as_deref() {
+    match numbers(given).as_deref() {
         Some(&[low, high]) if low <= high && (high - low).is_finite() => Ok(InitialQ::Uniform { low, high }),
         _ => Err(fields.invalid("initial_q", "a finite number, or a range [low, high] of finite numbers")),
     }

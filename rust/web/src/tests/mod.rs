@@ -5,8 +5,9 @@ mod parity;
 mod refusals;
 mod updates;
 
+use serde_json::Value;
+
 use crate::Playground;
-use crate::json::Json;
 
 /// The article's settings with a few episodes.
 const ARTICLE: &str = r#"{"algorithm": "q_learning", "learning_rate": 0.2, "discount": 0.9,
@@ -44,9 +45,9 @@ const GRID: &str = r#"{"kind": "grid", "layout": ["S..#G", ".....", ".#..."], "w
     "goal_reward": 5, "rewards": [[2, 2, -3]]}"#;
 
 /// The response to a request, which must be JSON.
-fn call(playground: &mut Playground, request: &str) -> Json {
+fn call(playground: &mut Playground, request: &str) -> Value {
     let response = playground.call(request.as_bytes());
-    Json::parse(response.as_bytes()).unwrap_or_else(|| unreachable!("the response is not JSON: {response}"))
+    serde_json::from_str(&response).unwrap_or_else(|_| unreachable!("the response is not JSON: {response}"))
 }
 
 fn start(playground: &mut Playground, environment: &str, settings: &str, seeds: &str) {
@@ -66,7 +67,7 @@ fn start_inspecting(playground: &mut Playground, environment: &str, settings: &s
 /// Trains to the end, in calls of so much work.
 fn finish(playground: &mut Playground, work: u32) {
     let request = format!(r#"{{"call": "advance", "work": {work}}}"#);
-    while call(playground, &request).get("state").and_then(Json::text) == Some("training") {}
+    while call(playground, &request).get("state").and_then(Value::as_str) == Some("training") {}
 }
 
 /// The action values of a run.
@@ -76,7 +77,7 @@ fn table(playground: &mut Playground, index: usize) -> Vec<f64> {
 }
 
 /// Asks for the updates of a cell until they are found.
-fn inspect(playground: &mut Playground, cell: usize) -> Json {
+fn inspect(playground: &mut Playground, cell: usize) -> Value {
     loop {
         let inspected = call(playground, &format!(r#"{{"call": "inspect", "cell": {cell}, "work": 500}}"#));
         if inspected.get("state").is_none() {

@@ -1,8 +1,9 @@
 //! The updates that an inspection shows are those that were made, and their numbers fit together.
 
+use serde_json::Value;
+
 use super::{ALGORITHMS, ARTICLE, GRID, MOUNTAIN_CAR, call, finish, inspect, of_table, start, start_inspecting, table};
 use crate::Playground;
-use crate::json::Json;
 
 /// The changes of settings under which updates differ, as JSON members and what replaces them.
 const VARIANTS: [&[(&str, &str)]; 5] = [
@@ -18,12 +19,12 @@ const VARIANTS: [&[(&str, &str)]; 5] = [
 /// Settings of epsilon-greedy, which do not apply to softmax.
 const OF_EPSILON: [&str; 3] = [r#""epsilon": 0.3,"#, r#""epsilon_schedule": "constant","#, r#""ties": "random","#];
 
-fn number(update: &Json, name: &str) -> Option<f64> {
-    update.get(name).and_then(Json::number)
+fn number(update: &Value, name: &str) -> Option<f64> {
+    update.get(name).and_then(Value::as_f64)
 }
 
-fn text<'a>(update: &'a Json, name: &str) -> &'a str {
-    update.get(name).and_then(Json::text).expect("a text")
+fn text<'a>(update: &'a Value, name: &str) -> &'a str {
+    update.get(name).and_then(Value::as_str).expect("a text")
 }
 
 /// Whether two numbers agree but for rounding.
@@ -48,7 +49,7 @@ fn changed(settings: &str, changes: &[(&str, &str)]) -> Option<String> {
 }
 
 /// Checks the equation of an update. It holds to the last bit where one row is active and no traces are learned with.
-fn check_equation(update: &Json, discount: f64, exact: bool, context: &str) {
+fn check_equation(update: &Value, discount: f64, exact: bool, context: &str) {
     let agree = |left: f64, right: f64| if exact { left.to_bits() == right.to_bits() } else { close(left, right) };
     let value = |name: &str| number(update, name).expect("a number");
     let (old, new, target) = (value("old"), value("new"), value("target"));
@@ -74,9 +75,9 @@ fn check_equation(update: &Json, discount: f64, exact: bool, context: &str) {
 }
 
 /// Checks that each update of a value begins where the one before ended, and the last one left the value of the table.
-fn check_that_none_is_missing(updates: &[Json], tables: &[f64], (cell, num_actions): (usize, usize), context: &str) {
+fn check_that_none_is_missing(updates: &[Value], tables: &[f64], (cell, num_actions): (usize, usize), context: &str) {
     let size = tables.len() / if context.contains("double") { 2 } else { 1 };
-    let integer = |update: &Json, name: &str| update.get(name).and_then(|found| found.integer(9)).expect("an integer");
+    let integer = |update: &Value, name: &str| update.get(name).and_then(Value::as_u64).expect("an integer");
     for (index, update) in updates.iter().enumerate() {
         let place = (integer(update, "table"), integer(update, "action"));
         let later =
@@ -103,7 +104,7 @@ fn every_equation_of_a_table_holds() {
             for cell in [0, 1, 6, 7, 8] {
                 let context = format!("{algorithm} with {changes:?}, cell {cell}");
                 let inspected = inspect(&mut playground, cell);
-                let updates = inspected.get("updates").and_then(Json::array).expect("updates");
+                let updates = inspected.get("updates").and_then(Value::as_array).expect("updates");
                 let traces = algorithm.contains("lambda");
                 for update in updates {
                     check_equation(update, 0.9, !traces, &context);
@@ -134,7 +135,7 @@ fn a_value_that_is_assigned_has_no_learning_rate() {
         start(&mut playground, r#"{"kind": "grid", "layout": ["SG."]}"#, &settings, "[1]");
         finish(&mut playground, 100_000);
         let inspected = inspect(&mut playground, 0);
-        let updates = inspected.get("updates").and_then(Json::array).expect("updates");
+        let updates = inspected.get("updates").and_then(Value::as_array).expect("updates");
         let mut assigned = 0;
         for update in updates {
             check_equation(update, 0.9, true, algorithm);
@@ -160,7 +161,7 @@ fn every_equation_of_tile_coding_holds() {
             start(&mut playground, MOUNTAIN_CAR, &settings, "[1]");
             finish(&mut playground, 1_000_000);
             let inspected = call(&mut playground, r#"{"call": "inspect", "cell": 1128, "work": 1000000}"#);
-            let updates = inspected.get("updates").and_then(Json::array).expect("updates");
+            let updates = inspected.get("updates").and_then(Value::as_array).expect("updates");
             assert_eq!(updates.len(), 8, "{algorithm}");
             for update in updates {
                 check_equation(update, 0.9, false, algorithm);
@@ -178,9 +179,9 @@ fn the_last_update_left_the_value_that_the_state_has() {
     for cell in 0..285 {
         let inspected = inspect(&mut playground, cell);
         let values = playground.floats("actionValues").expect("action values").to_vec();
-        let updates = inspected.get("updates").and_then(Json::array).expect("updates");
+        let updates = inspected.get("updates").and_then(Value::as_array).expect("updates");
         for (action, &value) in values.iter().enumerate() {
-            let of_action = |update: &&Json| update.get("action").and_then(|a| a.integer(2)) == Some(action as u32);
+            let of_action = |update: &&Value| update.get("action").and_then(Value::as_u64) == Some(action as u64);
             if let Some(last) = updates.iter().rfind(of_action) {
                 assert_eq!(number(last, "new"), Some(value));
                 checked += 1;
@@ -225,13 +226,13 @@ fn planning_is_shown_update_by_update() {
         call(&mut playground, r#"{"call": "step"}"#);
         let report = call(&mut playground, r#"{"call": "report"}"#);
         let Some(current) = report.get("current") else { continue };
-        assert_eq!(current.get("step").and_then(|steps| steps.integer(9)), Some(step));
-        assert!(current.get("nextAction").and_then(|action| action.integer(3)).is_some(), "{current:?}");
+        assert_eq!(current.get("step").and_then(Value::as_u64), Some(step));
+        assert!(current.get("nextAction").and_then(Value::as_u64).is_some(), "{current:?}");
     }
     let learned = table(&mut playground, 0);
     for cell in 0..2 {
         let inspected = inspect(&mut playground, cell);
-        let updates = inspected.get("updates").and_then(Json::array).expect("updates");
+        let updates = inspected.get("updates").and_then(Value::as_array).expect("updates");
         assert!(updates.iter().any(|update| text(update, "kind") == "planning"));
         for update in updates {
             check_equation(update, 0.9, true, "dyna_q");
@@ -251,7 +252,7 @@ fn a_step_in_parts_is_shown_update_by_update() {
     let learned = table(&mut playground, 0);
     for cell in 0..2 {
         let inspected = inspect(&mut playground, cell);
-        let updates = inspected.get("updates").and_then(Json::array).expect("updates");
+        let updates = inspected.get("updates").and_then(Value::as_array).expect("updates");
         assert!(updates.iter().any(|update| text(update, "kind") == "n_step"));
         for update in updates {
             check_equation(update, 0.9, true, "n_step_sarsa");
@@ -268,7 +269,7 @@ fn a_paused_episode_is_reported_with_its_next_action() {
         call(&mut playground, r#"{"call": "step"}"#);
         let report = call(&mut playground, r#"{"call": "report"}"#);
         let current = report.get("current").expect("an episode");
-        assert_eq!(current.get("step").and_then(|steps| steps.integer(9)), Some(step));
-        assert!(current.get("nextAction").and_then(|action| action.integer(3)).is_some());
+        assert_eq!(current.get("step").and_then(Value::as_u64), Some(step));
+        assert!(current.get("nextAction").and_then(Value::as_u64).is_some());
     }
 }
