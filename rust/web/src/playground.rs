@@ -71,8 +71,7 @@ impl Playground {
         match request.get("call").and_then(Value::as_str).unwrap_or_default() {
             "start" => {
                 self.training = None;
-                let training = self.training.insert(Training::new(&request)?);
-                return Ok(written(&training.described()));
+                self.training = Some(Training::new(&request)?);
             }
             "version" => return Ok(written(&Version { version: env!("CARGO_PKG_VERSION") })),
             "advance" => {

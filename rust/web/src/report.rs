@@ -142,8 +142,6 @@ fn add_returns(training: &Training, done: usize, arrays: &mut Arrays) {
     arrays.add("returns", Array::F64(logs().flat_map(|log| log.returns[..done].iter().copied()).collect()));
     let lengths = logs().flat_map(|log| log.lengths[..done].iter().map(|&length| length as i32)).collect();
     arrays.add("lengths", Array::I32(lengths));
-    let terminated = logs().flat_map(|log| log.terminated[..done].iter().map(|&end| u8::from(end))).collect();
-    arrays.add("terminated", Array::U8(terminated));
 }
 
 /// The action values, visits and greedy actions of the cells, by the first run. Of two tables it is the mean, which has
@@ -227,7 +225,6 @@ pub(crate) fn inspection<'a>(training: &'a Training, cell: usize, arrays: &mut A
     arrays.add("actionValues", Array::F64((0..num_actions).map(value).collect()));
     let visits = run.visits().map(|counts| count_of(counts, &rows, num_actions)).unwrap_or_default();
     arrays.add("visits", Array::F64(visits));
-    arrays.add("activeRows", Array::I32(rows.iter().map(|&row| as_i32(row as usize)).collect()));
     arrays.add("observation", Array::F64(observation));
     let updates = run.watch().into_iter().flat_map(Watch::updates).collect();
     Inspection { cell, updates, discount: training.settings.discount, arrays: arrays.described() }

@@ -41,18 +41,6 @@ struct Replay {
     run: StartedRun,
 }
 
-/// What does not change during a run.
-#[derive(Serialize)]
-#[serde(rename_all = "camelCase")]
-pub(crate) struct Description {
-    actions: usize,
-    tables: usize,
-    table_rows: usize,
-    active: usize,
-    columns: usize,
-    rows: usize,
-}
-
 /// Where training is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -120,18 +108,6 @@ impl Training {
     fn watch(&self, cell: usize, from: usize) -> Option<Watch> {
         let observation = self.cells.observation(cell)?;
         self.subject.active_rows(&observation).map(|rows| Watch::new(rows, from))
-    }
-
-    /// What does not change during the run.
-    pub(crate) fn described(&self) -> Description {
-        Description {
-            actions: self.subject.num_actions(),
-            tables: self.settings.algorithm.n_tables(),
-            table_rows: self.subject.n_rows(),
-            active: self.settings.discretizer.n_active(),
-            columns: self.cells.columns(),
-            rows: self.cells.rows(),
-        }
     }
 
     /// The number of finished episodes, the least of all runs.

@@ -1,5 +1,6 @@
 // The kinds of controls: a choice, a number with its slider, a number for each component, and the initial values.
 
+import { make, refusalPlace, refuse } from "./elements.js";
 import { highest, positions, readNumber } from "./numbers.js";
 
 const TITLES = {
@@ -26,29 +27,15 @@ export function titleOf(name) {
   return words[0].toUpperCase() + words.slice(1);
 }
 
-function make(tag, properties = {}, ...children) {
-  const element = Object.assign(document.createElement(tag), properties);
-  element.append(...children);
-  return element;
-}
-
 /** The parts that all controls have: the label with its symbol, the sentence, and the place of a refusal. */
 function frame(name, definition, { forId = null, labelTag = "label" } = {}) {
   const symbol = definition.symbol ? [make("span", { className: "symbol", textContent: definition.symbol }), " "] : [];
   const label = make(labelTag, { className: "name", id: `label-${name}` }, ...symbol, titleOf(name));
   if (forId) label.htmlFor = forId;
   const sentence = make("p", { id: `about-${name}`, textContent: definition.sentence });
-  const refused = make("p", { className: "refused", hidden: true, id: `refused-${name}` });
-  refused.setAttribute("role", "alert");
+  const refused = refusalPlace({ id: `refused-${name}` });
   const head = make("div", { className: "head" }, label);
   return { head, sentence, refused, element: make("div", { className: "setting" }, head, sentence, refused) };
-}
-
-function refuse(refused, input, message) {
-  refused.hidden = !message;
-  refused.textContent = message ? `${message}. The value before is kept.` : "";
-  if (message) input.setAttribute("aria-invalid", "true");
-  else input.removeAttribute("aria-invalid");
 }
 
 /** A list of names to choose from; what is impossible beside the other settings is disabled, with the reason. */
@@ -134,7 +121,7 @@ export function numberControl(store, name, definition) {
 function stepped({ low, high, integer, log }, value, steps) {
   const size = log ? 10 ** Math.floor(Math.log10(Math.max(Math.abs(value), 1e-9)) - 0.3) : (high - low) / 100;
   const unit = integer ? Math.max(Math.round(size), 1) : Number(size.toPrecision(1));
-  const next = Math.min(Math.max(value + steps * unit, low), high);
+  const next = value + steps * unit;
   return integer ? Math.round(next) : Number(next.toPrecision(10));
 }
 

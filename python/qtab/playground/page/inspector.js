@@ -1,5 +1,6 @@
 // A selected state: its action values and visits, and its last updates with their numbers.
 
+import { make } from "./elements.js";
 import { numberEquation, symbolEquation } from "./equation.js";
 import { count, distinguished, number } from "./format.js";
 
@@ -12,12 +13,6 @@ const ENDS = {
   truncated: "the time limit ends the episode",
   truncated_as_terminal: "the time limit ends the episode, and the next state counts as terminal",
 };
-
-function make(tag, properties = {}, ...children) {
-  const element = Object.assign(document.createElement(tag), properties);
-  element.append(...children);
-  return element;
-}
 
 /** Shows an inspection below a title; null shows how to select a state. */
 export function showInspection(title, place, inspection, { actions, bootstraps, unvisitedText }) {

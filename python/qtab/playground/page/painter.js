@@ -1,5 +1,6 @@
 // Painting a grid world: walls, starts, goals and rewards, the size of the grid, and the rewards of steps and goals.
 
+import { make, refusalPlace, refuse } from "./elements.js";
 import { moveWithArrows } from "./environments.js";
 import { readNumber } from "./numbers.js";
 import { copyGrid, PAINTED } from "./store.js";
@@ -14,12 +15,6 @@ const TOOLS = [
   ["reward", "Reward"],
 ];
 
-function make(tag, properties = {}, ...children) {
-  const element = Object.assign(document.createElement(tag), properties);
-  element.append(...children);
-  return element;
-}
-
 /** The tools of the painted grid; `paint(cell)` changes a cell as the chosen tool does. */
 export class Painter {
   constructor(place, store, announce) {
@@ -28,8 +23,7 @@ export class Painter {
     this.reward = -10;
     this.stroke = null;
     this.fields = [];
-    this.refused = make("p", { className: "refused", hidden: true });
-    this.refused.setAttribute("role", "alert");
+    this.refused = refusalPlace();
     place.append(
       make("h3", { textContent: "Paint the grid world" }),
       make("p", { textContent: "Choose a tool and draw on the first map, with the pointer or with the arrow keys and Enter. Every change trains the agent again." }),
@@ -83,13 +77,8 @@ export class Painter {
     const input = make("input", { type: "text", inputMode: "decimal", id: `paint-${name}` });
     input.addEventListener("change", () => {
       const { value, refused } = readNumber(label, input.value, limits);
-      this.refused.hidden = !refused;
-      this.refused.textContent = refused ?? "";
-      if (refused) input.setAttribute("aria-invalid", "true");
-      else {
-        input.removeAttribute("aria-invalid");
-        set(value);
-      }
+      refuse(this.refused, input, refused);
+      if (!refused) set(value);
     });
     const show = () => {
       if (!input.hasAttribute("aria-invalid")) input.value = String(get());

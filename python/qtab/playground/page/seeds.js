@@ -1,16 +1,11 @@
 // The seed, and whether to train one agent or sixteen.
 
+import { make, refusalPlace, refuse } from "./elements.js";
 import { moveWithArrows } from "./environments.js";
 import { readNumber } from "./numbers.js";
 import { MANY_SEEDS } from "./store.js";
 
 const LARGEST = 2 ** 32 - 1 - MANY_SEEDS;
-
-function make(tag, properties = {}, ...children) {
-  const element = Object.assign(document.createElement(tag), properties);
-  element.append(...children);
-  return element;
-}
 
 /** The controls of the seeds, for the group "Run". */
 export function seedControls(store) {
@@ -26,17 +21,11 @@ export function seedControls(store) {
   group.setAttribute("aria-labelledby", "label-seeds");
   moveWithArrows(group, (button) => button.click());
   const input = make("input", { type: "text", inputMode: "numeric", id: "set-seed", autocomplete: "off" });
-  const refused = make("p", { className: "refused", hidden: true });
-  refused.setAttribute("role", "alert");
+  const refused = refusalPlace();
   input.addEventListener("change", () => {
     const { value, refused: message } = readNumber("seed", input.value, { low: 0, high: LARGEST, integer: true });
-    refused.hidden = !message;
-    refused.textContent = message ? `${message}. The value before is kept.` : "";
-    if (message) input.setAttribute("aria-invalid", "true");
-    else {
-      input.removeAttribute("aria-invalid");
-      store.update({ seed: value });
-    }
+    refuse(refused, input, message);
+    if (!message) store.update({ seed: value });
   });
   const another = make("button", { type: "button", className: "small", textContent: "Next seed" });
   another.addEventListener("click", () => store.update({ seed: (store.state.seed + 1) % LARGEST }));
@@ -48,8 +37,7 @@ export function seedControls(store) {
     }
     if (document.activeElement !== input || !input.hasAttribute("aria-invalid")) {
       input.value = String(seed);
-      input.removeAttribute("aria-invalid");
-      refused.hidden = true;
+      refuse(refused, input, null);
     }
   };
   store.subscribe((state) => show(state));

@@ -74,10 +74,10 @@ function send(message) {
 function begin({ id, request, inspected, later }) {
   run = null;
   const { environment, settings, seeds, map, inspect } = request;
-  const described = call({ call: "start", environment, settings, seeds, ...(map ? { map } : {}), ...(inspect ? { inspect } : {}) });
+  call({ call: "start", environment, settings, seeds, ...(map ? { map } : {}), ...(inspect ? { inspect } : {}) });
   const now = performance.now();
   run = {
-    ...described, id, seeds, episodes: settings.episodes, goal: request.run === false ? 0 : Infinity,
+    id, seeds, episodes: settings.episodes, goal: request.run === false ? 0 : Infinity,
     state: request.run === false ? "paused" : "training", work: 20000, seconds: 0, begun: now, reported: now,
     nextReport: now + FIRST_REPORT, episodeReported: -Infinity, bestSent: false, inspected: null,
   };
@@ -116,10 +116,10 @@ function report() {
   run.nextReport = run.reported + REPORT_EVERY;
   if (withEpisode) run.episodeReported = run.reported;
   run.bestSent ||= withBest;
-  const { returns, lengths, terminated, actionValues, visits, greedy, values, xEdges = null, yEdges = null } = arrays;
+  const { returns, lengths, actionValues, visits, greedy, values, xEdges = null, yEdges = null } = arrays;
   send({
     type: "result", id: run.id, state: run.state, episodes: run.episodes, done: answer.done, seeds: run.seeds,
-    returns, lengths, terminated, actions: run.actions, seconds: run.seconds,
+    returns, lengths, seconds: run.seconds,
     map: { columns: answer.columns, rows: answer.rows, xEdges, yEdges, actionValues, visits, greedy, values },
     best: answer.best ? { ...answer.best, values: arrays.bestValues, greedy: arrays.bestGreedy } : null,
     hasBest: withBest,
@@ -142,10 +142,9 @@ async function inspect() {
     await pause();
     if (pending || run?.id !== id || run.inspected !== cell) return;
   }
-  const { actionValues, visits, activeRows, observation } = arraysOf(answer);
-  const rows = new Uint32Array(activeRows);
+  const { actionValues, visits, observation } = arraysOf(answer);
   const updates = answer.updates.map((update) => ({ ...update, discount: answer.discount }));
-  send({ type: "inspection", id, cell, observation, rows, actionValues, visits, updates });
+  send({ type: "inspection", id, cell, observation, actionValues, visits, updates });
   if (run?.id === id) run.inspectedAt = performance.now();
 }
 
