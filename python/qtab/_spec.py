@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from typing_extensions import Required
 
 from qtab._discretizer_spec import DiscretizerSpec as DiscretizerSpec
-from qtab.config.choices import BitGenerator, OnTruncation, TerminalUpdate, Ties
 
 if TYPE_CHECKING:
     from qtab._core import NativeEnv
@@ -58,91 +57,6 @@ EnvironmentSpec: TypeAlias = NativeEnvSpec | PythonEnvSpec
 
 # The agent
 
-AlgorithmSpec: TypeAlias = Mapping[str, Any]
-"""``type``, the name of the algorithm, and its options by the names of the config."""
-
-
-class ConstantSpec(TypedDict):
-    """The same in every episode."""
-
-    type: Literal["constant"]
-    value: float
-
-
-class LinearSpec(TypedDict):
-    """Falls by equal amounts, from episode ``warm_up`` on, to reach ``minimum`` at the end of the run."""
-
-    type: Literal["linear"]
-    value: float
-    minimum: float
-    warm_up: int
-
-
-class ExponentialSpec(TypedDict):
-    """Falls by the factor ``decay`` after each episode, from episode ``warm_up`` on, but not below ``minimum``."""
-
-    type: Literal["exponential"]
-    value: float
-    minimum: float
-    decay: float
-    warm_up: int
-
-
-class VisitsSpec(TypedDict):
-    """``value`` / n at the n-th visit of a state and action, but not below ``minimum``."""
-
-    type: Literal["visits"]
-    value: float
-    minimum: float
-
-
-ScheduleSpec: TypeAlias = ConstantSpec | LinearSpec | ExponentialSpec
-LearningRateSpec: TypeAlias = ScheduleSpec | VisitsSpec
-
-
-class EpsilonGreedySpec(TypedDict):
-    """Explores with probability epsilon."""
-
-    type: Literal["epsilon_greedy"]
-    epsilon: ScheduleSpec
-    ties: Ties
-
-
-class SoftmaxSpec(TypedDict):
-    """Chooses an action with probability proportional to exp(Q / temperature)."""
-
-    type: Literal["softmax"]
-    temperature: float
-
-
-class UcbSpec(TypedDict):
-    """Chooses the action with the largest upper confidence bound of its value."""
-
-    type: Literal["ucb"]
-    confidence: float
-    ties: Ties
-
-
-PolicySpec: TypeAlias = EpsilonGreedySpec | SoftmaxSpec | UcbSpec
-
-
-class TableSpec(TypedDict):
-    """Given values: (tables, rows, actions) in C order, in any shape. -inf: the state does not have that action."""
-
-    type: Literal["table"]
-    values: NDArray[np.float64]
-
-
-class UniformSpec(TypedDict):
-    """Values drawn uniformly from [low, high) by the agent's generator."""
-
-    type: Literal["uniform"]
-    low: float
-    high: float
-
-
-InitialQSpec: TypeAlias = TableSpec | UniformSpec | ConstantSpec
-
 
 class UnknownMasksSpec(TypedDict):
     """Every state has all actions (none), or the environment gives the masks (observed)."""
@@ -168,19 +82,9 @@ class RunSpec(TypedDict):
     discretizer: DiscretizerSpec
     num_actions: int
     max_episode_steps: int
-    time_aware: bool
-    """Whether the number of steps taken in the episode is part of the state."""
-    algorithm: AlgorithmSpec
-    policy: PolicySpec
-    learning_rate: LearningRateSpec
-    discount: float
-    count_bonus: float
-    initial_q: InitialQSpec
     action_masks: ActionMasksSpec
-    terminal_update: TerminalUpdate
-    on_truncation: OnTruncation
-    episodes: int
-    bit_generator: BitGenerator
+    settings: Mapping[str, Any]
+    """Those of the config, of which the extension reads what the algorithm, the exploration and the schedules have."""
 
 
 # Prediction

@@ -14,8 +14,16 @@ from support.wild import NUMBERS, SCALARS, VALUES, limited_memory, paths_of, rep
 
 DOCUMENTED = (TypeError, ValueError, OverflowError, MemoryError)
 TILES: dict[str, Any] = {"discretizer": "tiles", "tilings": 3, "tiles": 4, "learning_rate": 0.1}
+
+
+def spec_of(env, settings):
+    """A specification, with those settings alone that are given."""
+    spec = resolve(env, {"episodes": 3, "max_episode_steps": 30, **settings}).spec()
+    return {**spec, "settings": {name: value for name, value in spec["settings"].items() if value is not None}}
+
+
 SPECS: list[Any] = [
-    resolve(env, {"episodes": 3, "max_episode_steps": 30, **settings}).spec()
+    spec_of(env, settings)
     for env, settings in [
         ("MountainCar-v0", {}),
         ("MountainCar-v0", {"algorithm": "double_q_learning", "initial_q": np.zeros((19, 15, 3))}),
@@ -32,10 +40,7 @@ SPECS: list[Any] = [
         ("Blackjack-v1", {"learning_rate_schedule": "visits", "learning_rate": 1.0}),
     ]
 ] + [
-    resolve(
-        Sampled(Dict(room=Discrete(3), speed=Box(-1.0, 1.0, (2,)), heat=Box(-1.0, 1.0, ()))),
-        {"episodes": 3, "max_episode_steps": 30, **settings},
-    ).spec()
+    spec_of(Sampled(Dict(room=Discrete(3), speed=Box(-1.0, 1.0, (2,)), heat=Box(-1.0, 1.0, ()))), settings)
     for settings in ({"scale": (3, 4, 2)}, {"learning_rate": 0.1, "discretizer": {"speed": "tiles", "heat": "bins"}})
 ]
 MOST_STEPS = 1000
@@ -58,8 +63,8 @@ def changed_specs(draw):
 
 
 def is_short(spec):
-    algorithm = spec["algorithm"]
-    steps = [spec["max_episode_steps"], algorithm.get("planning_steps", 0), spec["num_actions"]]
+    planning_steps = spec["settings"].get("planning_steps") or 0
+    steps = [spec["max_episode_steps"], planning_steps, spec["num_actions"]]
     return max(steps) <= MOST_STEPS
 
 

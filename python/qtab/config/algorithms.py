@@ -2,7 +2,6 @@
 
 from types import SimpleNamespace
 
-from qtab._spec import AlgorithmSpec
 from qtab._utils.checks import required
 from qtab.config.config import Config
 from qtab.config.options import options_of
@@ -16,12 +15,3 @@ def algorithm_options(config: Config) -> SimpleNamespace:
     """
     names = options_of("algorithm", config.algorithm)
     return SimpleNamespace(**{name: required(name, getattr(config, name)) for name in names})
-
-
-def algorithm_spec(config: Config) -> AlgorithmSpec:
-    """Returns the algorithm of a complete config as the extension takes it.
-
-    Raises:
-        ValueError: if one of its options is None.
-    """
-    return {"type": config.algorithm, **vars(algorithm_options(config))}

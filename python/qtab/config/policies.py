@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from qtab._spec import EpsilonGreedySpec, SoftmaxSpec, UcbSpec
 from qtab._utils.checks import required
 from qtab.config.choices import Ties
 from qtab.config.config import Config
@@ -18,20 +17,12 @@ class EpsilonGreedy:
     ties: Ties
     """Which of several greedy actions."""
 
-    def spec(self) -> EpsilonGreedySpec:
-        """Returns the policy as the extension takes it."""
-        return {"type": "epsilon_greedy", "epsilon": self.epsilon.spec(), "ties": self.ties}
-
 
 @dataclass(frozen=True)
 class Softmax:
     """Each action with probability proportional to exp(Q / temperature)."""
 
     temperature: float
-
-    def spec(self) -> SoftmaxSpec:
-        """Returns the policy as the extension takes it."""
-        return {"type": "softmax", "temperature": self.temperature}
 
 
 @dataclass(frozen=True)
@@ -40,10 +31,6 @@ class Ucb:
 
     confidence: float
     ties: Ties
-
-    def spec(self) -> UcbSpec:
-        """Returns the policy as the extension takes it."""
-        return {"type": "ucb", "confidence": self.confidence, "ties": self.ties}
 
 
 Policy: TypeAlias = EpsilonGreedy | Softmax | Ucb

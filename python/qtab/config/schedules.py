@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from qtab._spec import ConstantSpec, ExponentialSpec, LinearSpec, VisitsSpec
 from qtab._utils.checks import required
 from qtab.config.config import Config
 
@@ -13,10 +12,6 @@ class Constant:
     """The same value in every episode."""
 
     value: float
-
-    def spec(self) -> ConstantSpec:
-        """Returns the schedule as the extension takes it."""
-        return {"type": "constant", "value": self.value}
 
     def after(self, episodes: int, total: int) -> float:  # noqa: ARG002 - as the others
         """Returns the value."""
@@ -30,10 +25,6 @@ class Linear:
     value: float
     minimum: float
     warm_up: int
-
-    def spec(self) -> LinearSpec:
-        """Returns the schedule as the extension takes it."""
-        return {"type": "linear", "value": self.value, "minimum": self.minimum, "warm_up": self.warm_up}
 
     def after(self, episodes: int, total: int) -> float:
         """Returns the value after some of a run's ``total`` episodes, up to the rounding of each subtraction."""
@@ -50,16 +41,6 @@ class Exponential:
     decay: float
     warm_up: int
 
-    def spec(self) -> ExponentialSpec:
-        """Returns the schedule as the extension takes it."""
-        return {
-            "type": "exponential",
-            "value": self.value,
-            "minimum": self.minimum,
-            "decay": self.decay,
-            "warm_up": self.warm_up,
-        }
-
     def after(self, episodes: int, total: int) -> float:  # noqa: ARG002 - as the others
         """Returns the value after some episodes, up to the rounding of each multiplication."""
         return max(self.value * self.decay ** max(episodes - self.warm_up, 0), self.minimum)
@@ -71,10 +52,6 @@ class ByVisits:
 
     value: float
     minimum: float
-
-    def spec(self) -> VisitsSpec:
-        """Returns the schedule as the extension takes it."""
-        return {"type": "visits", "value": self.value, "minimum": self.minimum}
 
 
 Schedule: TypeAlias = Constant | Linear | Exponential

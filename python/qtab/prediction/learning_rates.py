@@ -8,7 +8,6 @@ from qtab._utils.shown import shown
 from qtab.config.choices import LearningRateSchedule
 from qtab.config.options import listed
 from qtab.config.rates import implied_schedule
-from qtab.config.schedules import ByVisits, Constant, Exponential, LearningRate, Linear
 
 ONE_STEP_SIZE = ("td_lambda", "true_online_td_lambda")
 """The methods with traces, which need one step size for all weights."""
@@ -78,15 +77,13 @@ def _option(name: str, option: Any, learning_rate: float | None, episodes: int) 
     return checks.real(name, option, 0.0, 1.0 if learning_rate is None else learning_rate)
 
 
-def schedule_of(given: Mapping[str, Any]) -> LearningRate:
-    """Returns the learning rate of checked settings."""
-    value, minimum = given["learning_rate"], given["min_learning_rate"] or 0.0
-    kind = given["learning_rate_schedule"] or ("visits" if value is None else "constant")
-    if kind == "visits":
-        return ByVisits(1.0 if value is None else value, minimum)
-    if kind == "constant":
-        return Constant(value)
-    warm_up = given["learning_rate_warm_up"] or 0
-    if kind == "linear":
-        return Linear(value, minimum, warm_up)
-    return Exponential(value, minimum, given["learning_rate_decay"], warm_up)
+def rate_settings(given: Mapping[str, Any]) -> dict[str, Any]:
+    """Returns the learning rate of checked settings by the settings of :class:`qtab.Config`, with their defaults."""
+    value = given["learning_rate"]
+    return {
+        "learning_rate": 1.0 if value is None else value,
+        "learning_rate_schedule": given["learning_rate_schedule"] or ("visits" if value is None else "constant"),
+        "min_learning_rate": given["min_learning_rate"] or 0.0,
+        "learning_rate_decay": given["learning_rate_decay"],
+        "learning_rate_warm_up": given["learning_rate_warm_up"] or 0,
+    }

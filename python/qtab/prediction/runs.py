@@ -18,7 +18,7 @@ from qtab.discretizers import Discretizer
 from qtab.planning.policies import GivenPolicy, probabilities
 from qtab.prediction.estimates import ValueEstimates
 from qtab.prediction.features import Rows, feature_rows
-from qtab.prediction.learning_rates import AVERAGES_ONLY, schedule_of
+from qtab.prediction.learning_rates import AVERAGES_ONLY, rate_settings
 from qtab.prediction.observation_policies import ObservationPolicies, observation_policy, reads_observations
 from qtab.prediction.settings import PredictionSettings
 from qtab.training.resolved_run import ResolvedRun
@@ -74,7 +74,8 @@ def run_prediction(
     check_memory(f"{runs} of {settings.method!r} with {recorded} (record= keeps fewer)", size, limit)
     weights = np.full((len(seeds), len(points), n_weights), np.nan)
     began = time.perf_counter()
-    spec: Any = {**resolved.spec(), "learning_rate": schedule_of(vars(settings)).spec()}
+    spec: Any = resolved.spec()
+    spec["settings"] = {**spec["settings"], **rate_settings(vars(settings))}
     initial = np.full(n_weights, settings.initial_value / n_active)
     prediction: Any = {
         "method": settings.method_spec(),

@@ -13,15 +13,12 @@ from gymnasium.envs.registration import EnvSpec
 from qtab import discretizers
 from qtab._utils.shown import shown
 from qtab.config import DEFAULTS, Config
-from qtab.config.algorithms import algorithm_spec
 from qtab.config.compatibility import defaults
 from qtab.config.config import replace_checked
 from qtab.config.merge import config_of, merge_layers, naming_preset
 from qtab.config.options import WITH_STATE_VALUES, n_tables
 from qtab.config.origin import Origin, copied
-from qtab.config.policies import policy
 from qtab.config.presets import preset
-from qtab.config.schedules import learning_rate
 from qtab.discretizers import AssignedRows, Discretizer
 from qtab.envs.actions import Actions, choose_actions
 from qtab.envs.class_code import LIBRARY, is_of_library
@@ -224,9 +221,6 @@ def _fill_defaults(request: _Request, owns_env: bool) -> ResolvedRun:
         discretizer=discretizer,
         actions=actions,
         masks=masks,
-        algorithm=algorithm_spec(config),
-        policy=policy(config),
-        learning_rate=learning_rate(config),
         seed=seed,
         max_episode_steps=max_episode_steps,
         default_time_limit=own_limit is None,

@@ -6,13 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab import _core
-from qtab._spec import AlgorithmSpec, EnvironmentSpec, RunSpec
+from qtab._spec import EnvironmentSpec, RunSpec
 from qtab.config import Config
 from qtab.config.config import replace_checked
-from qtab.config.initial_q import initial_q_spec
 from qtab.config.options import is_set
-from qtab.config.policies import Policy
-from qtab.config.schedules import LearningRate
 from qtab.discretizers import Discretizer
 from qtab.envs.actions import Actions
 from qtab.training.action_masks import ActionMasks
@@ -29,9 +26,6 @@ class ResolvedRun:
     discretizer: Discretizer
     actions: Actions
     masks: ActionMasks
-    algorithm: AlgorithmSpec
-    policy: Policy
-    learning_rate: LearningRate
     seed: int
     max_episode_steps: int
     default_time_limit: bool
@@ -65,24 +59,13 @@ class ResolvedRun:
 
     def spec(self) -> RunSpec:
         """Returns the run, except for its seed, as the extension takes it."""
-        config = self.config
         return {
             "env": self._env_spec(),
             "discretizer": self.discretizer.spec(),
             "num_actions": len(self.actions),
             "max_episode_steps": self.max_episode_steps,
-            "time_aware": config.time_aware,
-            "algorithm": self.algorithm,
-            "policy": self.policy.spec(),
-            "learning_rate": self.learning_rate.spec(),
-            "count_bonus": config.count_bonus,
-            "discount": config.discount,
-            "initial_q": initial_q_spec(config.initial_q),
             "action_masks": self.masks.spec(),
-            "terminal_update": config.terminal_update,
-            "on_truncation": config.on_truncation,
-            "episodes": config.episodes,
-            "bit_generator": config.bit_generator,
+            "settings": vars(self.config),
         }
 
 

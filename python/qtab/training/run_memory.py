@@ -42,7 +42,7 @@ def bytes_in_progress(resolved: ResolvedRun) -> int:
     """Returns how many bytes a run takes while it trains, without what its environment takes."""
     values = math.prod(tables_shape(resolved, 1))
     per_value = 8 + BYTES_PER_VALUE.get(resolved.config.algorithm, 0)
-    if resolved.learning_rate.spec()["type"] == "visits":
+    if resolved.config.learning_rate_schedule == "visits":
         per_value += BYTES_PER_VISIT_COUNT
     if resolved.config.exploration == "ucb":
         per_value += BYTES_PER_VISIT_COUNT

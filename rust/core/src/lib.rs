@@ -50,6 +50,7 @@ pub mod prediction;
 pub mod q_table;
 pub mod random;
 pub mod schedules;
+pub mod settings;
 pub mod simd;
 mod stop_flag;
 pub mod tasks;

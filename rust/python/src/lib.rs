@@ -21,9 +21,10 @@ use pyo3::prelude::*;
 mod _core {
     use pyo3::exceptions::PyImportError;
     use pyo3::types::PyTuple;
+    use qtab_core::settings::{AlgorithmRows, SCHEDULES};
     use qtab_core::simd::{SimdLevel, SimdLimit};
 
-    use super::spec::{ALGORITHMS, DISCRETIZERS, SCHEDULES};
+    use super::spec::{DISCRETIZERS, Fields};
     use super::{Bound, PyModule, PyModuleMethods, PyResult};
 
     #[pymodule_export]
@@ -61,7 +62,7 @@ mod _core {
             };
             SimdLevel::restrict(limit);
         }
-        module.add("ALGORITHMS", PyTuple::new(py, ALGORITHMS.iter().map(|(name, _)| name))?)?;
+        module.add("ALGORITHMS", PyTuple::new(py, AlgorithmRows::<Fields<'_>>::ROWS.map(|(name, _)| name))?)?;
         module.add("DISCRETIZERS", PyTuple::new(py, DISCRETIZERS.iter().map(|(name, _)| name))?)?;
         module.add("SCHEDULES", PyTuple::new(py, SCHEDULES.iter().map(|(name, _)| name))?)
     }

@@ -1,8 +1,9 @@
 //! How much memory runs take, which is known before they start: in a browser an allocation that fails would end the module.
 
 use qtab_core::learners::AnyAlgorithm;
+use qtab_core::settings::LearningRateSpec;
 
-use crate::settings::{LearningRateSetting, SettingError, Settings};
+use crate::settings::{SettingError, Settings};
 
 /// The most memory of a request's runs.
 const MAX_BYTES: u64 = 512 << 20;
@@ -31,7 +32,7 @@ pub(crate) fn check(
 
 fn needed(settings: &Settings, (rows, num_actions): (u64, u64), seeds: u64) -> u64 {
     let values = rows * num_actions;
-    let by_visits = matches!(settings.learning_rate, LearningRateSetting::Visits { .. });
+    let by_visits = matches!(settings.learning_rate, LearningRateSpec::Visits { .. });
     let tables = settings.algorithm.n_tables() as u64 * values * (8 + 4 * u64::from(by_visits));
     let run = tables + bytes_of_algorithm(settings, values) + settings.episodes as u64 * BYTES_PER_EPISODE;
     // The first run counts its visits, and is repeated when another of its states is selected.

@@ -11,7 +11,6 @@ use qtab_core::schedules::{Schedule, StepSize};
 use qtab_core::tasks::{NativeTask, VisitCounter};
 use qtab_core::{Env, Features, StopFlag, Trainer};
 
-use super::agent::policy;
 use super::factory::{Batching, advance_lanes, factory};
 use super::path::{PlainSpec, RunPath};
 use super::prediction::predicting;
@@ -93,7 +92,8 @@ where
         return generic(env, features, spec);
     }
     let epsilon_greedy = plain_epsilon_greedy(&plain);
-    let any_policy = policy(plain.policy, plain.episodes, N, plain.initial_q.has_masked_actions());
+    let has_masks = plain.initial_q.has_masked_actions();
+    let any_policy = plain.policy.build(plain.episodes, (0, N), has_masks, &StopFlag::new()).map_err(allocation)?;
     let builder = Builder::<E, F, N> { env, features, spec: plain };
     Ok(match epsilon_greedy {
         Some(epsilon_greedy) => builder.factory(epsilon_greedy, learning_rate, batching),

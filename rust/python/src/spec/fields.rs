@@ -3,6 +3,7 @@
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use qtab_core::settings::Settings;
 
 use crate::error::{invalid, required};
 
@@ -44,6 +45,12 @@ impl<'py> Fields<'py> {
         self.dict.get_item(name)?.ok_or_else(|| required(&self.path(name)))
     }
 
+    /// A field that is not None.
+    fn given(&self, name: &str) -> PyResult<Bound<'py, PyAny>> {
+        let value = self.any(name)?;
+        if value.is_none() { Err(required(&self.path(name))) } else { Ok(value) }
+    }
+
     /// A field of type `T`.
     pub(crate) fn get<T>(&self, name: &str) -> PyResult<T>
     where
@@ -61,22 +68,38 @@ impl<'py> Fields<'py> {
         Self::at(&self.any(name)?, self.path(name))
     }
 
-    /// A field that holds one of these words: what the word stands for.
-    pub(crate) fn word<T: Copy>(&self, name: &str, words: &[(&str, T)]) -> PyResult<T> {
-        let given = self.any(name)?;
-        let found = given.extract::<&str>().ok().and_then(|given| words.iter().find(|(word, _)| *word == given));
-        match found {
-            Some(&(_, value)) => Ok(value),
-            None => Err(invalid(&self.path(name), one_of(words.iter().map(|(word, _)| *word)), given.repr()?)),
-        }
-    }
-
     /// Parses a tagged dict by the variant that its field `type` names.
     pub(crate) fn tagged<T>(&self, variants: &[Variant<T>]) -> PyResult<T> {
         self.word("type", variants)?(self)
     }
 }
 
-fn one_of<'a>(words: impl Iterator<Item = &'a str>) -> String {
-    words.map(|word| format!("'{word}'")).collect::<Vec<_>>().join(" or ")
+impl Settings for Fields<'_> {
+    type Error = PyErr;
+
+    fn has(&self, name: &str) -> bool {
+        self.dict.contains(name).unwrap_or(false)
+    }
+
+    fn any_number(&self, name: &'static str) -> PyResult<Option<f64>> {
+        self.given(name).map(|value| value.extract().ok())
+    }
+
+    fn any_integer(&self, name: &'static str) -> PyResult<Option<u64>> {
+        self.given(name).map(|value| value.extract().ok())
+    }
+
+    fn any_flag(&self, name: &'static str) -> PyResult<Option<bool>> {
+        self.given(name).map(|value| value.extract().ok())
+    }
+
+    fn any_text(&self, name: &'static str) -> PyResult<Option<String>> {
+        self.given(name).map(|value| value.extract().ok())
+    }
+
+    fn invalid(&self, name: &'static str, expected: &str) -> PyErr {
+        let got =
+            self.any(name).and_then(|value| value.repr()).map_or_else(|_| "nothing".into(), |got| got.to_string());
+        invalid(&self.path(name), expected, got)
+    }
 }

@@ -10,8 +10,9 @@ use qtab_core::StopFlag;
 use qtab_core::learners::ActionMasks;
 use qtab_core::memory::{collect, filled, from_fn};
 use qtab_core::random::{NoRng, Rng};
+use qtab_core::settings::Settings;
 
-use super::fields::{Fields, Variant};
+use super::fields::Fields;
 use crate::error::{allocation, invalid};
 
 #[derive(Clone, Debug)]
@@ -27,19 +28,19 @@ pub(crate) enum InitialQSpec {
     },
 }
 
-const INITIAL_QS: &[Variant<InitialQSpec>] = &[
-    ("table", |fields| {
-        let values: PyReadonlyArrayDyn<'_, f64> = fields.get("values")?;
-        let values = collect(values.as_array().iter().copied()).map_err(allocation)?;
-        Ok(InitialQSpec::Given(Arc::new(values)))
-    }),
-    ("uniform", |fields| Ok(InitialQSpec::Uniform { low: fields.get("low")?, high: fields.get("high")? })),
-    ("constant", |fields| Ok(InitialQSpec::Constant { value: fields.get("value")? })),
-];
-
 impl InitialQSpec {
     pub(crate) fn parse(fields: &Fields<'_>) -> PyResult<Self> {
-        fields.tagged(INITIAL_QS)
+        let given = fields.any("initial_q")?;
+        // An array first: one of a single value counts as a number as well.
+        if let Ok(values) = given.extract::<PyReadonlyArrayDyn<'_, f64>>() {
+            return Ok(Self::Given(Arc::new(collect(values.as_array().iter().copied()).map_err(allocation)?)));
+        }
+        if let Ok((low, high)) = given.extract() {
+            return Ok(Self::Uniform { low, high });
+        }
+        let value =
+            given.extract().map_err(|_| fields.invalid("initial_q", "a number, a range or an array of float64"))?;
+        Ok(Self::Constant { value })
     }
 
     /// Whether some states lack actions, which a first value of -∞ says.

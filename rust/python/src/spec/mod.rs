@@ -2,14 +2,11 @@
 //! is unknown is refused here.
 
 mod action_masks;
-mod algorithm;
 mod discretizer;
 mod fields;
 mod initial_q;
-mod policy;
 mod prediction;
 mod product;
-mod schedule;
 
 use std::sync::Arc;
 
@@ -17,18 +14,20 @@ use pyo3::prelude::*;
 use qtab_core::learners::AnyAlgorithm;
 use qtab_core::memory::MemoryRoom;
 use qtab_core::q_table::TerminalUpdate;
+use qtab_core::settings::Settings;
 
 pub(crate) use action_masks::ActionMasksSpec;
-pub(crate) use algorithm::ALGORITHMS;
 pub(crate) use discretizer::{DISCRETIZERS, DiscretizerSpec, FloatType, TilesSpec};
 pub(crate) use fields::{Fields, Variant};
 pub(crate) use initial_q::InitialQSpec;
-pub(crate) use policy::PolicySpec;
 pub(crate) use prediction::{BoxFeatures, ObservedVisitor, PredictionSpec};
-pub(crate) use schedule::{LearningRateSpec, SCHEDULES, ScheduleSpec};
+pub(crate) use qtab_core::settings::{LearningRateSpec, PolicySpec, ScheduleSpec};
 
 use crate::error::invalid;
 use crate::rng::BitGenerator;
+
+/// The largest learning rate: that of tile coding, of which each tiling has its share.
+const LARGEST_RATE: f64 = 2.0;
 
 /// The agent and its training: all of a run's description but the environment and the seed.
 #[derive(Clone, Debug)]
@@ -111,30 +110,32 @@ impl RunSpec {
     }
 
     pub(crate) fn parse(fields: &Fields<'_>) -> PyResult<Self> {
-        let episodes = fields.get("episodes")?;
         let num_actions = fields.get("num_actions")?;
         if num_actions == 0 {
             return Err(invalid("num_actions", "at least 1", num_actions));
         }
-        let (max_episode_steps, learning_rate) =
-            (fields.get("max_episode_steps")?, LearningRateSpec::parse(&fields.nested("learning_rate")?, episodes)?);
+        let max_episode_steps = fields.get("max_episode_steps")?;
+        // Errors name these as the user did, without the path of the dict.
+        let settings = Fields::new(&fields.any("settings")?)?;
+        let episodes = settings.integer("episodes", 0, u64::MAX)?;
+        let (algorithm, learning_rate) = AnyAlgorithm::parse(&settings, episodes, max_episode_steps, LARGEST_RATE)?;
         let spec = Self {
             discretizer: DiscretizerSpec::parse(&fields.nested("discretizer")?)?,
             num_actions,
             max_episode_steps,
-            time_aware: fields.get("time_aware")?,
-            algorithm: algorithm::algorithm(&fields.nested("algorithm")?, max_episode_steps, learning_rate)?,
-            policy: PolicySpec::parse(&fields.nested("policy")?, episodes)?,
+            time_aware: settings.flag("time_aware")?,
+            algorithm,
+            policy: PolicySpec::parse(&settings, episodes)?,
             learning_rate,
-            discount: fields.get("discount")?,
-            count_bonus: fields.get("count_bonus")?,
-            initial_q: InitialQSpec::parse(&fields.nested("initial_q")?)?,
+            discount: settings.number("discount", 0.0, 1.0)?,
+            count_bonus: settings.number("count_bonus", 0.0, f64::MAX)?,
+            initial_q: InitialQSpec::parse(&settings)?,
             action_masks: ActionMasksSpec::parse(&fields.nested("action_masks")?)?,
-            terminal_update: fields
+            terminal_update: settings
                 .word("terminal_update", &[("target", TerminalUpdate::Target), ("assign", TerminalUpdate::Assign)])?,
-            terminate_on_truncation: fields.word("on_truncation", &[("bootstrap", false), ("terminate", true)])?,
+            terminate_on_truncation: settings.word("on_truncation", &[("bootstrap", false), ("terminate", true)])?,
             episodes,
-            bit_generator: fields.word("bit_generator", BitGenerator::WORDS)?,
+            bit_generator: settings.word("bit_generator", BitGenerator::WORDS)?,
             record: 0,
             room: MemoryRoom::unlimited(),
             count_visits: false,

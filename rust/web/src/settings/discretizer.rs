@@ -1,6 +1,7 @@
 //! How observations become rows of the table.
 
 use qtab_core::features::{AnyGrid, Axis, Bins, Edges, MAX_TILINGS, Rounding, TileCoding};
+use qtab_core::settings::Settings;
 
 use super::fields::{Fields, SettingError};
 use crate::environment::Bounds;
@@ -82,7 +83,7 @@ fn bins(fields: &Fields<'_>, bounds: Bounds) -> Result<Discretizer, SettingError
 
 fn tiles(fields: &Fields<'_>, bounds: Bounds) -> Result<Discretizer, SettingError> {
     let limits = limits(fields, bounds)?;
-    let tilings = fields.integer("tilings", 1, MAX_TILINGS as u32)?;
+    let tilings = fields.integer("tilings", 1, MAX_TILINGS as u64)? as u32;
     let tiles = fields.integers("tiles", bounds.len(), 1_000_000)?;
     let along = tiles.iter().map(|&count| u64::from(count) + 1);
     check_rows(fields, "tiles", [u64::from(tilings)].into_iter().chain(along))?;

@@ -2,6 +2,7 @@
 
 use std::cell::RefCell;
 
+use qtab_core::settings::Settings;
 use serde::Serialize;
 use serde_json::{Map, Value};
 
@@ -46,36 +47,6 @@ impl<'a> Fields<'a> {
         self.find(name).ok_or_else(message)
     }
 
-    /// The error of a setting that must be something else.
-    pub(crate) fn invalid(&self, name: &'static str, expected: &str) -> SettingError {
-        let got = self.find(name).map_or_else(|| "nothing".into(), shown);
-        SettingError { setting: Some(name.into()), message: format!("{name} must be {expected}, got {got}") }
-    }
-
-    pub(crate) fn number(&self, name: &'static str, low: f64, high: f64) -> Result<f64, SettingError> {
-        let number = self.any(name)?.as_f64().filter(|number| (low..=high).contains(number));
-        number.ok_or_else(|| match (low, high) {
-            (f64::MIN_POSITIVE, f64::MAX) => self.invalid(name, "a finite number above 0"),
-            (_, f64::MAX) => self.invalid(name, "a finite number that is not negative"),
-            _ => self.invalid(name, &format!("a number in [{low}, {high}]")),
-        })
-    }
-
-    pub(crate) fn integer(&self, name: &'static str, low: u32, high: u32) -> Result<u32, SettingError> {
-        let found = integer(self.any(name)?, high).filter(|found| *found >= low);
-        found.ok_or_else(|| self.invalid(name, &format!("an integer from {low} to {high}")))
-    }
-
-    /// A setting that holds one of these words: what the word stands for.
-    pub(crate) fn word<T: Copy>(&self, name: &'static str, words: &[(&str, T)]) -> Result<T, SettingError> {
-        let given = self.any(name)?.as_str();
-        let found = words.iter().find(|(word, _)| given == Some(word));
-        found.map(|&(_, value)| value).ok_or_else(|| {
-            let known: Vec<String> = words.iter().map(|(word, _)| format!("'{word}'")).collect();
-            self.invalid(name, &known.join(" or "))
-        })
-    }
-
     /// A number for each of `count` components, if given.
     pub(crate) fn numbers(&self, name: &'static str, count: usize) -> Result<Option<Vec<f64>>, SettingError> {
         let Some(given) = self.find(name) else { return Ok(None) };
@@ -106,5 +77,34 @@ impl<'a> Fields<'a> {
         let Some(name) = unused else { return Ok(()) };
         let name: String = name.chars().take(40).collect();
         Err(SettingError { message: format!("{name} does not apply to these settings"), setting: Some(name) })
+    }
+}
+
+impl Settings for Fields<'_> {
+    type Error = SettingError;
+
+    fn has(&self, name: &str) -> bool {
+        self.settings.contains_key(name)
+    }
+
+    fn any_number(&self, name: &'static str) -> Result<Option<f64>, SettingError> {
+        self.any(name).map(Value::as_f64)
+    }
+
+    fn any_integer(&self, name: &'static str) -> Result<Option<u64>, SettingError> {
+        self.any(name).map(Value::as_u64)
+    }
+
+    fn any_flag(&self, name: &'static str) -> Result<Option<bool>, SettingError> {
+        self.any(name).map(Value::as_bool)
+    }
+
+    fn any_text(&self, name: &'static str) -> Result<Option<String>, SettingError> {
+        self.any(name).map(|text| text.as_str().map(String::from))
+    }
+
+    fn invalid(&self, name: &'static str, expected: &str) -> SettingError {
+        let got = self.find(name).map_or_else(|| "nothing".into(), shown);
+        SettingError { setting: Some(name.into()), message: format!("{name} must be {expected}, got {got}") }
     }
 }

@@ -1,0 +1,80 @@
+//! How actions are chosen.
+
+use super::{ScheduleSpec, Settings};
+use crate::StopFlag;
+use crate::memory::AllocationError;
+use crate::policies::{AnyPolicy, TieBreaking, Ucb};
+
+/// One of the policies with its settings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PolicySpec {
+    /// A random action with probability ε, else a greedy one.
+    EpsilonGreedy {
+        /// ε.
+        epsilon: ScheduleSpec,
+        /// Which of several greedy actions.
+        ties: TieBreaking,
+    },
+    /// Each action with probability proportional to exp(Q / temperature).
+    Softmax {
+        /// The temperature τ, above 0.
+        temperature: f64,
+    },
+    /// The action with the largest upper confidence bound of its value.
+    Ucb {
+        /// The weight c of the bound.
+        confidence: f64,
+        /// Which of several such actions.
+        ties: TieBreaking,
+    },
+}
+
+#[derive(Clone, Copy)]
+enum Kind {
+    EpsilonGreedy,
+    Softmax,
+    Ucb,
+}
+
+impl PolicySpec {
+    /// The policy of a run of so many episodes.
+    ///
+    /// # Errors
+    /// If a setting is missing or does not fit.
+    pub fn parse<S: Settings>(settings: &S, episodes: u64) -> Result<Self, S::Error> {
+        let kinds = [("epsilon_greedy", Kind::EpsilonGreedy), ("softmax", Kind::Softmax), ("ucb", Kind::Ucb)];
+        let ties = || settings.word("ties", &[("first", TieBreaking::First), ("random", TieBreaking::Random)]);
+        Ok(match settings.word("exploration", &kinds)? {
+            Kind::EpsilonGreedy => {
+                Self::EpsilonGreedy { epsilon: ScheduleSpec::epsilon(settings, episodes)?, ties: ties()? }
+            }
+            Kind::Softmax => {
+                Self::Softmax { temperature: settings.number("temperature", f64::MIN_POSITIVE, f64::MAX)? }
+            }
+            Kind::Ucb => Self::Ucb { confidence: settings.number("confidence", 0.0, f64::MAX)?, ties: ties()? },
+        })
+    }
+
+    /// The policy for a table of `shape` (rows, actions), in which some states may lack actions.
+    ///
+    /// # Errors
+    /// If the counts of the visits, which UCB needs, do not fit into memory.
+    pub fn build(
+        &self,
+        episodes: u64,
+        shape: (usize, usize),
+        has_masks: bool,
+        stop: &StopFlag<'_>,
+    ) -> Result<AnyPolicy, AllocationError> {
+        Ok(match *self {
+            Self::Ucb { confidence, ties } => AnyPolicy::Ucb(Ucb::new(confidence, ties, shape, stop)?),
+            Self::Softmax { temperature } => AnyPolicy::softmax(temperature, shape.1),
+            Self::EpsilonGreedy { epsilon, ties } if has_masks => {
+                AnyPolicy::MaskedEpsilonGreedy { epsilon: epsilon.build(episodes), ties }
+            }
+            Self::EpsilonGreedy { epsilon, ties } => {
+                AnyPolicy::EpsilonGreedy { epsilon: epsilon.build(episodes), ties }
+            }
+        })
+    }
+}
