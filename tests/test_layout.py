@@ -48,7 +48,7 @@ CRATE_ORDERS = {
         {"planning", "vector"},
         {"tasks"},
         {"learners"},
-        {"prediction", "trainer"},
+        {"prediction", "settings", "trainer"},
         {"batch"},
     ),
     "python": (

@@ -30,7 +30,7 @@ pub enum PolicySpec {
 }
 
 #[derive(Clone, Copy)]
-enum Kind {
+enum PolicyKind {
     EpsilonGreedy,
     Softmax,
     Ucb,
@@ -42,16 +42,17 @@ impl PolicySpec {
     /// # Errors
     /// If a setting is missing or does not fit.
     pub fn parse<S: Settings>(settings: &S, episodes: u64) -> Result<Self, S::Error> {
-        let kinds = [("epsilon_greedy", Kind::EpsilonGreedy), ("softmax", Kind::Softmax), ("ucb", Kind::Ucb)];
+        let kinds =
+            [("epsilon_greedy", PolicyKind::EpsilonGreedy), ("softmax", PolicyKind::Softmax), ("ucb", PolicyKind::Ucb)];
         let ties = || settings.word("ties", &[("first", TieBreaking::First), ("random", TieBreaking::Random)]);
         Ok(match settings.word("exploration", &kinds)? {
-            Kind::EpsilonGreedy => {
+            PolicyKind::EpsilonGreedy => {
                 Self::EpsilonGreedy { epsilon: ScheduleSpec::epsilon(settings, episodes)?, ties: ties()? }
             }
-            Kind::Softmax => {
+            PolicyKind::Softmax => {
                 Self::Softmax { temperature: settings.number("temperature", f64::MIN_POSITIVE, f64::MAX)? }
             }
-            Kind::Ucb => Self::Ucb { confidence: settings.number("confidence", 0.0, f64::MAX)?, ties: ties()? },
+            PolicyKind::Ucb => Self::Ucb { confidence: settings.number("confidence", 0.0, f64::MAX)?, ties: ties()? },
         })
     }
 

@@ -50,16 +50,16 @@ pub enum LearningRateSpec {
 }
 
 /// Every schedule of the learning rate by its name; the exploration rate has all but the last.
-pub const SCHEDULES: [(&str, Kind); 4] = [
-    ("constant", Kind::Constant),
-    ("linear", Kind::Linear),
-    ("exponential", Kind::Exponential),
-    ("visits", Kind::Visits),
+pub const SCHEDULES: [(&str, ScheduleKind); 4] = [
+    ("constant", ScheduleKind::Constant),
+    ("linear", ScheduleKind::Linear),
+    ("exponential", ScheduleKind::Exponential),
+    ("visits", ScheduleKind::Visits),
 ];
 
 /// A kind of schedule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum ScheduleKind {
     /// [`ScheduleSpec::Constant`]
     Constant,
     /// [`ScheduleSpec::Linear`]
@@ -83,18 +83,18 @@ impl ScheduleSpec {
     /// The schedule of the settings with these names: the rate, the minimum, the decay, the warm-up.
     fn parse<S: Settings>(
         settings: &S,
-        kind: Kind,
+        kind: ScheduleKind,
         [value, minimum, decay, warm_up]: [&'static str; 4],
         most: f64,
         episodes: u64,
     ) -> Result<Self, S::Error> {
         let value = settings.number(value, 0.0, most)?;
-        if kind == Kind::Constant {
+        if kind == ScheduleKind::Constant {
             return Ok(Self::Constant { value });
         }
         let minimum = settings.number(minimum, 0.0, value)?;
         let warm_up = settings.integer(warm_up, 0, episodes.saturating_sub(1))?;
-        if kind == Kind::Linear {
+        if kind == ScheduleKind::Linear {
             return Ok(Self::Linear { value, minimum, warm_up });
         }
         Ok(Self::Exponential { value, minimum, decay: settings.number(decay, 0.0, 1.0)?, warm_up })
@@ -120,7 +120,7 @@ impl LearningRateSpec {
     pub(super) fn parse<S: Settings>(settings: &S, most: f64, episodes: u64) -> Result<Self, S::Error> {
         let names = ["learning_rate", "min_learning_rate", "learning_rate_decay", "learning_rate_warm_up"];
         let kind = settings.word("learning_rate_schedule", &SCHEDULES)?;
-        if kind == Kind::Visits {
+        if kind == ScheduleKind::Visits {
             let value = settings.number(names[0], 0.0, most)?;
             return Ok(Self::Visits { value, minimum: settings.number(names[1], 0.0, value)? });
         }
