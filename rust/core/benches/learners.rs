@@ -21,7 +21,7 @@ use qtab_core::policies::{AnyPolicy, EpsilonGreedy, TieBreaking};
 use qtab_core::random::{Pcg64, SeedSequence};
 use qtab_core::schedules::{LearningRate, Schedule};
 use qtab_core::tasks::BoxedTask;
-use qtab_core::{Budget, Learner, StopFlag, Task, Trainer};
+use qtab_core::{Budget, StopFlag, Task, Trainer};
 use runs::{agent, train, train_batch};
 
 /// The message for allocations, which are small here.
