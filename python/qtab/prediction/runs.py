@@ -24,7 +24,7 @@ from qtab.prediction.settings import PredictionSettings
 from qtab.training.resolved_run import ResolvedRun
 
 BYTES_PER_WEIGHT = 8 + 4
-"""What a run in progress keeps for each weight: the weight and how often it was updated."""
+"""What a run in progress keeps for each weight, beside the features: the weight and how often it was updated."""
 BYTES_OF_METHOD = {
     "td_lambda": 13,
     "true_online_td_lambda": 13,
@@ -68,8 +68,9 @@ def run_prediction(
         raise ValueError(f"learning_rate must lie in [0, 1] for a table, got {shown(settings.learning_rate)}")
     if not resolved.is_native and len(seeds) > 1:
         raise ValueError(f"seeds must be one seed for an environment that is stepped in Python, got {len(seeds)}")
-    in_progress = min(threads, len(seeds)) * (BYTES_PER_WEIGHT + BYTES_OF_METHOD.get(settings.method, 0))
-    size = n_weights * (len(seeds) * len(points) * 8 + in_progress)
+    in_progress = n_weights * (BYTES_PER_WEIGHT + BYTES_OF_METHOD.get(settings.method, 0))
+    in_progress += 0 if rows is None else rows.nbytes
+    size = n_weights * len(seeds) * len(points) * 8 + min(threads, len(seeds)) * in_progress
     runs, recorded = counted(len(seeds), "run"), counted(len(points), "recorded episode")
     check_memory(f"{runs} of {settings.method!r} with {recorded} (record= keeps fewer)", size, limit)
     weights = np.full((len(seeds), len(points), n_weights), np.nan)

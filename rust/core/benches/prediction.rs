@@ -13,7 +13,7 @@ use qtab_core::features::{Identity, OutOfBounds};
 use qtab_core::learners::{Agent, QLearning, TdLearner, TransformedSteps};
 use qtab_core::policies::{AnyPolicy, TieBreaking};
 use qtab_core::prediction::{
-    FixedPolicy, LinearValues, MonteCarloPrediction, PredictionRule, Predictor, StateRows, TdLambda, TdZero,
+    FixedPolicy, LinearValues, OfflineLambdaReturn, PredictionRule, Predictor, StateFeatures, TdLambda, TdZero,
 };
 use qtab_core::random::{AgentRng, Pcg64, Rng, SeedSequence};
 use qtab_core::schedules::{LearningRate, Schedule};
@@ -28,7 +28,7 @@ const MOST_STEPS: u64 = EPISODES as u64 * MAX_EPISODE_STEPS;
 const LEARNING_RATE: f64 = 0.1;
 
 /// A method that is chosen at run time.
-type Method = Box<dyn PredictionRule + Send>;
+type Method = dyn PredictionRule + Send;
 
 /// A table given by the step from each state and action. Episodes end in the terminal states.
 fn table(states: i64, start: usize, terminal: &[i64], actions: usize, step: impl Fn(i64, usize) -> i64) -> TabularMdp {
@@ -77,16 +77,13 @@ impl Problem {
         BoxedTask::new(self.task())
     }
 
-    fn predictor<U>(&self, rule: U) -> Predictor<U> {
+    fn predictor<U: ?Sized>(&self, rule: Box<U>) -> Predictor<U> {
         let (states, actions) = (self.env.num_states(), self.env.num_actions());
-        let rows: Vec<u32> = (0..states as u32).collect();
-        let rows = StateRows::new(rows.into(), 1, states).expect("a row for each state");
+        let rows = (0..states as u32).collect();
+        let rows = StateFeatures::of_states(rows, 1, states).expect("a row for each state");
         let learning_rate = LearningRate::scheduled(Schedule::constant(LEARNING_RATE), 1);
-        Predictor {
-            values: LinearValues::new(vec![0.0; states], rows, learning_rate, 1.0),
-            behavior: FixedPolicy::new(vec![1.0 / actions as f64; states * actions].into(), actions),
-            rule,
-        }
+        let values = LinearValues::new(vec![0.0; states], rows, learning_rate, 1.0);
+        Predictor::new(values, FixedPolicy::new(vec![1.0 / actions as f64; states * actions].into(), actions), rule)
     }
 
     /// Random actions, so that the episodes are those of the random policy.
@@ -119,13 +116,13 @@ fn compare<const N: usize>(benchmarks: &mut Benchmarks, group: &str, env: Tabula
     let (rng, any_rng) = (Pcg64::new(&seed.child(0)), AgentRng::pcg64(&seed));
     let scheduled = || LearningRate::scheduled(Schedule::constant(LEARNING_RATE), 1);
     bench(benchmarks, group, "Q-learning", || (problem.task(), problem.q_learning::<N, _>(LEARNING_RATE), rng.clone()));
-    bench(benchmarks, group, "TD(0)", || (problem.task(), problem.predictor(TdZero), rng.clone()));
+    bench(benchmarks, group, "TD(0)", || (problem.task(), problem.predictor(Box::new(TdZero)), rng.clone()));
     bench(benchmarks, group, "TD(0.8)", || {
-        let rule: Method = Box::new(TdLambda::new(0.8, problem.env.num_states()));
+        let rule: Box<Method> = Box::new(TdLambda::new(0.8, problem.env.num_states()));
         (problem.task(), problem.predictor(rule), rng.clone())
     });
     bench(benchmarks, group, "Monte Carlo", || {
-        let rule: Method = Box::new(MonteCarloPrediction::new(false, problem.env.num_states()));
+        let rule: Box<Method> = Box::new(OfflineLambdaReturn::monte_carlo(false, problem.env.num_states()));
         (problem.task(), problem.predictor(rule), rng.clone())
     });
     bench(benchmarks, group, "Q-learning, boxed", || {
@@ -133,7 +130,7 @@ fn compare<const N: usize>(benchmarks: &mut Benchmarks, group: &str, env: Tabula
         (problem.boxed(), TransformedSteps { learner, terminate: false, bonus: None }, any_rng.clone())
     });
     bench(benchmarks, group, "TD(0), boxed", || {
-        let rule: Method = Box::new(TdZero);
+        let rule: Box<Method> = Box::new(TdZero);
         let learner = problem.predictor(rule);
         (problem.boxed(), TransformedSteps { learner, terminate: false, bonus: None }, any_rng.clone())
     });

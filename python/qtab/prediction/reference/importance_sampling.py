@@ -3,7 +3,7 @@
 import numpy as np
 
 from qtab.prediction.reference.common import Prediction
-from qtab.prediction.reference.monte_carlo import returns_of
+from qtab.prediction.reference.offline_lambda_return import lambda_returns
 
 
 def importance_sampling(prediction: Prediction) -> None:
@@ -12,7 +12,7 @@ def importance_sampling(prediction: Prediction) -> None:
     C = np.zeros_like(prediction.w)
     for episode in prediction.episodes():
         visits = list(episode)
-        returns = returns_of(prediction, visits)
+        returns = lambda_returns(prediction, visits, 1.0)
         states = [visit.state for visit in visits]
         rho = 1.0
         for t in reversed(range(len(visits))):

@@ -1,6 +1,7 @@
 """Monte Carlo prediction in plain NumPy (Sutton & Barto, 2nd ed., equation 6.1 and the box in section 5.1)."""
 
-from qtab.prediction.reference.common import Prediction, Visit
+from qtab.prediction.reference.common import Prediction
+from qtab.prediction.reference.offline_lambda_return import lambda_returns
 
 
 def monte_carlo(prediction: Prediction) -> None:
@@ -8,17 +9,7 @@ def monte_carlo(prediction: Prediction) -> None:
     for episode in prediction.episodes():
         visits = list(episode)
         seen: set[int] = set()
-        for visit, G in zip(visits, returns_of(prediction, visits), strict=True):
+        for visit, G in zip(visits, lambda_returns(prediction, visits, 1.0), strict=True):
             if visit.state not in seen or not prediction.settings.first_visit:
                 prediction.update(visit.state, G)
             seen.add(visit.state)
-
-
-def returns_of(prediction: Prediction, visits: list[Visit]) -> list[float]:
-    """Returns G of each step; a truncated episode continues with the value of its last state."""
-    G = prediction.next_value(visits[-1])
-    returns = []
-    for visit in reversed(visits):
-        G = visit.reward + prediction.discount * G
-        returns.append(G)
-    return returns[::-1]

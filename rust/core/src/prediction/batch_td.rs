@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::{LinearValues, PredictionRule, PredictionStep, RowSets};
+use super::{LinearValues, PredictionRule, PredictionStep};
 use crate::learners::StepInParts;
 use crate::memory::{AllocationError, RunMemory};
 use crate::tasks::Next;
@@ -56,7 +56,7 @@ impl BatchTd {
     }
 
     /// Presents all transitions once. Returns whether the values have settled.
-    fn present<S: RowSets>(&mut self, values: &mut LinearValues<S>) -> bool {
+    fn present(&mut self, values: &mut LinearValues) -> bool {
         self.errors.fill(0.0);
         self.sizes.fill(0.0);
         for &(row, (reward, next), count) in &self.transitions {
@@ -99,11 +99,11 @@ impl BatchTd {
     }
 }
 
-impl<S: RowSets> PredictionRule<S> for BatchTd {
-    fn learn(&mut self, values: &mut LinearValues<S>, step: PredictionStep) {
-        let row = values.rows.first(step.state) as u32;
+impl PredictionRule for BatchTd {
+    fn learn(&mut self, values: &mut LinearValues, step: PredictionStep) {
+        let row = values.features.first(step.state) as u32;
         let next = match step.next {
-            Next::NonTerminal(next) | Next::Truncated(next) => Some(values.rows.first(next) as u32),
+            Next::NonTerminal(next) | Next::Truncated(next) => Some(values.features.first(next) as u32),
             Next::Terminal => None,
         };
         let key = (row, step.reward.to_bits(), next.map_or(0, |next| u64::from(next) + 1));
@@ -137,7 +137,7 @@ impl<S: RowSets> PredictionRule<S> for BatchTd {
         self.settling.is_unfinished()
     }
 
-    fn resume(&mut self, values: &mut LinearValues<S>) {
+    fn resume(&mut self, values: &mut LinearValues) {
         let work = 1 + (self.transitions.len() + self.visits.len()) as u64 / TRANSITIONS_PER_WORK;
         let mut settling = self.settling;
         settling.advance(|| (work, !self.present(values)));
@@ -157,7 +157,6 @@ impl<S: RowSets> PredictionRule<S> for BatchTd {
 mod tests {
     use super::*;
     use crate::memory::{Growing, MemoryRoom};
-    use crate::prediction::StateRows;
     use crate::prediction::test_support::{last, predictor, step};
 
     #[test]
@@ -166,7 +165,7 @@ mod tests {
             let mut learner = predictor(&[0.0, 0.0], BatchTd::new(2));
             learner.values.discount = discount;
             learner.rule.learn(&mut learner.values, step(0, -1.0, 1));
-            let cut_off = PredictionStep { state: 1, action: 0, reward: -1.0, next: Next::Truncated(0) };
+            let cut_off = PredictionStep { next: Next::Truncated(0), ..last(1, -1.0) };
             learner.rule.learn(&mut learner.values, cut_off);
             assert!(!learner.rule.settling.is_unfinished());
             assert_eq!(learner.values.diverged(), diverged);
@@ -179,7 +178,7 @@ mod tests {
             (predictor(&[0.0, 0.0], BatchTd::new(2)), RunMemory::new(MemoryRoom::new(100_000, 100_000)));
         let mut stored = 0;
         let refused = loop {
-            let reserved = PredictionRule::<StateRows>::reserve(&mut learner.rule, 100, &mut memory);
+            let reserved = learner.rule.reserve(100, &mut memory);
             if let Err(refused) = reserved {
                 break refused;
             }

@@ -1,6 +1,6 @@
 //! The steps of an episode, for methods that learn at its end.
 
-use super::{LinearValues, PredictionStep, RowSets};
+use super::{LinearValues, PredictionStep};
 use crate::memory::{AllocationError, RunMemory};
 use crate::tasks::Next;
 
@@ -8,10 +8,11 @@ use crate::tasks::Next;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct EpisodeVisit {
     pub(super) state: u32,
-    pub(super) action: u32,
     /// Whether the state had not been visited before in this episode.
     pub(super) first: bool,
     pub(super) reward: f64,
+    /// π(A|S) / b(A|S).
+    pub(super) ratio: f64,
 }
 
 /// The steps of an episode, and its returns once it is over.
@@ -39,25 +40,29 @@ impl Episode {
         self.finished = 0;
         let last = self.last_visits.get_mut(step.state as usize);
         let first = last.is_none_or(|last| std::mem::replace(last, self.number) != self.number);
-        self.visits.push(EpisodeVisit { state: step.state, action: step.action as u32, first, reward: step.reward });
+        self.visits.push(EpisodeVisit { state: step.state, first, reward: step.reward, ratio: step.ratio });
         step.is_last()
     }
 
     /// Computes the λ-returns G of all steps, from the last one to the first, with the values as they are (Sutton & Barto,
     /// equations 12.2 and 12.3): G = R + γ [(1 - λ) v(S′) + λ G′]. With λ = 1 they are the returns themselves. The return
     /// of an episode that its time limit cut off ends with the value of the last state.
-    pub(super) fn compute_returns<S: RowSets>(&mut self, values: &LinearValues<S>, next: Next<u32>, trace_decay: f64) {
-        let bootstrap = match next {
-            Next::NonTerminal(state) | Next::Truncated(state) => values.value(state),
-            Next::Terminal => 0.0,
-        };
+    pub(super) fn compute_returns(&mut self, values: &LinearValues, next: Next<u32>, trace_decay: f64) {
+        let bootstrap = values.next_value(next);
         let (mut following, mut value) = (bootstrap, bootstrap);
         self.returns.resize(self.visits.len(), 0.0);
-        for (visit, target) in self.visits.iter().zip(&mut self.returns).rev() {
-            if trace_decay != 1.0 {
-                following = (1.0 - trace_decay) * value + trace_decay * following;
-                value = values.value(visit.state);
+        let steps = self.visits.iter().zip(&mut self.returns).rev();
+        // A loop of its own: Monte Carlo prediction takes 3 % fewer instructions.
+        if trace_decay == 1.0 {
+            for (visit, target) in steps {
+                following = visit.reward + values.discount * following;
+                *target = following;
             }
+            return;
+        }
+        for (visit, target) in steps {
+            following = (1.0 - trace_decay) * value + trace_decay * following;
+            value = values.value(visit.state);
             following = visit.reward + values.discount * following;
             *target = following;
         }

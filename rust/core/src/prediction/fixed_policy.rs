@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::Behavior;
 use crate::random::Rng;
 
 /// The probability of each action in each state. Clones share them.
@@ -13,6 +14,8 @@ pub struct FixedPolicy {
     thresholds: Arc<[f64]>,
     /// The action of each state, if none has two.
     actions: Option<Arc<[u32]>>,
+    /// The probabilities of the policy that is evaluated; empty where it is this one.
+    target: Arc<[f64]>,
 }
 
 impl FixedPolicy {
@@ -36,7 +39,13 @@ impl FixedPolicy {
             actions.push(last as u32);
         }
         let actions = deterministic.then(|| actions.into());
-        Self { num_actions, probabilities, thresholds: thresholds.into(), actions }
+        Self { num_actions, probabilities, thresholds: thresholds.into(), actions, target: Arc::new([]) }
+    }
+
+    /// The same policy, from whose actions another one is evaluated, which is given in the same form.
+    #[must_use]
+    pub fn evaluating(self, target: Arc<[f64]>) -> Self {
+        Self { target, ..self }
     }
 
     /// Samples an action: the first whose sum of probabilities exceeds one `random()`. A policy that is deterministic in
@@ -59,10 +68,26 @@ impl FixedPolicy {
     pub fn probability(&self, state: u32, action: usize) -> f64 {
         self.probabilities[state as usize * self.num_actions + action]
     }
+}
 
-    /// The number of actions.
-    pub fn num_actions(&self) -> usize {
-        self.num_actions
+/// A policy over numbered states.
+impl<R> Behavior<R> for FixedPolicy {
+    const OF_STATES: bool = true;
+
+    #[inline]
+    fn action(&self, state: u32, _active: &R, rng: &mut impl Rng) -> usize {
+        self.choose(state, rng)
+    }
+
+    /// It cannot panic, so that nothing is computed for a method that needs no ratios.
+    #[inline]
+    fn ratio(&self, state: u32, _active: &R, action: usize) -> f64 {
+        if self.target.is_empty() {
+            return 1.0;
+        }
+        let pair = state as usize * self.num_actions + action;
+        let probabilities = self.target.get(pair).zip(self.probabilities.get(pair));
+        probabilities.map_or(1.0, |(target, behavior)| target / behavior)
     }
 }
 

@@ -1,22 +1,8 @@
 //! Off-policy Monte Carlo prediction by importance sampling (Sutton & Barto, equations 5.3 to 5.8).
 
 use super::episode::Episode;
-use super::{FixedPolicy, LinearValues, PredictionRule, PredictionStep, RowSets};
+use super::{LinearValues, PredictionRule, PredictionStep};
 use crate::memory::{AllocationError, RunMemory};
-
-/// π(A|S) / b(A|S) of the steps of an episode.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Ratios {
-    /// Of policies over numbered states.
-    OfTables {
-        /// π.
-        target: FixedPolicy,
-        /// b.
-        behavior: FixedPolicy,
-    },
-    /// As the policies gave them, step by step; empty before the first step.
-    Given(Vec<f64>),
-}
 
 /// At the end of an episode, for its steps from the last to the first, with the importance-sampling ratio
 /// ρ = Π π(A|S) / b(A|S) from that step on:
@@ -27,7 +13,6 @@ pub enum Ratios {
 pub struct ImportanceSampling {
     weighted: bool,
     first_visit: bool,
-    ratios: Ratios,
     /// C of each row.
     weights: Vec<f64>,
     episode: Episode,
@@ -35,31 +20,25 @@ pub struct ImportanceSampling {
 
 impl ImportanceSampling {
     /// Estimates the values of a target policy from episodes of another one. `shape` is the number of states and of rows.
-    pub fn new(weighted: bool, first_visit: bool, ratios: Ratios, (states, rows): (usize, usize)) -> Self {
-        Self { weighted, first_visit, ratios, weights: vec![0.0; rows], episode: Episode::new(states) }
+    pub fn new(weighted: bool, first_visit: bool, (states, rows): (usize, usize)) -> Self {
+        Self { weighted, first_visit, weights: vec![0.0; rows], episode: Episode::new(states) }
     }
 }
 
-impl<S: RowSets> PredictionRule<S> for ImportanceSampling {
+impl PredictionRule for ImportanceSampling {
     #[inline]
-    fn learn(&mut self, values: &mut LinearValues<S>, step: PredictionStep) {
+    fn learn(&mut self, values: &mut LinearValues, step: PredictionStep) {
         if !self.episode.push(step) {
             return;
         }
         self.episode.compute_returns(values, step.next, 1.0);
         let mut ratio = 1.0;
-        for (index, (visit, &target)) in self.episode.visits.iter().zip(&self.episode.returns).enumerate().rev() {
-            ratio *= match &self.ratios {
-                Ratios::OfTables { target, behavior } => {
-                    let action = visit.action as usize;
-                    target.probability(visit.state, action) / behavior.probability(visit.state, action)
-                }
-                Ratios::Given(ratios) => ratios[index],
-            };
+        for (visit, &target) in self.episode.visits.iter().zip(&self.episode.returns).rev() {
+            ratio *= visit.ratio;
             if self.first_visit && !visit.first {
                 continue;
             }
-            let row = values.rows.first(visit.state);
+            let row = values.features.first(visit.state);
             let error = if self.weighted {
                 if ratio == 0.0 {
                     break; // all ratios before it are 0, too
@@ -74,15 +53,6 @@ impl<S: RowSets> PredictionRule<S> for ImportanceSampling {
             values.weights[row] += error;
         }
         self.episode.clear();
-        if let Ratios::Given(ratios) = &mut self.ratios {
-            ratios.clear();
-        }
-    }
-
-    fn weigh(&mut self, ratio: f64) {
-        if let Ratios::Given(ratios) = &mut self.ratios {
-            ratios.push(ratio);
-        }
     }
 
     #[inline]
@@ -91,9 +61,6 @@ impl<S: RowSets> PredictionRule<S> for ImportanceSampling {
     }
 
     fn reserve(&mut self, steps: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
-        if let Ratios::Given(ratios) = &mut self.ratios {
-            memory.reserve(ratios, usize::try_from(steps).unwrap_or(usize::MAX))?;
-        }
         self.episode.reserve(steps, memory)
     }
 }
@@ -101,20 +68,16 @@ impl<S: RowSets> PredictionRule<S> for ImportanceSampling {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::prediction::test_support::predictor;
-    use crate::tasks::Next;
+    use crate::prediction::test_support::{last, predictor};
 
     #[test]
     fn two_episodes_by_hand() {
         for (weighted, values) in [(false, [3.0, 1.5]), (true, [3.0, 3.0])] {
-            let (target, behavior) = (FixedPolicy::new([1.0, 0.0].into(), 2), FixedPolicy::new([0.5, 0.5].into(), 2));
-            let rule = ImportanceSampling::new(weighted, true, Ratios::OfTables { target, behavior }, (1, 1));
+            let rule = ImportanceSampling::new(weighted, true, (1, 1));
             let mut learner = predictor(&[0.0], rule);
             let rewards = if weighted { [3.0, 9.0] } else { [1.5, 9.0] };
-            // The target policy takes the first action only, so ρ is 2 and then 0.
-            for ((action, reward), value) in rewards.into_iter().enumerate().zip(values) {
-                let step = PredictionStep { state: 0, action, reward, next: Next::Terminal };
-                learner.rule.learn(&mut learner.values, step);
+            for ((ratio, reward), value) in [2.0, 0.0].into_iter().zip(rewards).zip(values) {
+                learner.rule.learn(&mut learner.values, PredictionStep { ratio, ..last(0, reward) });
                 assert_eq!(learner.values.weights, [value]);
             }
         }

@@ -1,15 +1,16 @@
 //! Estimated state values: the weights, their features and their step sizes.
 
-use super::{RowSets, StateRows};
+use super::StateFeatures;
 use crate::schedules::{LearningRate, StepSize};
+use crate::tasks::Next;
 
 /// v(s) = Σ w over the active rows of s, from left to right. With one row for each state it is a table.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LinearValues<S = StateRows> {
+#[derive(Debug, PartialEq)]
+pub struct LinearValues {
     /// The weights w.
     pub weights: Vec<f64>,
-    /// The active rows of each state.
-    pub rows: S,
+    /// The features x(s): the active rows of each state.
+    pub features: StateFeatures,
     /// The learning rate α, divided by the number of active rows.
     pub learning_rate: LearningRate,
     /// The discount γ.
@@ -17,25 +18,34 @@ pub struct LinearValues<S = StateRows> {
     diverged: bool,
 }
 
-impl<S: RowSets> LinearValues<S> {
+impl LinearValues {
     /// The values before the first episode.
     ///
     /// # Panics
     /// If there is not a weight for each row.
-    pub fn new(weights: Vec<f64>, rows: S, learning_rate: LearningRate, discount: f64) -> Self {
-        assert_eq!(weights.len(), rows.n_weights(), "there must be a weight for each row");
-        Self { weights, rows, learning_rate, discount, diverged: false }
+    pub fn new(weights: Vec<f64>, features: StateFeatures, learning_rate: LearningRate, discount: f64) -> Self {
+        assert_eq!(weights.len(), features.n_weights(), "there must be a weight for each row");
+        Self { weights, features, learning_rate, discount, diverged: false }
     }
 
     /// v(S).
     #[inline]
     pub fn value(&self, state: u32) -> f64 {
-        if self.rows.n_active() == 1 {
-            return self.weights[self.rows.first(state)];
+        if self.features.n_active() == 1 {
+            return self.weights[self.features.first(state)];
         }
-        let mut values = self.rows.of(state).iter().map(|&row| self.weights[row as usize]);
+        let mut values = self.features.of(state).iter().map(|&row| self.weights[row as usize]);
         let first = values.next().unwrap_or(0.0);
         values.fold(first, |sum, value| sum + value)
+    }
+
+    /// v(S′), which is 0 in a terminal state.
+    #[inline]
+    pub fn next_value(&self, next: Next<u32>) -> f64 {
+        match next {
+            Next::NonTerminal(next) | Next::Truncated(next) => self.value(next),
+            Next::Terminal => 0.0,
+        }
     }
 
     /// w ← w + α [target - v(S)] ∇v(S).
@@ -43,13 +53,13 @@ impl<S: RowSets> LinearValues<S> {
     pub fn update(&mut self, state: u32, target: f64) {
         let error = target - self.value(state);
         self.check_finite(error);
-        if self.rows.n_active() == 1 {
-            let row = self.rows.first(state);
+        if self.features.n_active() == 1 {
+            let row = self.features.first(state);
             self.learning_rate.visit(row);
             self.weights[row] += self.learning_rate.at(row) * error;
             return;
         }
-        for &row in self.rows.of(state) {
+        for &row in self.features.of(state) {
             self.learning_rate.visit(row as usize);
             self.weights[row as usize] += self.learning_rate.at(row as usize) * error;
         }

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use super::{LinearValues, PredictionRule, PredictionStep, RowSets};
+use super::{LinearValues, PredictionRule, PredictionStep};
 use crate::memory::{AllocationError, RunMemory};
 use crate::tasks::Next;
 
@@ -29,7 +29,7 @@ impl NStepTd {
     }
 
     /// Updates the oldest state. `bootstrap` is the value of the state after the newest reward, if it is not terminal.
-    fn update_oldest<S: RowSets>(&mut self, values: &mut LinearValues<S>, bootstrap: Option<u32>) {
+    fn update_oldest(&mut self, values: &mut LinearValues, bootstrap: Option<u32>) {
         let (mut target, mut power) = (0.0, 1.0);
         for (_, reward) in &self.visits {
             target += power * reward;
@@ -45,8 +45,8 @@ impl NStepTd {
     }
 }
 
-impl<S: RowSets> PredictionRule<S> for NStepTd {
-    fn learn(&mut self, values: &mut LinearValues<S>, step: PredictionStep) {
+impl PredictionRule for NStepTd {
+    fn learn(&mut self, values: &mut LinearValues, step: PredictionStep) {
         self.work = 1;
         self.visits.push_back((step.state, step.reward));
         match step.next {

@@ -1,6 +1,6 @@
 //! A task in which a given policy acts by reading the observations.
 
-use super::{Choice, Observed};
+use super::Behavior;
 use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::envs::Env;
 use crate::features::Features;
@@ -30,15 +30,68 @@ pub trait ObservationPolicy<O> {
     /// Why it can fail.
     type Error;
 
-    /// Samples an action.
+    /// Samples an action A, and gives its importance-sampling ratio π(A|S) / b(A|S): 1 where this policy is evaluated.
+    /// `active` are the active rows of the observation in the task.
     ///
     /// # Errors
     /// Whatever a policy in Python raises, or an observation without a row.
-    fn choose(&mut self, observation: &O, rng: &mut impl Rng) -> Result<Choice, Self::Error>;
+    fn choose(&mut self, observation: &O, active: &[u32], rng: &mut impl Rng) -> Result<(usize, f64), Self::Error>;
 
     /// The work of a choice, as [`Budget`](crate::Budget) counts it, beside that of a step.
     fn work(&self) -> u64 {
         0
+    }
+}
+
+/// The active rows of a state, with the action that a policy took there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WithAction<R> {
+    active: R,
+    action: u32,
+    ratio: f64,
+}
+
+impl<R> WithAction<R> {
+    fn new(active: R, (action, ratio): (usize, f64)) -> Self {
+        Self { active, action: action as u32, ratio }
+    }
+
+    /// Where no action is taken: the episode is over.
+    fn none(active: R) -> Self {
+        Self::new(active, (0, 1.0))
+    }
+}
+
+impl<R: AsRef<[u32]>> AsRef<[u32]> for WithAction<R> {
+    #[inline]
+    fn as_ref(&self) -> &[u32] {
+        self.active.as_ref()
+    }
+}
+
+impl<'a, R: TryFrom<&'a [u32]>> TryFrom<&'a [u32]> for WithAction<R> {
+    type Error = R::Error;
+
+    fn try_from(active: &'a [u32]) -> Result<Self, R::Error> {
+        active.try_into().map(Self::none)
+    }
+}
+
+/// The behavior policy of a [`PolicyTask`]: it took the action before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ActionFromTask;
+
+impl<R> Behavior<WithAction<R>> for ActionFromTask {
+    const OF_STATES: bool = false;
+
+    #[inline]
+    fn action(&self, _state: u32, active: &WithAction<R>, _rng: &mut impl Rng) -> usize {
+        active.action as usize
+    }
+
+    #[inline]
+    fn ratio(&self, _state: u32, active: &WithAction<R>, _action: usize) -> f64 {
+        active.ratio
     }
 }
 
@@ -56,6 +109,13 @@ pub struct PolicyTask<W, P, D> {
     pub rng: D,
 }
 
+impl<W: ObservableTask, P: ObservationPolicy<W::Observation>, D: Rng> PolicyTask<W, P, D> {
+    fn act(&mut self, state: &W::State, active: W::Active) -> Result<WithAction<W::Active>, P::Error> {
+        let chosen = self.policy.choose(&self.task.observation(state), active.as_ref(), &mut self.rng)?;
+        Ok(WithAction::new(active, chosen))
+    }
+}
+
 impl<W, P, D> Task for PolicyTask<W, P, D>
 where
     W: ObservableTask,
@@ -63,23 +123,19 @@ where
     D: Rng,
 {
     type State = W::State;
-    type Active = Observed<W::Active>;
+    type Active = WithAction<W::Active>;
     type Error = P::Error;
 
     fn reset(&mut self) -> Result<(W::State, Self::Active), P::Error> {
         let (state, active) = self.task.reset()?;
-        let choice = self.policy.choose(&self.task.observation(&state), &mut self.rng)?;
-        Ok((state, Observed { active, choice }))
+        Ok((state, self.act(&state, active)?))
     }
 
     fn step(&mut self, state: &mut W::State, action: usize) -> Result<Transition<Self::Active>, P::Error> {
         let Transition { reward, next } = self.task.step(state, action)?;
         let next = match next {
-            Next::NonTerminal(active) => {
-                let choice = self.policy.choose(&self.task.observation(state), &mut self.rng)?;
-                Next::NonTerminal(Observed { active, choice })
-            }
-            Next::Truncated(active) => Next::Truncated(Observed { active, choice: Choice::NONE }),
+            Next::NonTerminal(active) => Next::NonTerminal(self.act(state, active)?),
+            Next::Truncated(active) => Next::Truncated(WithAction::none(active)),
             Next::Terminal => Next::Terminal,
         };
         Ok(Transition { reward, next })
@@ -110,7 +166,7 @@ mod tests {
     use crate::features::{OutOfBounds, TileCoding};
     use crate::memory::AllocationError;
     use crate::prediction::test_support::rng;
-    use crate::prediction::{FromTask, LinearValues, MonteCarloPrediction, Predictor, TdZero, VisitRows};
+    use crate::prediction::{LinearValues, OfflineLambdaReturn, Predictor, StateFeatures, TdZero};
     use crate::schedules::{LearningRate, Schedule};
     use crate::{Budget, Trainer};
 
@@ -121,8 +177,13 @@ mod tests {
     impl ObservationPolicy<[f32; 2]> for WithTheVelocity {
         type Error = OutOfBounds;
 
-        fn choose(&mut self, &[_, velocity]: &[f32; 2], _rng: &mut impl Rng) -> Result<Choice, OutOfBounds> {
-            Ok(Choice { action: if velocity < 0.0 { 0 } else { 2 }, ratio: 1.0 })
+        fn choose(
+            &mut self,
+            &[_, velocity]: &[f32; 2],
+            _: &[u32],
+            _: &mut impl Rng,
+        ) -> Result<(usize, f64), OutOfBounds> {
+            Ok((if velocity < 0.0 { 0 } else { 2 }, 1.0))
         }
     }
 
@@ -132,17 +193,16 @@ mod tests {
         PolicyTask { task, policy: WithTheVelocity, rng: rng() }
     }
 
-    fn values(look_back: Option<usize>) -> Result<LinearValues<VisitRows>, AllocationError> {
-        let rows = VisitRows::new(8, 8 * 81, look_back)?;
+    fn values(look_back: Option<usize>) -> Result<LinearValues, AllocationError> {
+        let features = StateFeatures::of_visits(8, 8 * 81, look_back)?;
         let rate = LearningRate::scheduled(Schedule::constant(0.5), 8);
-        Ok(LinearValues::new(vec![0.0; 8 * 81], rows, rate, 1.0))
+        Ok(LinearValues::new(vec![0.0; 8 * 81], features, rate, 1.0))
     }
 
     #[test]
     fn the_goal_is_reached_and_the_values_are_near_the_returns() {
-        let monte_carlo = MonteCarloPrediction::new(false, 0);
-        let learner =
-            Predictor { values: values(None).expect("memory suffices"), behavior: FromTask, rule: monte_carlo };
+        let monte_carlo = Box::new(OfflineLambdaReturn::monte_carlo(false, 0));
+        let learner = Predictor::new(values(None).expect("memory suffices"), ActionFromTask, monte_carlo);
         let mut run = Trainer::new(task(), learner, rng());
         while run.episodes().returns.len() < 200 {
             run.advance(Budget { episodes: 200, work: 1000 }).expect("no bounds are left");
@@ -158,7 +218,7 @@ mod tests {
     fn a_method_that_looks_back_one_step_needs_no_more_rows() {
         let weights = [Some(1), None].map(|look_back| {
             let values = values(look_back).expect("memory suffices");
-            let mut run = Trainer::new(task(), Predictor { values, behavior: FromTask, rule: TdZero }, rng());
+            let mut run = Trainer::new(task(), Predictor::new(values, ActionFromTask, Box::new(TdZero)), rng());
             run.advance(Budget { episodes: 3, work: 1000 }).expect("no bounds are left");
             run.learner().values.weights.clone()
         });

@@ -1,6 +1,6 @@
-//! A learner that follows a given policy and estimates its values.
+//! The trait of all prediction methods, and the learner that follows a given policy and applies one of them.
 
-use super::{Behavior, FixedPolicy, LinearValues, PredictionRule, PredictionStep, RowSets, StateRows};
+use super::{FixedPolicy, LinearValues};
 use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::learners::Learner;
 use crate::memory::{AllocationError, RunMemory};
@@ -8,47 +8,134 @@ use crate::random::Rng;
 use crate::schedules::StepSize;
 use crate::tasks::Next;
 
-/// A prediction method as a [`Learner`]: its actions come from a policy that does not change, and its table has one column.
-/// The active row of an observation is the number of its state, which may have other features; or the observation has
-/// features without a number.
-#[derive(Clone, Debug)]
-pub struct Predictor<U, B = FixedPolicy, S = StateRows> {
-    /// The estimated values.
-    pub values: LinearValues<S>,
-    /// Where the actions come from.
-    pub behavior: B,
-    /// The method.
-    pub rule: U,
+/// A step of an episode.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PredictionStep {
+    /// The number of the state S.
+    pub state: u32,
+    /// The reward R.
+    pub reward: f64,
+    /// The number of the next state S′.
+    pub next: Next<u32>,
+    /// The importance-sampling ratio π(A|S) / b(A|S).
+    pub ratio: f64,
 }
 
-impl<R, U, B, S> Learner<R> for Predictor<U, B, S>
-where
-    R: AsRef<[u32]> + Copy,
-    U: PredictionRule<S>,
-    B: Behavior<R>,
-    S: RowSets,
-{
+impl PredictionStep {
+    /// Whether the episode ends here, in a terminal state or by its time limit.
     #[inline]
-    fn first_action(&mut self, state: R, rng: &mut impl Rng) -> usize {
-        let number = self.values.rows.begin(state.as_ref());
-        self.behavior.action(number, &state, rng)
+    pub fn is_last(&self) -> bool {
+        !matches!(self.next, Next::NonTerminal(_))
+    }
+}
+
+/// How a method changes the values. It draws no random numbers.
+pub trait PredictionRule {
+    /// Learns from one step.
+    fn learn(&mut self, values: &mut LinearValues, step: PredictionStep);
+
+    /// The work of the last call, as [`Budget`](crate::Budget) counts it. At least 1.
+    fn work(&self) -> u64 {
+        1
+    }
+
+    /// Whether the last step still has work to do, which `resume` continues.
+    fn is_unfinished(&self) -> bool {
+        false
+    }
+
+    /// Continues to learn from the last step.
+    fn resume(&mut self, _values: &mut LinearValues) {}
+
+    /// How many states before the last one are still needed; `None` for all of the episode.
+    fn look_back(&self) -> Option<usize> {
+        None
+    }
+
+    /// Called after the last step of every episode.
+    fn end_episode(&mut self) {}
+
+    /// Makes room for what so many steps store.
+    ///
+    /// # Errors
+    /// `OutOfMemory`, `LimitReached`.
+    fn reserve(&mut self, _steps: u64, _memory: &mut RunMemory) -> Result<(), AllocationError> {
+        Ok(())
+    }
+}
+
+/// The behavior policy b. `R` holds the active rows of a state.
+pub trait Behavior<R> {
+    /// Whether it is a policy over states that the task numbers: its active row is the number of a state.
+    const OF_STATES: bool;
+
+    /// Samples an action in a state, of which the number is given, too.
+    fn action(&self, state: u32, active: &R, rng: &mut impl Rng) -> usize;
+
+    /// π(A|S) / b(A|S) of an action.
+    fn ratio(&self, state: u32, active: &R, action: usize) -> f64;
+}
+
+/// A prediction method as a [`Learner`]: its actions come from a policy that does not change, and its table has one column.
+#[derive(Debug)]
+pub struct Predictor<U: ?Sized, B = FixedPolicy> {
+    /// The estimated values.
+    pub(super) values: LinearValues,
+    behavior: B,
+    /// The method.
+    pub(super) rule: Box<U>,
+    /// The number of the state visited last, where the task does not number them.
+    state: u32,
+}
+
+impl<U: ?Sized, B> Predictor<U, B> {
+    /// A learner before its first episode.
+    pub fn new(values: LinearValues, behavior: B, rule: Box<U>) -> Self {
+        Self { values, behavior, rule, state: 0 }
+    }
+
+    /// The number of the next state of the episode.
+    #[inline]
+    fn visit<R: AsRef<[u32]>>(&mut self, active: &R) -> u32
+    where
+        B: Behavior<R>,
+    {
+        if !B::OF_STATES {
+            self.state = self.values.features.visit(active.as_ref());
+        }
+        self.last_visit(active)
+    }
+
+    /// The number of the state visited last.
+    #[inline]
+    fn last_visit<R: AsRef<[u32]>>(&self, active: &R) -> u32
+    where
+        B: Behavior<R>,
+    {
+        if B::OF_STATES { active.as_ref()[0] } else { self.state }
+    }
+}
+
+impl<R: AsRef<[u32]> + Copy, U: PredictionRule + ?Sized, B: Behavior<R>> Learner<R> for Predictor<U, B> {
+    #[inline]
+    fn first_action(&mut self, active: R, rng: &mut impl Rng) -> usize {
+        self.values.features.begin();
+        let state = self.visit(&active);
+        self.behavior.action(state, &active, rng)
     }
 
     #[inline]
-    fn learn(&mut self, state: R, action: usize, reward: f64, next: Next<R>, rng: &mut impl Rng) -> usize {
-        if B::HAS_RATIOS {
-            self.rule.weigh(self.behavior.ratio(&state));
-        }
-        let rows = &mut self.values.rows;
-        let number = rows.current(state.as_ref());
-        let next_number = match next {
-            Next::NonTerminal(next) => Next::NonTerminal(rows.visit_next(next.as_ref())),
-            Next::Truncated(next) => Next::Truncated(rows.visit_next(next.as_ref())),
+    fn learn(&mut self, active: R, action: usize, reward: f64, next: Next<R>, rng: &mut impl Rng) -> usize {
+        let state = self.last_visit(&active);
+        let next_state = match next {
+            Next::NonTerminal(next) => Next::NonTerminal(self.visit(&next)),
+            Next::Truncated(next) => Next::Truncated(self.visit(&next)),
             Next::Terminal => Next::Terminal,
         };
-        self.rule.learn(&mut self.values, PredictionStep { state: number, action, reward, next: next_number });
+        let ratio = self.behavior.ratio(state, &active, action);
+        self.rule.learn(&mut self.values, PredictionStep { state, reward, next: next_state, ratio });
         let Next::NonTerminal(next) = next else { return 0 };
-        self.behavior.action(self.values.rows.current(next.as_ref()), &next, rng)
+        self.behavior.action(self.last_visit(&next), &next, rng)
     }
 
     #[inline]
@@ -57,7 +144,7 @@ where
     }
 
     fn reserve(&mut self, work: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
-        self.values.rows.reserve(work, memory)?;
+        self.values.features.reserve(work, memory)?;
         self.rule.reserve(work, memory)
     }
 
@@ -73,7 +160,7 @@ where
     }
 
     fn end_episode(&mut self) {
-        self.rule.end_episode(&mut self.values);
+        self.rule.end_episode();
         self.values.learning_rate.end_episode();
     }
 

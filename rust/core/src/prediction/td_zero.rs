@@ -1,19 +1,15 @@
 //! TD(0) (R. Sutton, 1988; Sutton & Barto, equation 6.2 and the box in section 9.3).
 
-use super::{LinearValues, PredictionRule, PredictionStep, RowSets};
-use crate::tasks::Next;
+use super::{LinearValues, PredictionRule, PredictionStep};
 
 /// w ← w + α [R + γ v(S′) - v(S)] ∇v(S).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TdZero;
 
-impl<S: RowSets> PredictionRule<S> for TdZero {
+impl PredictionRule for TdZero {
     #[inline]
-    fn learn(&mut self, values: &mut LinearValues<S>, step: PredictionStep) {
-        let target = match step.next {
-            Next::NonTerminal(next) | Next::Truncated(next) => step.reward + values.discount * values.value(next),
-            Next::Terminal => step.reward,
-        };
+    fn learn(&mut self, values: &mut LinearValues, step: PredictionStep) {
+        let target = step.reward + values.discount * values.next_value(step.next);
         values.update(step.state, target);
     }
 

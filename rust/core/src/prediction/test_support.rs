@@ -1,30 +1,28 @@
 //! Values with round numbers, for updates computed by hand.
 
-use std::sync::Arc;
-
-use super::{FixedPolicy, LinearValues, PredictionStep, Predictor, StateRows};
+use super::{FixedPolicy, LinearValues, PredictionStep, Predictor, StateFeatures};
 use crate::random::{Pcg64, SeedSequence};
 use crate::schedules::{LearningRate, Schedule};
 use crate::tasks::Next;
 
 /// A table with α = γ = 1/2, and a policy of one action.
 pub(super) fn predictor<U>(values: &[f64], rule: U) -> Predictor<U> {
-    let rows: Arc<[u32]> = (0..values.len() as u32).collect();
-    let rows = StateRows::new(rows, 1, values.len()).expect("a row for each state");
+    let rows = (0..values.len() as u32).collect();
+    let rows = StateFeatures::of_states(rows, 1, values.len()).expect("a row for each state");
     let rate = LearningRate::scheduled(Schedule::constant(0.5), 1);
     let values = LinearValues::new(values.to_vec(), rows, rate, 0.5);
     let behavior = FixedPolicy::new(vec![1.0; values.weights.len()].into(), 1);
-    Predictor { values, behavior, rule }
+    Predictor::new(values, behavior, Box::new(rule))
 }
 
 /// A step to another state.
 pub(super) fn step(state: u32, reward: f64, next: u32) -> PredictionStep {
-    PredictionStep { state, action: 0, reward, next: Next::NonTerminal(next) }
+    PredictionStep { state, reward, next: Next::NonTerminal(next), ratio: 1.0 }
 }
 
 /// The last step of an episode.
 pub(super) fn last(state: u32, reward: f64) -> PredictionStep {
-    PredictionStep { state, action: 0, reward, next: Next::Terminal }
+    PredictionStep { state, reward, next: Next::Terminal, ratio: 1.0 }
 }
 
 /// The generator of seed 0.

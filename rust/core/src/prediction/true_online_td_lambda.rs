@@ -1,8 +1,7 @@
 //! True online TD(λ), with dutch traces (H. van Seijen and R. Sutton, 2014; Sutton & Barto, the box in section 12.5).
 
-use super::td_lambda::StateTraces;
-use super::{LinearValues, PredictionRule, PredictionStep, RowSets};
-use crate::tasks::Next;
+use super::traces::StateTraces;
+use super::{LinearValues, PredictionRule, PredictionStep};
 
 /// With the weights w, the traces z, the binary features x of S, V = wᵀx and V′ = wᵀx′:
 ///
@@ -24,24 +23,22 @@ impl TrueOnlineTdLambda {
     }
 }
 
-impl<S: RowSets> PredictionRule<S> for TrueOnlineTdLambda {
-    fn learn(&mut self, values: &mut LinearValues<S>, step: PredictionStep) {
-        let next_value = match step.next {
-            Next::NonTerminal(next) | Next::Truncated(next) => values.value(next),
-            Next::Terminal => 0.0,
-        };
+impl PredictionRule for TrueOnlineTdLambda {
+    fn learn(&mut self, values: &mut LinearValues, step: PredictionStep) {
+        let next_value = values.next_value(step.next);
         let value = values.value(step.state);
         let error = step.reward + values.discount * next_value - value;
         values.check_finite(error);
         let (step_size, decay) = (values.step_size(), values.discount * self.trace_decay);
-        let overlap = values.rows.of(step.state).iter().fold(0.0, |sum, &row| sum + self.traces.values[row as usize]);
+        let overlap =
+            values.features.of(step.state).iter().fold(0.0, |sum, &row| sum + self.traces.values[row as usize]);
         self.traces.decay(decay);
-        for &row in values.rows.of(step.state) {
+        for &row in values.features.of(step.state) {
             self.traces.add(row, 1.0 - step_size * decay * overlap);
         }
         let change = value - self.v_old;
         self.traces.apply(&mut values.weights, step_size * (error + change));
-        for &row in values.rows.of(step.state) {
+        for &row in values.features.of(step.state) {
             values.weights[row as usize] -= step_size * change;
         }
         self.v_old = next_value;
@@ -55,7 +52,7 @@ impl<S: RowSets> PredictionRule<S> for TrueOnlineTdLambda {
         Some(0)
     }
 
-    fn end_episode(&mut self, _values: &mut LinearValues<S>) {
+    fn end_episode(&mut self) {
         self.v_old = 0.0;
         self.traces.clear();
     }

@@ -194,7 +194,7 @@ where
             return Err(invalid("discretizer", "one with a cell for each observation", "tile coding"));
         }
         prediction.check_states(n_rows)?;
-        let predictor = prediction.predictor(spec, stop)?;
+        let predictor = prediction.of_states(spec, stop)?;
         let run = BoxedRun { task, rng, terminate: spec.terminate_on_truncation, bonus: None };
         return Ok(run.visit(predictor));
     }

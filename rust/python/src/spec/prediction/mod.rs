@@ -1,9 +1,8 @@
 //! What a run estimates instead of learning to act: the values of given policies, by a method.
 
 mod box_features;
-mod function_policy;
 mod observation_policy;
 mod spec;
 
 pub(crate) use box_features::BoxFeatures;
-pub(crate) use spec::{ObservedVisitor, PredictionSpec};
+pub(crate) use spec::PredictionSpec;

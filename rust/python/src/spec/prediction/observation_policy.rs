@@ -5,11 +5,10 @@ use std::sync::Arc;
 use numpy::{PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyBool;
-use qtab_core::prediction::{Choice, FixedPolicy, ObservationPolicy};
+use qtab_core::prediction::ObservationPolicy;
 use qtab_core::random::Rng;
 
 use super::box_features::ReadRows;
-use super::function_policy::FunctionPolicy;
 use crate::convert::{in_c_order, small_array};
 use crate::error::{RunError, invalid};
 use crate::spec::{DiscretizerSpec, Fields, Variant};
@@ -28,11 +27,11 @@ pub(crate) enum ObservationPolicySpec {
 /// A function in Python, and how its answers are read.
 #[derive(Debug)]
 pub(crate) struct FunctionSpec {
-    pub(super) function: Py<PyAny>,
-    /// From an answer and its observation to a column or to probabilities.
-    pub(super) read: Py<PyAny>,
+    function: Py<PyAny>,
+    /// From an answer and its observation to probabilities.
+    read: Py<PyAny>,
     /// The number of the first action.
-    pub(super) first_action: i64,
+    first_action: i64,
 }
 
 /// Every kind of policy by its name.
@@ -61,25 +60,29 @@ fn function(fields: &Fields<'_>) -> PyResult<ObservationPolicySpec> {
 }
 
 impl ObservationPolicySpec {
-    /// The policy. `rows` makes what finds the rows of a discretizer, of which `own` is the task's; `num_rows` is the number
-    /// of that one's rows.
+    /// Whether it is a function in Python, which is called at each step.
+    pub(super) fn calls_python(&self) -> bool {
+        matches!(self, Self::Function(_))
+    }
+
+    /// The policy for observations of the task's discretizer `own`. `rows` makes what finds the rows of a discretizer.
     pub(super) fn build<G>(
         &self,
         num_actions: usize,
-        (own, num_rows): (&DiscretizerSpec, usize),
+        own: &DiscretizerSpec,
         rows: impl Fn(&DiscretizerSpec) -> PyResult<G>,
     ) -> PyResult<ReadPolicy<G>> {
-        match self {
+        let reader = match self {
             Self::Table { probabilities, is_everywhere } => {
-                let expected = if *is_everywhere { 1 } else { num_rows };
-                let possible = |row: &[f64]| row.iter().any(|&probability| probability > 0.0);
-                if probabilities.len() != expected * num_actions || !probabilities.chunks(num_actions).all(possible) {
-                    let shape = format!("{expected} rows of {num_actions} probabilities");
-                    return Err(invalid("probabilities", shape, format!("{} numbers", probabilities.len())));
+                let expected = if *is_everywhere { 1 } else { own.num_rows() };
+                check_probabilities("probabilities", probabilities, num_actions, Some(expected))?;
+                let possible = |row: &[f64]| row.iter().filter(|&&probability| probability > 0.0).count();
+                let is_deterministic = probabilities.chunks(num_actions).all(|row| possible(row) == 1);
+                PolicyReader::Table {
+                    probabilities: Arc::clone(probabilities),
+                    is_everywhere: *is_everywhere,
+                    is_deterministic,
                 }
-                let policy = FixedPolicy::new(Arc::clone(probabilities), num_actions);
-                let rows = if *is_everywhere { None } else { Some(rows(own)?) };
-                Ok(ReadPolicy::Table { rows, policy, row: 0 })
             }
             Self::Greedy { discretizer, tables, n_tables } => {
                 let per_table = discretizer.num_rows() * num_actions;
@@ -91,17 +94,32 @@ impl ObservationPolicySpec {
                     return Err(invalid("tables", fit, format!("{} numbers", tables.len())));
                 }
                 let scratch = [vec![0.0; num_actions], vec![0.0; num_actions]];
-                Ok(ReadPolicy::Greedy {
-                    rows: rows(discretizer)?,
-                    tables: Arc::clone(tables),
-                    per_table,
-                    scratch,
-                    action: 0,
-                })
+                PolicyReader::Greedy { rows: rows(discretizer)?, tables: Arc::clone(tables), per_table, scratch }
             }
-            Self::Function(spec) => Ok(ReadPolicy::Function(FunctionPolicy::new(Arc::clone(spec), num_actions))),
-        }
+            Self::Function(spec) => PolicyReader::Function(Arc::clone(spec)),
+        };
+        Ok(ReadPolicy { reader, action: None, probabilities: vec![0.0; num_actions] })
     }
+}
+
+/// Refuses probabilities that are not those of `num_actions` actions in each of some states, or leave a state without one.
+pub(super) fn check_probabilities(
+    name: &str,
+    probabilities: &[f64],
+    num_actions: usize,
+    states: Option<usize>,
+) -> PyResult<()> {
+    let possible = |row: &[f64]| row.iter().any(|&probability| probability > 0.0);
+    if num_actions > 0
+        && probabilities.len().is_multiple_of(num_actions)
+        && states.is_none_or(|states| probabilities.len() == states * num_actions)
+        && probabilities.chunks(num_actions).all(possible)
+    {
+        return Ok(());
+    }
+    let states = states.map_or("the".to_owned(), |states| states.to_string());
+    let expected = format!("{num_actions} probabilities for each of {states} states");
+    Err(invalid(name, expected, format!("{} numbers", probabilities.len())))
 }
 
 /// An observation that a policy in Python can read.
@@ -122,12 +140,20 @@ impl PyObservation for Py<PyAny> {
 }
 
 /// A policy, with what it does at the observation that it read last.
-pub(crate) enum ReadPolicy<G> {
+pub(crate) struct ReadPolicy<G> {
+    reader: PolicyReader<G>,
+    /// The action; `None` where it has probabilities.
+    action: Option<usize>,
+    /// Those of the actions.
+    probabilities: Vec<f64>,
+}
+
+/// How a policy reads observations.
+enum PolicyReader<G> {
     Table {
-        /// None where the policy is the same everywhere.
-        rows: Option<G>,
-        policy: FixedPolicy,
-        row: u32,
+        probabilities: Arc<[f64]>,
+        is_everywhere: bool,
+        is_deterministic: bool,
     },
     Greedy {
         rows: G,
@@ -136,23 +162,24 @@ pub(crate) enum ReadPolicy<G> {
         per_table: usize,
         /// The action values, and those of one table.
         scratch: [Vec<f64>; 2],
-        action: usize,
     },
-    Function(FunctionPolicy),
+    Function(Arc<FunctionSpec>),
 }
 
 impl<G> ReadPolicy<G> {
-    fn read<O: PyObservation>(&mut self, observation: &O) -> Result<(), RunError>
+    /// `own` is the row of the observation in the task's discretizer.
+    fn read<O: PyObservation>(&mut self, observation: &O, own: u32) -> Result<(), RunError>
     where
         G: ReadRows<O>,
     {
-        match self {
-            Self::Table { rows: None, .. } => Ok(()),
-            Self::Table { rows: Some(rows), row, .. } => {
-                *row = rows.rows(observation)?.as_ref()[0];
-                Ok(())
+        match &mut self.reader {
+            PolicyReader::Table { probabilities, is_everywhere, is_deterministic } => {
+                let (row, count) = (if *is_everywhere { 0 } else { own as usize }, self.probabilities.len());
+                self.probabilities.copy_from_slice(&probabilities[row * count..][..count]);
+                let possible = self.probabilities.iter().position(|&probability| probability > 0.0);
+                self.action = possible.filter(|_| *is_deterministic);
             }
-            Self::Greedy { rows, tables, per_table, scratch: [values, part], action } => {
+            PolicyReader::Greedy { rows, tables, per_table, scratch: [values, part] } => {
                 let active = rows.rows(observation)?;
                 for (index, table) in tables.chunks(*per_table).enumerate() {
                     let sum: &mut [f64] = if index == 0 { values } else { part };
@@ -161,29 +188,52 @@ impl<G> ReadPolicy<G> {
                         values.iter_mut().zip(&*part).for_each(|(value, part)| *value += part);
                     }
                 }
-                *action = first_of_largest(values);
-                Ok(())
+                self.action = Some(first_of_largest(values));
             }
-            Self::Function(function) => {
-                Python::attach(|py| function.read(&observation.to_python(py))).map_err(RunError::from)
+            PolicyReader::Function(spec) => {
+                self.action = Python::attach(|py| spec.call(&observation.to_python(py), &mut self.probabilities))?;
             }
         }
+        Ok(())
     }
 
+    /// The action; or the first one whose sum of probabilities exceeds one `random()`.
     fn sample(&self, rng: &mut impl Rng) -> usize {
-        match self {
-            Self::Table { policy, row, .. } => policy.choose(*row, rng),
-            Self::Greedy { action, .. } => *action,
-            Self::Function(function) => function.sample(rng),
+        if let Some(action) = self.action {
+            return action;
         }
+        let (random, mut sum, mut last) = (rng.random(), 0.0, 0);
+        for (action, &probability) in self.probabilities.iter().enumerate() {
+            if probability > 0.0 {
+                sum += probability;
+                last = action;
+                if random < sum {
+                    break;
+                }
+            }
+        }
+        last
     }
 
     fn probability(&self, action: usize) -> f64 {
-        match self {
-            Self::Table { policy, row, .. } => policy.probability(*row, action),
-            Self::Greedy { action: chosen, .. } => f64::from(u8::from(action == *chosen)),
-            Self::Function(function) => function.probability(action),
+        self.action.map_or(self.probabilities[action], |chosen| f64::from(u8::from(action == chosen)))
+    }
+}
+
+impl FunctionSpec {
+    /// Asks the function. Returns its action, or `None` where it answers with probabilities, which it writes.
+    fn call(&self, observation: &Bound<'_, PyAny>, probabilities: &mut [f64]) -> PyResult<Option<usize>> {
+        let py = observation.py();
+        let answer = self.function.bind(py).call1((observation,))?;
+        let number: Option<i64> = if answer.is_instance_of::<PyBool>() { None } else { answer.extract().ok() };
+        let column = number.and_then(|number| usize::try_from(number.checked_sub(self.first_action)?).ok());
+        if let Some(column) = column.filter(|&column| column < probabilities.len()) {
+            return Ok(Some(column));
         }
+        // Whatever is no valid number is read, or refused, in Python.
+        let read: Vec<f64> = self.read.bind(py).call1((answer, observation))?.extract()?;
+        probabilities.copy_from_slice(&read);
+        Ok(None)
     }
 }
 
@@ -217,25 +267,23 @@ const CALL_WORK: u64 = 127;
 impl<O: PyObservation, G: ReadRows<O>> ObservationPolicy<O> for ObservationPolicies<G> {
     type Error = RunError;
 
-    fn choose(&mut self, observation: &O, rng: &mut impl Rng) -> Result<Choice, RunError> {
-        self.behavior.read(observation)?;
+    fn choose(&mut self, observation: &O, active: &[u32], rng: &mut impl Rng) -> Result<(usize, f64), RunError> {
+        self.behavior.read(observation, active[0])?;
         let action = self.behavior.sample(rng);
-        let Some(target) = &mut self.target else { return Ok(Choice { action: action as u32, ratio: 1.0 }) };
-        target.read(observation)?;
+        let Some(target) = &mut self.target else { return Ok((action, 1.0)) };
+        target.read(observation, active[0])?;
         for other in 0..self.num_actions {
             let probability = target.probability(other);
             if probability > 0.0 && self.behavior.probability(other) == 0.0 {
                 return Err(Python::attach(|py| not_covered(&observation.to_python(py), other, probability)).into());
             }
         }
-        let ratio = target.probability(action) / self.behavior.probability(action);
-        Ok(Choice { action: action as u32, ratio })
+        Ok((action, target.probability(action) / self.behavior.probability(action)))
     }
 
     fn work(&self) -> u64 {
-        let is_function = |source: &ReadPolicy<G>| matches!(source, ReadPolicy::Function(_));
-        let calls = u64::from(is_function(&self.behavior)) + u64::from(self.target.as_ref().is_some_and(is_function));
-        calls * CALL_WORK
+        let policies = self.target.iter().chain([&self.behavior]);
+        CALL_WORK * policies.filter(|policy| matches!(policy.reader, PolicyReader::Function(_))).count() as u64
     }
 }
 
@@ -246,9 +294,4 @@ fn not_covered(observation: &Bound<'_, PyAny>, action: usize, probability: f64) 
          probability {probability}",
         shown.unwrap_or_default()
     ))
-}
-
-/// The number of an answer, if it is a plain integer.
-pub(super) fn integer(answer: &Bound<'_, PyAny>) -> Option<i64> {
-    if answer.is_instance_of::<PyBool>() { None } else { answer.extract().ok() }
 }
