@@ -92,6 +92,12 @@ def test_an_endless_policy_needs_a_discount() -> None:
     assert qtab.policy_values("CliffWalking-v1", up, 0.5).values[0] == pytest.approx(-2.0)
 
 
+def test_the_message_names_the_sweeps_that_were_made() -> None:
+    table = {0: {0: [(1.0, 0, -1.0, False), (1e-17, 0, -1.0, True)]}}
+    with pytest.raises(ValueError, match="the values still change after 1000 sweeps; a discount below 1 helps"):
+        qtab.policy_values(qtab.TabularEnv(table, [1.0]), "random")
+
+
 def test_an_environment_without_a_table_is_refused() -> None:
     with pytest.raises(ValueError, match="env must have a transition table"):
         qtab.policy_values("MountainCar-v0", "random")

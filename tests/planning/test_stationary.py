@@ -10,7 +10,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import qtab
-from qtab.planning.time_dependent import time_dependent_return
 
 
 def test_frozen_lake_is_worth_less_to_a_policy_that_ignores_the_time() -> None:
@@ -37,6 +36,18 @@ def test_it_is_proven_where_no_policy_returns_more(name: str) -> None:
     assert (known.proven, known.label) == (True, "best")
     assert known.expected_return == pytest.approx(best.expected_return, rel=1e-12)
     assert best.gap(qtab.train(name, seed=0, episodes=20)).approximation == 0
+
+
+def test_it_is_proven_where_its_rewards_cancel() -> None:
+    # Two ways whose first three rewards sum to 0, up to rounding: 0.1 + 0.2 - 0.3, and then 1; or 0.3 + 0.1 - 0.4.
+    steps = {1: (2, 0.2, False), 2: (3, -0.3, False), 3: (3, 1.0, True), 4: (5, 0.1, False), 5: (5, -0.4, True)}
+    ways = {0: {0: [(1.0, 1, 0.1, False)], 1: [(1.0, 4, 0.3, False)]}}
+    table = ways | {state: {action: [(1.0, *step)] for action in range(2)} for state, step in steps.items()}
+    best = qtab.optimum(qtab.TabularEnv(table, [1.0, 0, 0, 0, 0, 0]), max_episode_steps=3)
+    known = best.stationary
+    assert known is not None
+    assert known.expected_return != best.expected_return
+    assert (known.proven, known.label) == (True, "best")
 
 
 def test_it_is_not_known_for_a_search_or_a_large_table() -> None:
@@ -77,7 +88,7 @@ def test_it_returns_what_it_claims_and_no_single_change_helps(table: Any, limit:
         assert known.expected_return == pytest.approx(max(returns), abs=1e-9)
     # A stationary policy is one that depends on the time, but does not change.
     repeated = np.tile(known.policy, (limit, 1))
-    assert time_dependent_return(planner, repeated) == pytest.approx(known.expected_return, abs=1e-12)
+    assert planner.policy_return(repeated, limit) == known.expected_return
 
 
 def test_the_command_reports_it(capsys: pytest.CaptureFixture[str]) -> None:

@@ -41,7 +41,7 @@ def optimum_of(resolved: ResolvedRun, always: bool, progress: bool | None) -> "O
     if not (always or has_quick_optimum(config, rows, actions)):
         return None
     from qtab.planning import optimum
-    from qtab.planning.quick import quick_optimum
+    from qtab.planning.solve import quick_optimum
 
     if not always:
         return quick_optimum(config, rows, actions)

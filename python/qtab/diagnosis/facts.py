@@ -13,7 +13,7 @@ from qtab.diagnosis.routes import shortest_best_episode
 from qtab.diagnosis.sample import Sample, repeat, sample_steps
 from qtab.envs.goals import BEST_KNOWN_MOUNTAIN_CAR, is_usual_mountain_car
 from qtab.planning.optimum import Optimum
-from qtab.planning.quick import quick_optimum
+from qtab.planning.solve import quick_optimum
 from qtab.results.action_values import are_finite, initial_tables
 from qtab.results.rates import repeatable
 from qtab.results.run import Run

@@ -3,30 +3,28 @@
 import time
 from collections.abc import Mapping
 from contextlib import closing
-from dataclasses import dataclass
 from typing import Any
 
 import gymnasium as gym
 import numpy as np
 from gymnasium.envs.registration import EnvSpec
-from numpy.typing import NDArray
 
 from qtab._utils import checks
 from qtab._utils.progress import ProgressBar, check_progress
 from qtab._utils.shown import shown
+from qtab.config import Config
 from qtab.config.origin import trained_on
 from qtab.config.unknown import suggesting
-from qtab.envs.goals import UNLIMITED_MAX_EPISODE_STEPS, reward_threshold
+from qtab.envs.goals import UNLIMITED_MAX_EPISODE_STEPS, has_quick_optimum, reward_threshold
 from qtab.envs.matching import time_limit
 from qtab.envs.origin.describe import describe
 from qtab.envs.origin.description import EnvironmentDescription
 from qtab.envs.stored import spec_of_run
 from qtab.planning.classic_control import GridSolver, search_grid
 from qtab.planning.grid_environments import GridEnvironment, grid_environment
-from qtab.planning.optimum import Optimum, Solver
-from qtab.planning.search import Search
+from qtab.planning.optimum import Optimum
 from qtab.planning.table import check_wrappers, has_transition_table, opened_env, table_of
-from qtab.planning.tabular import METHODS, TabularSolver, solve_table
+from qtab.planning.tabular import METHODS, TabularSolver
 from qtab.results.run import Run
 from qtab.results.runs import Runs
 from qtab.training.run_env import make_run_env
@@ -146,47 +144,34 @@ def _optimum_for_env(
         method=method,
         exact=on_grid is None,
         discount=discount,
-        values=best.values,
-        q_values=best.q_values,
-        policy=best.policy,
-        expected_return=best.expected_return,
         reward_threshold=None if env.spec is None else reward_threshold(name, env.spec.kwargs, steps, environment),
         seconds=time.perf_counter() - started,
-        search=best.search,
-        solver=best.solver,
         environment=environment,
+        **best,
     )
 
 
-@dataclass(frozen=True, eq=False)
-class _Best:
-    """The fields of an :class:`Optimum` that depend on the method."""
-
-    values: NDArray[np.float64]
-    q_values: NDArray[np.float64]
-    policy: NDArray[np.int64]
-    expected_return: float
-    solver: Solver
-    search: Search | None = None
-
-
-def _solve_table(env: Any, method: str, discount: float, max_episode_steps: int) -> _Best:
+def _solve_table(env: Any, method: str, discount: float, max_episode_steps: int) -> dict[str, Any]:
+    """Returns the fields of an :class:`Optimum` that depend on the method."""
     table = table_of(env)
-    cells, actions = table.cells, table.actions
-    solution = solve_table(table.solver, method, discount, max_episode_steps)
-    # The first states of the solution are those that observations show. Where an observation hides part of the state,
-    # the hidden variants follow.
+    cells = table.cells
+    solver = TabularSolver(table, method, discount, max_episode_steps)
+    # The first states are those that observations show. Where these hide part of the state, the hidden variants follow.
     observed = slice(cells.n_rows)
-    return _Best(
-        values=solution.values[observed].reshape(cells.shape),
-        q_values=solution.q_values[observed].reshape(*cells.shape, len(actions)),
-        policy=solution.policy[observed].reshape(cells.shape) + actions.first,
-        expected_return=solution.expected_return,
-        solver=TabularSolver(table.solver, cells, actions, solution, max_episode_steps),
-    )
+    return {
+        "values": solver.values[observed].reshape(cells.shape),
+        "q_values": solver.q_values[observed].reshape(*cells.shape, -1),
+        "policy": solver.policy[observed].reshape(cells.shape) + table.actions.first,
+        "expected_return": solver.expected_return,
+        "solver": solver,
+        "search": None,
+    }
 
 
-def _search_grid(env: Any, known: GridEnvironment, discount: float, max_episode_steps: int, bar: ProgressBar) -> _Best:
+def _search_grid(
+    env: Any, known: GridEnvironment, discount: float, max_episode_steps: int, bar: ProgressBar
+) -> dict[str, Any]:
+    """Returns the fields of an :class:`Optimum` that depend on the method."""
     if discount != 1.0:
         raise ValueError(f"discount must be 1 for method 'search', got {shown(discount)}")
     searched, search = search_grid(env, known, max_episode_steps, on_values=lambda: bar.move_to(1))
@@ -194,11 +179,26 @@ def _search_grid(env: Any, known: GridEnvironment, discount: float, max_episode_
     values, action_values = searched.values()
     shape = tuple(map(len, search.axes))
     q_values = action_values.reshape(*shape, -1)
-    return _Best(
-        values=values.reshape(shape),
-        q_values=q_values,
-        policy=np.argmax(q_values, axis=-1),
-        expected_return=float(search.returns.mean()),
-        solver=GridSolver(searched, known, search),
-        search=search,
-    )
+    return {
+        "values": values.reshape(shape),
+        "q_values": q_values,
+        "policy": np.argmax(q_values, axis=-1),
+        "expected_return": float(search.returns.mean()),
+        "solver": GridSolver(searched, known, search),
+        "search": search,
+    }
+
+
+def quick_optimum(config: Config, n_rows: int, n_actions: int) -> Optimum | None:
+    """Returns the optimum of a resolved config's environment; None where no table is known, or it would take a second.
+
+    Args:
+        config: The config.
+        n_rows: The number of rows of the run's table.
+        n_actions: The number of actions.
+    """
+    known = trained_on(config)
+    is_changed = known is not None and (known.table is not None or bool(known.wrappers))
+    if is_changed or not has_quick_optimum(config, n_rows, n_actions):
+        return None
+    return optimum(config.env, env_kwargs=config.env_kwargs, max_episode_steps=config.max_episode_steps)

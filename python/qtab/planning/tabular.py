@@ -1,25 +1,29 @@
 """The best policy of an environment with a transition table, by dynamic programming."""
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qtab import _core
-from qtab.discretizers import Identity, TimeAware
-from qtab.envs.actions import Actions
-from qtab.planning.stationary import StationaryPolicy, stationary_policy
-from qtab.planning.time_dependent import time_dependent_return
+from qtab.discretizers import TimeAware
+from qtab.planning.stationary import StationaryPolicy
+from qtab.planning.table import Table
 from qtab.results.run import Run
 
 METHODS = ("finite_horizon", "value_iteration", "policy_iteration")
 
 
-@dataclass(frozen=True, eq=False)
-class Solution:
-    """The optimal values and policy of a transition table."""
+class TabularSolver:
+    """Acts by the solution of a transition table, and evaluates the policies of runs exactly.
+
+    The table is solved by one of ``METHODS``.
+
+    Raises:
+        ValueError: if values are unbounded without a discount, except for a finite horizon.
+    """
+
+    has_continuous_actions = False
 
     values: NDArray[np.float64]
     """(states,): the optimal state values."""
@@ -33,33 +37,18 @@ class Solution:
     """For a finite horizon (changes,) each: the steps to go, the state, and the action that is best there with as many
     steps to go or more, until the next change. None where the best action does not depend on the steps to go."""
 
-
-def solve_table(planner: _core.MdpSolver, method: str, discount: float, max_episode_steps: int) -> Solution:
-    """Solves a transition table by one of ``METHODS``.
-
-    Raises:
-        ValueError: if values are unbounded without a discount, except for a finite horizon.
-    """
-    if method == "finite_horizon":
-        (values, q_values, policy), changes, expected_return = planner.finite_horizon(discount, max_episode_steps)
-        return Solution(values, q_values.reshape(len(values), -1), policy, expected_return, changes)
-    values, q_values, policy = getattr(planner, method)(discount)
-    expected_return = planner.policy_return(policy, max_episode_steps)
-    return Solution(values, q_values.reshape(len(values), -1), policy, expected_return, None)
-
-
-class TabularSolver:
-    """Acts by the solution of a transition table, and evaluates the policies of runs exactly."""
-
-    has_continuous_actions = False
-
-    def __init__(
-        self, planner: _core.MdpSolver, cells: Identity, actions: Actions, solution: Solution, max_episode_steps: int
-    ) -> None:
-        self.cells, self.actions = cells, actions
-        self._planner, self._solution = planner, solution
+    def __init__(self, table: Table, method: str, discount: float, max_episode_steps: int) -> None:
+        self.cells, self.actions = table.cells, table.actions
+        planner = self._planner = table.solver
         self._max_episode_steps = max_episode_steps
-        self.needs_step_count = solution.policy_changes is not None
+        if method == "finite_horizon":
+            solution, self.policy_changes, self.expected_return = planner.finite_horizon(discount, max_episode_steps)
+        else:
+            solution = getattr(planner, method)(discount)
+            self.policy_changes, self.expected_return = None, planner.policy_return(solution[2], max_episode_steps)
+        self.values, q_values, self.policy = solution
+        self.q_values = q_values.reshape(len(self.values), -1)
+        self.needs_step_count = self.policy_changes is not None
 
     @property
     def observation_shape(self) -> tuple[int, ...]:
@@ -86,9 +75,9 @@ class TabularSolver:
         return best_actions.pop() + self.actions.first
 
     def _best_action(self, state: int, steps_taken: int) -> int:
-        if self._solution.policy_changes is None:
-            return int(self._solution.policy[state])
-        steps_to_go, states, actions = self._solution.policy_changes
+        if self.policy_changes is None:
+            return int(self.policy[state])
+        steps_to_go, states, actions = self.policy_changes
         remaining = max(self._max_episode_steps - steps_taken, 1)
         # Sorted by the steps to go: the last change that applies is in force.
         applicable = np.flatnonzero((states == state) & (steps_to_go <= remaining))
@@ -100,44 +89,31 @@ class TabularSolver:
         Raises:
             ValueError: if the run's Q table has another shape than the environment, or rows that are not its states.
         """
-        if isinstance(run.discretizer, TimeAware):
-            return self._time_aware_return(run, run.discretizer), 0.0
-        if not run.discretizer.has_component_axes:
+        cells, steps = run.discretizer, tuple[int, ...]()
+        if isinstance(cells, TimeAware):
+            cells, steps = cells.cells, (self._max_episode_steps,)
+        if not cells.has_component_axes:
             raise ValueError(
                 "run must have a table of the components of its observations, not of a function or of max_rows; "
                 "qtab.evaluate(run) estimates its return"
             )
-        self._check_shape(run, self.cells.shape)
-        policy: Any = np.ascontiguousarray(run.policy.ravel() - run.actions.first)
-        return self._planner.policy_return(policy, self._max_episode_steps), 0.0
-
-    def _time_aware_return(self, run: Run, steps: TimeAware) -> float:
-        """The expected return of a policy that depends on the number of steps taken."""
-        if not steps.cells.has_component_axes:
-            raise ValueError(
-                "run must have a table of the components of its observations, not of a function; "
-                "qtab.evaluate(run) estimates its return"
-            )
-        self._check_shape(run, (self._max_episode_steps, *self.cells.shape))
-        policy: Any = run.policy.reshape(self._max_episode_steps, -1) - run.actions.first
-        return time_dependent_return(self._planner, policy)
-
-    def _check_shape(self, run: Run, cells: tuple[int, ...]) -> None:
-        shape = (*cells, len(self.actions))
+        shape = (*steps, *self.cells.shape, len(self.actions))
         found = (*run.discretizer.shape, len(run.actions))
         if not run.discretizer.has_cells or found != shape:
             raise ValueError(f"run must have a table of shape {shape}, got {found}")
+        policy: Any = np.ascontiguousarray(run.policy.reshape(*steps, -1) - run.actions.first)
+        return self._planner.policy_return(policy, self._max_episode_steps), 0.0
 
     def attainable_return(self, run: Run) -> float | None:
         """Returns the return of the best policy known that counts the steps only if the run's does; None if unknown."""
         if run.config.time_aware:
-            return self._solution.expected_return
+            return self.expected_return
         return None if self.stationary is None else self.stationary.expected_return
 
     @cached_property
     def stationary(self) -> StationaryPolicy | None:
         """The best policy known that does not depend on the number of steps taken; None for large tables."""
-        found = stationary_policy(self._planner, self.cells.n_rows, self._max_episode_steps)
+        found = self._planner.stationary_policy(self.cells.n_rows, self._max_episode_steps)
         if found is None:
             return None
         policy, expected, proven = found

@@ -98,7 +98,7 @@ def judge(run: Run, optimum: KnownOptimum | None) -> Verdict:
 
     Args:
         run: The run.
-        optimum: The optimum of its environment, where it is known; see :func:`qtab.planning.quick.quick_optimum`.
+        optimum: The optimum of its environment, where it is known; see :func:`qtab.planning.solve.quick_optimum`.
     """
     goal, last = _goal(run.config, optimum), run.episode_returns[-SOLVED_EPISODES:]
     final = float(last.mean()) if len(last) else float("nan")

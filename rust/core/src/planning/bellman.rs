@@ -2,9 +2,8 @@
 
 use crate::StopFlag;
 
-use super::markov_chain::LAST_BITS;
+use super::PlanningError;
 use super::stop_checks::StopChecks;
-use super::{MAX_SWEEPS, PlanningError};
 use crate::envs::Env;
 use crate::envs::tabular::TabularMdp;
 use crate::memory::with_capacity;
@@ -22,7 +21,7 @@ pub(super) fn action_value(mdp: &TabularMdp, state: usize, action: usize, discou
 }
 
 /// Σ p (|r| + γ |v(s′)|): the magnitude of the terms that an action value is the sum of.
-fn action_size(mdp: &TabularMdp, state: usize, action: usize, discount: f64, values: &[f64]) -> f64 {
+pub(super) fn action_size(mdp: &TabularMdp, state: usize, action: usize, discount: f64, values: &[f64]) -> f64 {
     let mut sum = 0.0;
     for (probability, step) in mdp.outcomes(state, action) {
         let next_value = if step.terminated { 0.0 } else { values[step.state as usize] };
@@ -90,7 +89,7 @@ pub(super) fn choices<'a>(
 ///
 /// # Errors
 /// `Overflow`; `OutOfMemory`; `Stopped` after `stop` was set.
-pub(super) fn action_values(
+pub fn action_values(
     mdp: &TabularMdp,
     discount: f64,
     values: &[f64],
@@ -108,39 +107,7 @@ pub(super) fn action_values(
     Ok(q_values)
 }
 
-/// Sweeps over the states and replaces each value in place by `backup(state, values)`, until the changes are in the last
-/// bits of the terms, whose magnitude is `size(state, values)`, and no longer shrink. Returns the number of sweeps.
-///
-/// # Errors
-/// `NotConverged`; `Overflow`; `Stopped` after `stop` was set.
-pub(super) fn converge(
-    values: &mut [f64],
-    mdp: &TabularMdp,
-    stop: &StopFlag<'_>,
-    mut backup: impl FnMut(usize, &[f64]) -> f64,
-    mut size: impl FnMut(usize, &[f64]) -> f64,
-) -> Result<u64, PlanningError> {
-    let mut checks = StopChecks::new(mdp, stop);
-    let mut previous = f64::INFINITY;
-    for sweeps in 1..=MAX_SWEEPS {
-        let mut largest = 0.0_f64;
-        for state in 0..values.len() {
-            let value = backup(state, values);
-            if !value.is_finite() {
-                return Err(PlanningError::Overflow(state));
-            }
-            if value != values[state] {
-                let size = size(state, values).clamp(f64::MIN_POSITIVE, f64::MAX);
-                largest = largest.max((value - values[state]).abs() / size);
-                values[state] = value;
-            }
-            checks.state()?;
-        }
-        if largest == 0.0 || (largest <= LAST_BITS && largest >= previous) {
-            return Ok(sweeps);
-        }
-        previous = largest;
-        checks.now()?;
-    }
-    Err(PlanningError::NotConverged)
+/// The expected value of the initial state, summed from left to right.
+pub(super) fn initial_value(mdp: &TabularMdp, values: &[f64]) -> f64 {
+    mdp.initial_distribution().iter().zip(values).fold(0.0, |sum, (probability, value)| sum + probability * value)
 }

@@ -2,10 +2,11 @@
 
 use crate::StopFlag;
 
-use super::PlanningError;
-use super::bellman::{action_error, converge};
+use super::bellman::action_error;
 use super::endings::Endings;
 use super::stop_checks::StopChecks;
+use super::sweeps::converge;
+use super::{MAX_SWEEPS, PlanningError};
 use crate::envs::tabular::TabularMdp;
 use crate::envs::{Env, Step};
 use crate::memory::{collect, filled};
@@ -90,13 +91,17 @@ fn shortest_way(
         mdp.outcomes(state, action).fold(0.0, |sum, (probability, step)| sum + outcome_value(probability, &step))
     };
     let best_ending_value = |state: usize, ending_values: &[f64]| {
-        if goal_action(state).is_some() {
-            return 1.0;
-        }
-        (0..num_actions).map(|action| ending_value(state, action, ending_values)).fold(0.0, f64::max)
+        let best = match goal_action(state) {
+            Some(_) => 1.0,
+            None => (0..num_actions).map(|action| ending_value(state, action, ending_values)).fold(0.0, f64::max),
+        };
+        (best, best)
     };
-    let mut ending_values = filled(&0.0, mdp.num_states(), stop)?;
-    converge(&mut ending_values, mdp, stop, best_ending_value, best_ending_value)?;
+    let (count, checks) = (mdp.num_states(), StopChecks::new(mdp, stop));
+    let mut ending_values = filled(&0.0, count, stop)?;
+    if !converge(&mut ending_values, count, MAX_SWEEPS, checks, |_, state| state, best_ending_value)? {
+        return Err(PlanningError::NotConverged { sweeps: MAX_SWEEPS });
+    }
     let mut checks = StopChecks::new(mdp, stop);
     let (mut policy, mut row) = (filled(&None, mdp.num_states(), stop)?, filled(&0.0, num_actions, stop)?);
     for (state, chosen) in policy.iter_mut().enumerate() {

@@ -5,9 +5,9 @@ use std::iter::once;
 use crate::StopFlag;
 
 use super::PlanningError;
-use super::bellman::action_value;
-use super::evaluation::solve;
+use super::bellman::{action_value, initial_value};
 use super::markov_chain::MarkovChain;
+use super::policy_evaluation::solve;
 use super::stop_checks::StopChecks;
 use crate::envs::Env;
 use crate::envs::tabular::TabularMdp;
@@ -118,10 +118,9 @@ impl ExpectedUpdates {
     pub fn greedy_return(&self, stop: &StopFlag<'_>) -> Result<f64, PlanningError> {
         let policy: Vec<usize> = collect(self.q_values.chunks(self.mdp.num_actions()).map(argmax))?;
         let chain = MarkovChain::new(&self.mdp, self.discount, stop, |state| once((policy[state], 1.0)))?;
-        let mut states = chain.reachable(self.mdp.initial_distribution(), stop)?;
+        let states = chain.reachable(self.mdp.initial_distribution(), stop)?;
         let mut values = collect(self.values.iter().copied())?;
-        solve(&chain, self.discount, &mut states, &mut values, stop)?;
-        let starts = self.mdp.initial_distribution().iter().zip(&values);
-        Ok(starts.fold(0.0, |sum, (probability, value)| sum + probability * value))
+        solve(&chain, self.discount, states, &mut values, stop)?;
+        Ok(initial_value(&self.mdp, &values))
     }
 }

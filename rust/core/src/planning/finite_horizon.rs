@@ -6,7 +6,7 @@ use crate::StopFlag;
 use std::mem::swap;
 
 use super::PlanningError;
-use super::bellman::{action_error, action_value, action_values};
+use super::bellman::{action_error, action_size, action_value, action_values, initial_value};
 use super::stop_checks::StopChecks;
 use crate::envs::Env;
 use crate::envs::tabular::TabularMdp;
@@ -94,45 +94,64 @@ pub fn finite_horizon(
     }
     // With all steps to go, the next state has one step fewer.
     let q_values = action_values(mdp, discount, &next_values, stop)?;
-    let expected_return = expected_value(mdp, &returns);
+    let expected_return = initial_value(mdp, &returns);
     Ok(FiniteHorizon { values, q_values, policy, changes, expected_return, sweeps })
 }
 
-/// The expected undiscounted return of a stationary policy within `steps` steps.
+/// The expected undiscounted return of a policy within `steps` steps. It has one action per state; or one for each number of
+/// steps taken and each state, those of the first step first.
 ///
 /// # Errors
 /// `Overflow`; `OutOfMemory`; `Stopped` after `stop` was set.
 ///
 /// # Panics
-/// If the policy does not have one action per state, or an action is out of range.
+/// If the policy has another number of actions, or an action is out of range.
 pub fn policy_return(
     mdp: &TabularMdp,
     policy: &[usize],
     steps: u64,
     stop: &StopFlag<'_>,
 ) -> Result<f64, PlanningError> {
-    assert_eq!(policy.len(), mdp.num_states(), "a policy must have one action per state");
-    let (mut returns, mut next_returns) =
-        (filled(&0.0, mdp.num_states(), stop)?, filled(&0.0, mdp.num_states(), stop)?);
+    induction(mdp, policy, steps, action_value, stop)
+}
+
+/// The expected sum of the magnitudes of the rewards of such a policy, of which rounding errors are a fraction.
+pub(super) fn return_size(
+    mdp: &TabularMdp,
+    policy: &[usize],
+    steps: u64,
+    stop: &StopFlag<'_>,
+) -> Result<f64, PlanningError> {
+    induction(mdp, policy, steps, action_size, stop)
+}
+
+fn induction(
+    mdp: &TabularMdp,
+    policy: &[usize],
+    steps: u64,
+    value: impl Fn(&TabularMdp, usize, usize, f64, &[f64]) -> f64,
+    stop: &StopFlag<'_>,
+) -> Result<f64, PlanningError> {
+    let num_states = mdp.num_states();
+    let is_stationary = policy.len() == num_states;
+    let fits = is_stationary || policy.len() as u64 == num_states as u64 * steps;
+    assert!(fits, "a policy must have one action per state, or one per step and state");
+    let (mut returns, mut next_returns) = (filled(&0.0, num_states, stop)?, filled(&0.0, num_states, stop)?);
     let mut checks = StopChecks::new(mdp, stop);
-    for _ in 0..steps {
+    for taken in (0..steps).rev() {
         checks.now()?;
-        for (state, &action) in policy.iter().enumerate() {
-            next_returns[state] = action_value(mdp, state, action, 1.0, &returns);
+        let first = if is_stationary { 0 } else { taken as usize * num_states };
+        for (state, &action) in policy[first..][..num_states].iter().enumerate() {
+            next_returns[state] = value(mdp, state, action, 1.0, &returns);
             if !next_returns[state].is_finite() {
                 return Err(PlanningError::Overflow(state));
             }
             checks.state()?;
         }
         swap(&mut returns, &mut next_returns);
-        if returns == next_returns {
+        if is_stationary && returns == next_returns {
             break;
         }
     }
-    Ok(expected_value(mdp, &returns))
-}
-
-/// The expected value of the initial state, summed from left to right.
-fn expected_value(mdp: &TabularMdp, values: &[f64]) -> f64 {
-    mdp.initial_distribution().iter().zip(values).fold(0.0, |sum, (probability, value)| sum + probability * value)
+    Ok(initial_value(mdp, &returns))
 }

@@ -2,15 +2,13 @@
 
 use crate::StopFlag;
 
-use super::elimination::eliminate;
+use super::elimination::Eliminated;
 use super::stop_checks::StopChecks;
+use super::sweeps::converge;
 use super::{MAX_SWEEPS, PlanningError};
 use crate::envs::tabular::TabularMdp;
 use crate::memory::{filled, reserve, with_capacity};
 
-/// A sweep has found the solution when it changes no value by more than this fraction of the terms that the value is
-/// the sum of: its last bits.
-pub(super) const LAST_BITS: f64 = 4.0 * f64::EPSILON;
 /// So many sweeps are made before a direct method: most chains end, or are discounted, sooner.
 const SWEEPS_BEFORE_ELIMINATION: u64 = 1000;
 /// A direct method solves for up to so many states: in a matrix of 32 MB, within seconds.
@@ -166,49 +164,6 @@ impl MarkovChain {
         })
     }
 
-    /// Solves x(s) = c(s) + Σ γ p x(s′) for the states of a list. `solution` holds a first guess, and the numbers of the
-    /// other states, which stay. Returns the number of sweeps.
-    ///
-    /// # Errors
-    /// `NotConverged` for more states than a direct method takes; `Overflow`; `OutOfMemory`; `Stopped` after `stop` was
-    /// set.
-    pub(super) fn solve(
-        &self,
-        unknown: &[usize],
-        constants: &[f64],
-        solution: &mut [f64],
-        stop: &StopFlag<'_>,
-    ) -> Result<u64, PlanningError> {
-        let mut checks = self.checks(stop);
-        let mut previous = f64::INFINITY;
-        for sweeps in 1..=MAX_SWEEPS {
-            let mut largest = 0.0_f64;
-            for index in 0..unknown.len() {
-                // Backwards and forwards: a corridor is solved at once, whichever way its states are numbered.
-                let state = unknown[if sweeps % 2 == 1 { unknown.len() - 1 - index } else { index }];
-                let (value, size) = self.sum(state, constants[state], solution);
-                if !value.is_finite() {
-                    return Err(PlanningError::Overflow(state));
-                }
-                if value != solution[state] {
-                    largest = largest.max((value - solution[state]).abs() / size.clamp(f64::MIN_POSITIVE, f64::MAX));
-                    solution[state] = value;
-                }
-                checks.state()?;
-            }
-            if largest == 0.0 || (largest <= LAST_BITS && largest >= previous) {
-                return Ok(sweeps);
-            }
-            if sweeps == SWEEPS_BEFORE_ELIMINATION && unknown.len() <= MAX_ELIMINATED {
-                self.eliminate(unknown, constants, solution, stop)?;
-                return Ok(sweeps);
-            }
-            previous = largest;
-            checks.now()?;
-        }
-        Err(PlanningError::NotConverged)
-    }
-
     /// c(s) + Σ γ p x(s′), summed from left to right, and the sum of the magnitudes of its terms.
     fn sum(&self, state: usize, constant: f64, values: &[f64]) -> (f64, f64) {
         self.next(state).fold((constant, constant.abs()), |(sum, size), (next, weight)| {
@@ -217,34 +172,61 @@ impl MarkovChain {
         })
     }
 
-    /// Solves by Gaussian elimination.
-    fn eliminate(
-        &self,
-        unknown: &[usize],
+    fn checks<'a>(&self, stop: &'a StopFlag<'a>) -> StopChecks<'a> {
+        StopChecks::with_outcomes(self.transitions.len(), self.num_states(), stop)
+    }
+}
+
+/// The linear equations x(s) = c(s) + Σ γ p x(s′) for some states of a chain, whatever the constants c.
+pub(super) struct Equations<'a> {
+    chain: &'a MarkovChain,
+    unknown: Vec<usize>,
+    /// What elimination left of them, once sweeps took long, and the place of each state among the unknown ones;
+    /// `usize::MAX` for the others.
+    eliminated: Option<(Eliminated, Vec<usize>)>,
+}
+
+impl<'a> Equations<'a> {
+    /// `unknown` are the states.
+    pub(super) fn new(chain: &'a MarkovChain, unknown: Vec<usize>) -> Self {
+        Self { chain, unknown, eliminated: None }
+    }
+
+    /// Solves them. `solution` holds a first guess, and the numbers of the other states, which stay.
+    ///
+    /// # Errors
+    /// `NotConverged` for more states than a direct method takes, or if they are singular to rounding; `Overflow`;
+    /// `OutOfMemory`; `Stopped` after `stop` was set.
+    pub(super) fn solve(
+        &mut self,
         constants: &[f64],
         solution: &mut [f64],
         stop: &StopFlag<'_>,
     ) -> Result<(), PlanningError> {
-        let count = unknown.len();
-        let mut places = filled(&usize::MAX, self.num_states(), stop)?;
-        for (place, &state) in unknown.iter().enumerate() {
-            places[state] = place;
-        }
-        let mut matrix = filled(&0.0, count * count, stop)?;
-        let mut sides = with_capacity(count)?;
-        for (row, &state) in matrix.chunks_mut(count).zip(unknown) {
-            let mut side = constants[state];
-            row[places[state]] = 1.0;
-            for (next, weight) in self.next(state) {
-                match row.get_mut(places[next]) {
-                    Some(entry) => *entry -= weight,
-                    None => side += weight * solution[next],
-                }
+        if self.eliminated.is_none() {
+            let (unknown, chain) = (&self.unknown, self.chain);
+            let count = unknown.len();
+            let most = if count <= MAX_ELIMINATED { SWEEPS_BEFORE_ELIMINATION } else { MAX_SWEEPS };
+            // Backwards and forwards: a corridor is solved at once, whichever way its states are numbered.
+            let order = |sweep, index| unknown[if sweep % 2 == 1 { count - 1 - index } else { index }];
+            let sum = |state: usize, values: &[f64]| chain.sum(state, constants[state], values);
+            if converge(solution, count, most, chain.checks(stop), order, sum)? {
+                return Ok(());
             }
-            sides.push(side);
+            let not_converged = PlanningError::NotConverged { sweeps: most };
+            if count > MAX_ELIMINATED {
+                return Err(not_converged);
+            }
+            self.eliminated = Some(self.eliminate(stop)?.ok_or(not_converged)?);
         }
-        eliminate(&mut matrix, &mut sides, stop)?;
-        for (&state, &value) in unknown.iter().zip(&sides) {
+        let Some((eliminated, places)) = &self.eliminated else { return Ok(()) };
+        let mut sides = with_capacity(self.unknown.len())?;
+        sides.extend(self.unknown.iter().map(|&state| {
+            let known = self.chain.next(state).filter(|&(next, _)| places[next] == usize::MAX);
+            known.fold(constants[state], |side, (next, weight)| side + weight * solution[next])
+        }));
+        eliminated.solve(&mut sides);
+        for (&state, &value) in self.unknown.iter().zip(&sides) {
             if !value.is_finite() {
                 return Err(PlanningError::Overflow(state));
             }
@@ -253,27 +235,37 @@ impl MarkovChain {
         Ok(())
     }
 
-    /// A bound of the error of each value, from what is left of its equation, and from how it may have been rounded: the
-    /// expected sum of these over the states that follow.
-    pub(super) fn errors(
-        &self,
-        unknown: &[usize],
-        values: &[f64],
-        stop: &StopFlag<'_>,
-    ) -> Result<Vec<f64>, PlanningError> {
-        let mut residuals = filled(&0.0, self.num_states(), stop)?;
-        for &state in unknown {
-            let (value, size) = self.sum(state, self.rewards[state], values);
-            let terms = 2.0 + f64::from(self.outcomes[state]);
-            let size = (size + self.reward_sizes[state] + values[state].abs()).clamp(f64::MIN_POSITIVE, f64::MAX);
-            residuals[state] = (value - values[state]).abs() + f64::EPSILON * terms * size;
+    fn eliminate(&self, stop: &StopFlag<'_>) -> Result<Option<(Eliminated, Vec<usize>)>, PlanningError> {
+        let count = self.unknown.len();
+        let mut places = filled(&usize::MAX, self.chain.num_states(), stop)?;
+        for (place, &state) in self.unknown.iter().enumerate() {
+            places[state] = place;
         }
-        let mut errors = filled(&0.0, self.num_states(), stop)?;
-        self.solve(unknown, &residuals, &mut errors, stop)?;
-        Ok(errors)
+        let mut matrix = filled(&0.0, count * count, stop)?;
+        for (row, &state) in matrix.chunks_mut(count).zip(&self.unknown) {
+            row[places[state]] = 1.0;
+            for (next, weight) in self.chain.next(state) {
+                if let Some(entry) = row.get_mut(places[next]) {
+                    *entry -= weight;
+                }
+            }
+        }
+        Ok(Eliminated::new(matrix, count, stop)?.map(|eliminated| (eliminated, places)))
     }
 
-    fn checks<'a>(&self, stop: &'a StopFlag<'a>) -> StopChecks<'a> {
-        StopChecks::with_outcomes(self.transitions.len(), self.num_states(), stop)
+    /// A bound of the error of each value, from what is left of its equation, and from how it may have been rounded: the
+    /// expected sum of these over the states that follow.
+    pub(super) fn errors(&mut self, values: &[f64], stop: &StopFlag<'_>) -> Result<Vec<f64>, PlanningError> {
+        let chain = self.chain;
+        let mut residuals = filled(&0.0, chain.num_states(), stop)?;
+        for &state in &self.unknown {
+            let (value, size) = chain.sum(state, chain.rewards[state], values);
+            let terms = 2.0 + f64::from(chain.outcomes[state]);
+            let size = (size + chain.reward_sizes[state] + values[state].abs()).clamp(f64::MIN_POSITIVE, f64::MAX);
+            residuals[state] = (value - values[state]).abs() + f64::EPSILON * terms * size;
+        }
+        let mut errors = filled(&0.0, chain.num_states(), stop)?;
+        self.solve(&residuals, &mut errors, stop)?;
+        Ok(errors)
     }
 }

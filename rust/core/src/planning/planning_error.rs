@@ -18,8 +18,11 @@ pub enum PlanningError {
         /// The number of bytes.
         bytes: usize,
     },
-    /// The values still change after [`MAX_SWEEPS`] sweeps.
-    NotConverged,
+    /// The values still change after so many sweeps: [`MAX_SWEEPS`], or fewer where their equations are singular to rounding.
+    NotConverged {
+        /// The number of sweeps.
+        sweeps: u64,
+    },
     /// No policy is proper: from this state no episode ends, and undiscounted rewards add up without bound.
     NoProperPolicy(usize),
     /// From this state a policy collects an unbounded return.
@@ -33,7 +36,7 @@ impl fmt::Display for PlanningError {
         match self {
             Self::Stopped => write!(formatter, "planning was stopped"),
             Self::OutOfMemory { bytes } => write!(formatter, "{bytes} bytes more could not be allocated"),
-            Self::NotConverged => write!(formatter, "the values still change after {MAX_SWEEPS} sweeps"),
+            Self::NotConverged { sweeps } => write!(formatter, "the values still change after {sweeps} sweeps"),
             Self::NoProperPolicy(state) => write!(formatter, "from state {state} no episode ends"),
             Self::UnboundedReturn(state) => write!(formatter, "from state {state} the return is unbounded"),
             Self::Overflow(state) => write!(formatter, "the return from state {state} exceeds the range of float64"),

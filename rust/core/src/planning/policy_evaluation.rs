@@ -4,25 +4,21 @@
 use crate::StopFlag;
 
 use super::PlanningError;
-use super::bellman::{action_values, choices};
-use super::evaluation::{Evaluation, evaluate};
-use super::markov_chain::MarkovChain;
+use super::bellman::choices;
+use super::markov_chain::{Equations, MarkovChain};
 use crate::envs::Env;
 use crate::envs::tabular::TabularMdp;
-use crate::memory::filled;
+use crate::memory::{collect, filled};
 
-/// The values of a policy.
+/// The values of a policy, and how far rounding may have moved them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PolicyEvaluation {
     /// The value of each state: the expected discounted return.
     pub values: Vec<f64>,
-    /// The value of each state-action pair, the actions of state 0 first.
-    pub q_values: Vec<f64>,
-    /// A bound of the error of every state value: the largest expected (discounted) sum, over the steps to the end, of
-    /// what is left of the Bellman equation and of the rounding errors.
-    pub error: f64,
-    /// The number of sweeps over all states.
-    pub sweeps: u64,
+    /// A bound of the error of each value: the expected (discounted) sum, over the steps to the end, of what is left of the
+    /// Bellman equation and of the rounding errors. It depends only on the states that can follow, so that values which are
+    /// large elsewhere do not matter.
+    pub errors: Vec<f64>,
 }
 
 /// The solution of v(s) = Σ π(a|s) Σ p (r + γ v(s′)) (equation 4.4), by sweeps in place, or directly where these take long.
@@ -43,11 +39,51 @@ pub fn policy_evaluation(
 ) -> Result<PolicyEvaluation, PlanningError> {
     assert_eq!(policy.len(), mdp.num_states() * mdp.num_actions(), "policy must have a probability for each pair");
     let chain = MarkovChain::new(mdp, discount, stop, |state| choices(mdp, policy, state))?;
-    let Evaluation { values, errors, sweeps } =
-        evaluate(&chain, discount, filled(&0.0, mdp.num_states(), stop)?, stop)?;
-    let q_values = action_values(mdp, discount, &values, stop)?;
-    let error = errors.iter().fold(0.0, |largest: f64, &error| largest.max(error));
-    Ok(PolicyEvaluation { values, q_values, error, sweeps })
+    evaluate(&chain, discount, filled(&0.0, mdp.num_states(), stop)?, stop)
+}
+
+/// Evaluates the policy of a chain in all states, beginning with a guess of their values.
+///
+/// # Errors
+/// As [`policy_evaluation`].
+pub(super) fn evaluate(
+    chain: &MarkovChain,
+    discount: f64,
+    mut values: Vec<f64>,
+    stop: &StopFlag<'_>,
+) -> Result<PolicyEvaluation, PlanningError> {
+    let mut equations = solve(chain, discount, collect(0..chain.num_states())?, &mut values, stop)?;
+    let errors = equations.errors(&values, stop)?;
+    Ok(PolicyEvaluation { values, errors })
+}
+
+/// Replaces a first guess of the values of some states, which are not left, by the values. Returns their equations.
+///
+/// Without discounting, states that never leave each other and collect no reward have the value 0, and no equation.
+///
+/// # Errors
+/// As [`policy_evaluation`].
+pub(super) fn solve<'a>(
+    chain: &'a MarkovChain,
+    discount: f64,
+    mut states: Vec<usize>,
+    values: &mut [f64],
+    stop: &StopFlag<'_>,
+) -> Result<Equations<'a>, PlanningError> {
+    if discount == 1.0 {
+        let staying = chain.staying(stop)?;
+        let settles = chain.reaching(&staying, stop)?;
+        if let Some(&state) = states.iter().find(|&&state| !settles[state]) {
+            return Err(PlanningError::NoProperPolicy(state));
+        }
+        for (value, _) in values.iter_mut().zip(&staying).filter(|&(_, &staying)| staying) {
+            *value = 0.0;
+        }
+        states.retain(|&state| !staying[state]);
+    }
+    let mut equations = Equations::new(chain, states);
+    equations.solve(&chain.rewards, values, stop)?;
+    Ok(equations)
 }
 
 /// The expected number of visits of each state in an episode, η(s) = h(s) + Σ η(s̄) Σ π(a|s̄) p(s|s̄, a) (equation 9.2).
@@ -66,7 +102,7 @@ pub fn expected_visits(mdp: &TabularMdp, policy: &[f64], stop: &StopFlag<'_>) ->
         return Err(PlanningError::NoProperPolicy(state));
     }
     let mut visits = filled(&0.0, mdp.num_states(), stop)?;
-    chain.transposed(stop)?.solve(&reached, mdp.initial_distribution(), &mut visits, stop)?;
+    Equations::new(&chain.transposed(stop)?, reached).solve(mdp.initial_distribution(), &mut visits, stop)?;
     Ok(visits)
 }
 
@@ -92,9 +128,9 @@ mod tests {
     #[test]
     fn the_random_walk_has_the_books_values() {
         let found = policy_evaluation(&walk(5), &[0.5; 10], 1.0, &StopFlag::new()).expect("proper");
-        assert!(found.error < 1e-13, "{}", found.error);
+        assert!(found.errors.iter().all(|&error| error < 1e-13), "{:?}", found.errors);
         for (state, value) in found.values.iter().enumerate() {
-            assert!((value - (state + 1) as f64 / 6.0).abs() <= found.error, "{:?}", found.values);
+            assert!((value - (state + 1) as f64 / 6.0).abs() <= found.errors[state], "{:?}", found.values);
         }
     }
 
@@ -114,7 +150,7 @@ mod tests {
         assert_eq!(policy_evaluation(&table, &[1.0], 1.0, &stop), Err(PlanningError::NoProperPolicy(0)));
         assert_eq!(expected_visits(&table, &[1.0], &stop), Err(PlanningError::NoProperPolicy(0)));
         let found = policy_evaluation(&table, &[1.0], 0.75, &stop).expect("discounted");
-        assert!((found.values[0] - 4.0).abs() <= found.error);
+        assert!((found.values[0] - 4.0).abs() <= found.errors[0]);
         let staying = TabularMdp::new(1, &[1.0], &[stay(0.0)]).expect("a valid table");
         assert_eq!(policy_evaluation(&staying, &[1.0], 1.0, &stop).expect("no rewards").values, [0.0]);
     }
@@ -128,10 +164,18 @@ mod tests {
         for steps in [1e4, 1e6] {
             let table = rare(1.0 / steps).expect("a valid table");
             let found = policy_evaluation(&table, &[1.0], 1.0, &StopFlag::new()).expect("proper");
-            assert!((found.values[0] + steps).abs() <= found.error && found.error < 1e-8 * steps, "{found:?}");
+            assert!((found.values[0] + steps).abs() <= found.errors[0] && found.errors[0] < 1e-8 * steps, "{found:?}");
             let visits = expected_visits(&table, &[1.0], &StopFlag::new()).expect("proper");
             assert!((visits[0] - steps).abs() < 1e-8 * steps, "{visits:?}");
         }
+    }
+
+    #[test]
+    fn an_end_that_rounding_hides_is_reported_after_the_sweeps_that_were_made() {
+        let outcome = |probability, terminated| Outcome { probability, state: 0, reward: -1.0, terminated };
+        let table = TabularMdp::new(1, &[1.0], &[vec![outcome(1.0, false), outcome(1e-17, true)]]);
+        let found = policy_evaluation(&table.expect("a valid table"), &[1.0], 1.0, &StopFlag::new());
+        assert_eq!(found, Err(PlanningError::NotConverged { sweeps: 1000 }));
     }
 
     #[test]

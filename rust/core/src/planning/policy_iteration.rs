@@ -7,13 +7,24 @@ use crate::StopFlag;
 use super::bellman::{action_error, action_values};
 use super::best_policy::best_policy;
 use super::endings::Endings;
-use super::evaluation::{Evaluation, evaluate};
 use super::markov_chain::MarkovChain;
-use super::{MAX_SWEEPS, PlanningError, Solution};
+use super::policy_evaluation::evaluate;
+use super::{MAX_SWEEPS, PlanningError, PolicyEvaluation};
 use crate::envs::Env;
 use crate::envs::tabular::TabularMdp;
 use crate::memory::{collect, filled};
 use crate::numeric::argmax;
+
+/// A stationary policy and its values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solution {
+    /// The value of each state: the expected discounted return.
+    pub values: Vec<f64>,
+    /// The value of each state-action pair, the actions of state 0 first.
+    pub q_values: Vec<f64>,
+    /// The best action of each state.
+    pub policy: Vec<usize>,
+}
 
 /// An optimal policy and its values.
 ///
@@ -29,37 +40,35 @@ pub fn policy_iteration(mdp: &TabularMdp, discount: f64, stop: &StopFlag<'_>) ->
     let endings = Endings::for_discount(mdp, discount, false, stop)?;
     let first = collect(endings.policy.iter().copied())?;
     let improved = improve(mdp, discount, first, filled(&0.0, mdp.num_states(), stop)?, &endings, stop)?;
-    let (policy, evaluation, sweeps) = improved.settled(mdp, discount, &endings, stop)?;
+    let (policy, evaluation) = improved.settled(mdp, discount, &endings, stop)?;
     let q_values = action_values(mdp, discount, &evaluation.values, stop)?;
-    Ok(Solution { values: evaluation.values, q_values, policy, sweeps })
+    Ok(Solution { values: evaluation.values, q_values, policy })
 }
 
 /// A policy that no change of an action improves.
 pub(super) struct Improved {
     policy: Vec<usize>,
-    evaluation: Evaluation,
+    evaluation: PolicyEvaluation,
     q_values: Vec<f64>,
-    sweeps: u64,
 }
 
 impl Improved {
-    /// Replaces the policy by the one of several equally good ones that does not depend on how it was found, evaluates
-    /// that, and adds up the sweeps.
+    /// Replaces the policy by the one of several equally good ones that does not depend on how it was found, and
+    /// evaluates that.
     pub(super) fn settled(
         self,
         mdp: &TabularMdp,
         discount: f64,
         endings: &Endings,
         stop: &StopFlag<'_>,
-    ) -> Result<(Vec<usize>, Evaluation, u64), PlanningError> {
-        let Evaluation { values, errors, .. } = &self.evaluation;
+    ) -> Result<(Vec<usize>, PolicyEvaluation), PlanningError> {
+        let PolicyEvaluation { values, errors } = &self.evaluation;
         let best = best_policy(mdp, discount, values, errors, &self.q_values, endings, stop)?;
         if best == self.policy {
-            return Ok((best, self.evaluation, self.sweeps));
+            return Ok((best, self.evaluation));
         }
         let evaluation = evaluate_actions(mdp, &best, discount, self.evaluation.values, stop)?;
-        let sweeps = self.sweeps + evaluation.sweeps;
-        Ok((best, evaluation, sweeps))
+        Ok((best, evaluation))
     }
 }
 
@@ -77,20 +86,18 @@ pub(super) fn improve(
     endings: &Endings,
     stop: &StopFlag<'_>,
 ) -> Result<Improved, PlanningError> {
-    let mut sweeps = 0;
     for improvements in 0..MAX_SWEEPS {
         let evaluation = evaluate_actions(mdp, &policy, discount, guess, stop).map_err(|error| match error {
             PlanningError::NoProperPolicy(state) if improvements > 0 => PlanningError::UnboundedReturn(state),
             _ => error,
         })?;
-        sweeps += evaluation.sweeps;
         let q_values = action_values(mdp, discount, &evaluation.values, stop)?;
         let Some(better) = improvement(mdp, discount, &policy, &evaluation, &q_values, endings)? else {
-            return Ok(Improved { policy, evaluation, q_values, sweeps });
+            return Ok(Improved { policy, evaluation, q_values });
         };
         (policy, guess) = (better, evaluation.values);
     }
-    Err(PlanningError::NotConverged)
+    Err(PlanningError::NotConverged { sweeps: MAX_SWEEPS })
 }
 
 /// One step of policy iteration: the values of a policy, and a better policy; `None` if no action is better by more than
@@ -121,7 +128,7 @@ fn evaluate_actions(
     discount: f64,
     guess: Vec<f64>,
     stop: &StopFlag<'_>,
-) -> Result<Evaluation, PlanningError> {
+) -> Result<PolicyEvaluation, PlanningError> {
     let chain = MarkovChain::new(mdp, discount, stop, |state| once((policy[state], 1.0)))?;
     evaluate(&chain, discount, guess, stop)
 }
@@ -131,7 +138,7 @@ fn improvement(
     mdp: &TabularMdp,
     discount: f64,
     policy: &[usize],
-    Evaluation { values, errors, .. }: &Evaluation,
+    PolicyEvaluation { values, errors }: &PolicyEvaluation,
     q_values: &[f64],
     endings: &Endings,
 ) -> Result<Option<Vec<usize>>, PlanningError> {

@@ -2,10 +2,12 @@
 
 use crate::StopFlag;
 
-use super::bellman::{action_values, best_size, best_value, converge};
+use super::bellman::{action_values, best_size, best_value};
 use super::best_policy::best_policy;
 use super::endings::Endings;
 use super::policy_iteration::improve;
+use super::stop_checks::StopChecks;
+use super::sweeps::converge;
 use super::{MAX_SWEEPS, PlanningError, Solution};
 use crate::envs::tabular::TabularMdp;
 use crate::memory::{collect, filled};
@@ -28,12 +30,12 @@ const AGREEMENT: f64 = 4.0;
 pub fn value_iteration(mdp: &TabularMdp, discount: f64, stop: &StopFlag<'_>) -> Result<Solution, PlanningError> {
     let endings = Endings::for_discount(mdp, discount, true, stop)?;
     let mut values = filled(&0.0, mdp.num_states(), stop)?;
-    let backup = |state: usize, values: &[f64]| best_value(mdp, state, discount, values);
-    let size = |state: usize, values: &[f64]| best_size(mdp, state, discount, values);
-    let converged = match converge(&mut values, mdp, stop, backup, size) {
-        Err(PlanningError::NotConverged) => MAX_SWEEPS,
-        sweeps => sweeps?,
+    let backup = |state: usize, values: &[f64]| {
+        let value = best_value(mdp, state, discount, values);
+        (value, if value == values[state] { 0.0 } else { best_size(mdp, state, discount, values) })
     };
+    // Values that do not settle are replaced, too.
+    converge(&mut values, mdp.num_states(), MAX_SWEEPS, StopChecks::new(mdp, stop), |_, state| state, backup)?;
     let q_values = action_values(mdp, discount, &values, stop)?;
     let rough = collect(values.iter().map(|value| ROUGH * value.abs()))?;
     let greedy = best_policy(mdp, discount, &values, &rough, &q_values, &endings, stop)?;
@@ -45,12 +47,11 @@ pub fn value_iteration(mdp: &TabularMdp, discount: f64, stop: &StopFlag<'_>) -> 
         }
         improved => improved?,
     };
-    let (policy, found, sweeps) = improved.settled(mdp, discount, &endings, stop)?;
-    let sweeps = converged + sweeps;
+    let (policy, found) = improved.settled(mdp, discount, &endings, stop)?;
     let pairs = values.iter().zip(found.values.iter().zip(&found.errors));
     if pairs.into_iter().all(|(value, (found, error))| (value - found).abs() <= AGREEMENT * error) {
-        return Ok(Solution { values, q_values, policy, sweeps });
+        return Ok(Solution { values, q_values, policy });
     }
     let q_values = action_values(mdp, discount, &found.values, stop)?;
-    Ok(Solution { values: found.values, q_values, policy, sweeps })
+    Ok(Solution { values: found.values, q_values, policy })
 }

@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 use qtab_core::envs::Parameters;
 use qtab_core::envs::classic_control::{Acrobot, CartPole, MountainCar, Pendulum};
 use qtab_core::memory::collect;
-use qtab_core::planning::grid::{GridTask, GridValues, PendulumTask, Rollout, beam_search, replay, rollouts};
+use qtab_core::planning::grid::{GridTask, GridValues, Rollout, beam_search, grid_torque, replay, rollouts};
 
 use super::to_py_err;
 use crate::convert::{array_from, array_of};
@@ -21,13 +21,10 @@ type Routes<'py> = Vec<Option<Array<'py, u8>>>;
 /// The constants of an environment: numbers, and whether a flag is set.
 type Constants = (Vec<(String, f64)>, Vec<(String, bool)>);
 
-/// The torques of a pendulum among which its policy chooses.
-const TORQUES: usize = 21;
-
 /// State values on a grid.
 enum AnyGrid {
     MountainCar(GridValues<MountainCar, 2>),
-    Pendulum(GridValues<PendulumTask, 2>),
+    Pendulum(GridValues<Pendulum, 2>),
     CartPole(GridValues<CartPole, 4>),
     Acrobot(GridValues<Acrobot, 4>),
 }
@@ -66,10 +63,7 @@ impl PyGridSearch {
         let given = (parameters, flags);
         let grid = match name {
             "MountainCar" => AnyGrid::MountainCar(values(py, with(MountainCar::default(), given)?, max_steps)?),
-            "Pendulum" => {
-                let task = PendulumTask { pendulum: with(Pendulum::default(), given)?, torques: TORQUES };
-                AnyGrid::Pendulum(values(py, task, max_steps)?)
-            }
+            "Pendulum" => AnyGrid::Pendulum(values(py, with(Pendulum::default(), given)?, max_steps)?),
             "CartPole" => AnyGrid::CartPole(values(py, with(CartPole::default(), given)?, max_steps)?),
             "Acrobot" => AnyGrid::Acrobot(values(py, with(Acrobot::default(), given)?, max_steps)?),
             _ => return Err(invalid("name", "MountainCar, Pendulum, CartPole or Acrobot", format!("'{name}'"))),
@@ -90,7 +84,10 @@ impl PyGridSearch {
     /// The torque of each action of a pendulum; empty for the other environments.
     fn torques<'py>(&self, py: Python<'py>) -> Array<'py, f32> {
         let torques = match &self.grid {
-            AnyGrid::Pendulum(values) => (0..TORQUES).map(|action| values.task().torque(action)).collect(),
+            AnyGrid::Pendulum(values) => {
+                let actions = 0..<Pendulum as GridTask<2>>::ACTIONS;
+                actions.map(|action| grid_torque(values.task(), action)).collect()
+            }
             _ => Vec::new(),
         };
         PyArray1::from_vec(py, torques)

@@ -1,13 +1,14 @@
 //! `MdpSolver`: the optimal policy of an environment with a transition table.
 
-use numpy::{PyArray1, PyReadonlyArray1};
+use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArrayDyn};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use qtab_core::envs::tabular::TabularMdp;
 use qtab_core::memory::collect;
 use qtab_core::planning::{
-    FiniteHorizon, Mdp, PlanningError, PolicyEvaluation, Solution, expected_visits, finite_horizon, policy_evaluation,
-    policy_improvement, policy_iteration, policy_return, sweep, value_iteration,
+    FiniteHorizon, Mdp, PlanningError, PolicyEvaluation, Solution, StationaryPolicy, action_values, expected_visits,
+    finite_horizon, policy_evaluation, policy_improvement, policy_iteration, policy_return, stationary_policy, sweep,
+    value_iteration,
 };
 use qtab_core::{Env, StopFlag};
 
@@ -95,11 +96,32 @@ impl PyMdpSolver {
         Ok((to_python(py, values, q_values, &policy)?, changes, expected_return))
     }
 
-    /// The expected return of a policy within `steps` steps. The policy has an action for each state, or for each row.
-    fn policy_return(&self, py: Python<'_>, policy: PyReadonlyArray1<'_, i64>, steps: u64) -> PyResult<f64> {
-        let policy = self.actions(policy.as_slice()?)?;
+    /// The expected return of a policy within `steps` steps. The policy has an action for each state, or for each row; or as
+    /// many for each number of steps taken, `(steps, rows)`.
+    fn policy_return(&self, py: Python<'_>, policy: PyReadonlyArrayDyn<'_, i64>, steps: u64) -> PyResult<f64> {
+        let actions = policy.as_slice()?;
+        let width = policy.as_array().shape().last().copied().unwrap_or(0).max(1);
+        if policy.as_array().ndim() > 1 && (actions.len() / width) as u64 != steps {
+            return Err(PyValueError::new_err(format!("policy must have actions for each of the {steps} steps")));
+        }
+        let by_step = actions.chunks(width).map(|actions| self.actions(actions)).collect::<PyResult<Vec<_>>>()?;
+        let policy = by_step.concat();
         let expected = run_interruptible(py, |stop| policy_return(&self.0.table, &policy, steps, stop))?;
         expected.map_err(|error| to_py_err(error, 1.0))
+    }
+
+    /// The best known policy within `steps` steps that does not depend on the number of steps taken: the action of each of
+    /// `rows` rows, its expected return, and whether it is proven; `None` for tables too large to search within seconds.
+    fn stationary_policy<'py>(
+        &self,
+        py: Python<'py>,
+        rows: usize,
+        steps: u64,
+    ) -> PyResult<Option<(Array<'py, i64>, f64, bool)>> {
+        let found = run_interruptible(py, |stop| stationary_policy(&self.0, rows, steps, stop))?;
+        let Some(found) = found.map_err(|error| to_py_err(error, 1.0))? else { return Ok(None) };
+        let StationaryPolicy { policy, expected_return, proven } = found;
+        Ok(Some((indices(py, policy.iter())?, expected_return, proven)))
     }
 
     /// One step of policy iteration: the values of a policy, which has an action for each row, and the better action of
@@ -125,8 +147,13 @@ impl PyMdpSolver {
         discount: f64,
     ) -> PyResult<PyPolicyValues<'py>> {
         let policy = self.by_state(policy.as_slice()?)?;
-        let found = run_interruptible(py, |stop| policy_evaluation(&self.0.table, &policy, discount, stop))?;
-        let PolicyEvaluation { values, q_values, error, .. } = found.map_err(|error| of_policy(error, discount))?;
+        let found = run_interruptible(py, |stop| {
+            let found = policy_evaluation(&self.0.table, &policy, discount, stop)?;
+            let q_values = action_values(&self.0.table, discount, &found.values, stop)?;
+            Ok((found, q_values))
+        })?;
+        let (PolicyEvaluation { values, errors }, q_values) = found.map_err(|error| of_policy(error, discount))?;
+        let error = errors.into_iter().fold(0.0, f64::max);
         Ok((PyArray1::from_vec(py, values), PyArray1::from_vec(py, q_values), error))
     }
 

@@ -38,7 +38,7 @@ pub fn beam_search<T: GridTask<D>, const D: usize>(
         }
         next_layer.clear();
         for (index, node) in layer.iter().enumerate() {
-            for action in 0..task.num_actions() {
+            for action in 0..T::ACTIONS {
                 let next = task.transition(node.state, action);
                 let parent = (index as u32, action as u8);
                 if next.terminated {

@@ -79,15 +79,14 @@ impl<T: GridTask<D>, const D: usize> GridValues<T, D> {
 
     /// What follows each action at each grid point, in C order, actions last.
     fn successors(&self, stop: &StopFlag<'_>) -> Result<Vec<Successor<D>>, PlanningError> {
-        let num_actions = self.task.num_actions();
         let mut successors = Vec::new();
-        reserve(&mut successors, self.values.len() * num_actions)?;
+        reserve(&mut successors, self.values.len() * T::ACTIONS)?;
         for point in 0..self.values.len() {
             if point % POINTS_BETWEEN_CHECKS == 0 && stop.is_set() {
                 return Err(PlanningError::Stopped);
             }
             let state = self.state(point);
-            successors.extend((0..num_actions).map(|action| {
+            successors.extend((0..T::ACTIONS).map(|action| {
                 let taken = self.task.transition(state, action);
                 let (point, fractions) =
                     if taken.terminated { (TERMINAL, [0.0; D]) } else { self.position(taken.state) };
@@ -99,13 +98,12 @@ impl<T: GridTask<D>, const D: usize> GridValues<T, D> {
 
     /// Value iteration in place: v(s) ← maxₐ r + γ v(s′).
     fn converge(&mut self, successors: &[Successor<D>], stop: &StopFlag<'_>) -> Result<(), PlanningError> {
-        let num_actions = self.task.num_actions();
         let last = self.values.len() - 1;
         for _ in 0..MAX_SWEEPS {
             let mut change = 0.0_f64;
             // Forwards and backwards, so that changes spread in both directions.
             for point in (0..=last).chain((0..=last).rev()) {
-                let possible = successors[point * num_actions..][..num_actions].iter();
+                let possible = successors[point * T::ACTIONS..][..T::ACTIONS].iter();
                 // A sweep reads rewards in float32, as the fractions are. That is what the best known values were found with.
                 let outcomes =
                     possible.map(|&outcome| Successor { reward: f64::from(outcome.reward as f32), ..outcome });
@@ -120,7 +118,7 @@ impl<T: GridTask<D>, const D: usize> GridValues<T, D> {
                 return Err(PlanningError::Stopped);
             }
         }
-        Err(PlanningError::NotConverged)
+        Err(PlanningError::NotConverged { sweeps: MAX_SWEEPS })
     }
 
     /// The environment.
@@ -148,7 +146,7 @@ impl<T: GridTask<D>, const D: usize> GridValues<T, D> {
     /// The action of the highest value, the first one of several.
     pub fn best_action(&self, state: [f64; D]) -> usize {
         let mut best = (0, f64::NEG_INFINITY);
-        for action in 0..self.task.num_actions() {
+        for action in 0..T::ACTIONS {
             let value = self.action_value(state, action);
             if value > best.1 {
                 best = (action, value);
@@ -252,21 +250,14 @@ mod tests {
         const POINTS: [usize; 1] = [2];
         const COARSEST_STRIDE: usize = 1;
         const CONVERGED: f64 = 1e-2;
+        const ACTIONS: usize = 1;
 
         fn bounds(&self) -> [(f64, f64); 1] {
             [(0.0, 1.0)]
         }
 
-        fn num_actions(&self) -> usize {
-            1
-        }
-
         fn transition(&self, state: [f64; 1], _action: usize) -> Step<[f64; 1]> {
             Step { state, reward: 1.0, terminated: false }
-        }
-
-        fn observed(&self, state: [f64; 1]) -> [f64; 1] {
-            state
         }
 
         fn lowest_value(&self, _max_steps: u64) -> f64 {
@@ -277,6 +268,6 @@ mod tests {
     #[test]
     fn values_that_never_settle_are_an_error() {
         let values = GridValues::new(NeverEnding, 10, 1, &StopFlag::new());
-        assert_eq!(values, Err(PlanningError::NotConverged));
+        assert_eq!(values, Err(PlanningError::NotConverged { sweeps: MAX_SWEEPS }));
     }
 }

@@ -213,3 +213,30 @@ fn the_stop_flag_stops_every_method() {
     assert_eq!(finite_horizon(&slow, 1.0, 100, &stop), Err(PlanningError::Stopped));
     assert_eq!(policy_return(&slow, &[0], 100, &stop), Err(PlanningError::Stopped));
 }
+
+#[test]
+fn a_policy_may_depend_on_the_steps_taken() {
+    // Left first, then right as long as it takes.
+    let policy = [vec![0; 3], vec![1; 9]].concat();
+    assert_eq!(policy_return(&corridor(), &policy, 4, &NO_STOP), Ok(-4.0));
+    let repeated = vec![1; 12];
+    assert_eq!(policy_return(&corridor(), &repeated, 4, &NO_STOP), policy_return(&corridor(), &[1; 3], 4, &NO_STOP));
+}
+
+#[test]
+fn a_stationary_policy_is_proven_where_its_rewards_cancel() {
+    // Two ways whose first three rewards sum to 0, up to rounding: 0.1 + 0.2 - 0.3, and then 1; or 0.3 + 0.1 - 0.4.
+    let both = |state, reward, terminated| vec![deterministic(state, reward, terminated); 2];
+    let rows = [
+        vec![deterministic(1, 0.1, false), deterministic(4, 0.3, false)],
+        both(2, 0.2, false),
+        both(3, -0.3, false),
+        both(3, 1.0, true),
+        both(5, 0.1, false),
+        both(5, -0.4, true),
+    ];
+    let mdp = Mdp::from(table(2, &rows.concat()));
+    let optimal = finite_horizon(&mdp.table, 1.0, 3, &NO_STOP).expect("a solution").expected_return;
+    let found = stationary_policy(&mdp, 6, 3, &NO_STOP).expect("a solution").expect("a small table");
+    assert!(found.proven && found.expected_return != optimal, "{} {optimal}", found.expected_return);
+}

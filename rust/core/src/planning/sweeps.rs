@@ -1,4 +1,5 @@
-//! One sweep of dynamic programming over all states, for those who look at its steps (Sutton & Barto, chapter 4).
+//! Sweeps of dynamic programming over all states (Sutton & Barto, chapter 4): one, for those who look at its steps, or as many
+//! as the values need to settle.
 
 use crate::StopFlag;
 
@@ -7,6 +8,10 @@ use super::bellman::{best_value, expected_value};
 use super::stop_checks::StopChecks;
 use crate::envs::tabular::TabularMdp;
 use crate::memory::collect;
+
+/// A sweep has found the solution when it changes no value by more than this fraction of the terms that the value is
+/// the sum of: its last bits.
+const LAST_BITS: f64 = 4.0 * f64::EPSILON;
 
 /// Replaces the value of each state by its update target: with `policy`, which holds π(a|s), the actions of state 0 first,
 /// the expected one (equation 4.5), otherwise the largest one (equation 4.10).
@@ -41,6 +46,45 @@ pub fn sweep(
         checks.state()?;
     }
     Ok(())
+}
+
+/// Sweeps over `count` states, of which `order(sweep, index)` gives the next one, and replaces each value in place, until the
+/// changes are in the last bits of the terms and no longer shrink. `backup(state, values)` gives the new value and the
+/// magnitude of its terms, which is only read where the value changes. Returns whether the values settled within `most`
+/// sweeps.
+///
+/// # Errors
+/// `Overflow`; `Stopped` after `stop` was set.
+pub(super) fn converge(
+    values: &mut [f64],
+    count: usize,
+    most: u64,
+    mut checks: StopChecks<'_>,
+    order: impl Fn(u64, usize) -> usize,
+    backup: impl Fn(usize, &[f64]) -> (f64, f64),
+) -> Result<bool, PlanningError> {
+    let mut previous = f64::INFINITY;
+    for sweep in 1..=most {
+        let mut largest = 0.0_f64;
+        for index in 0..count {
+            let state = order(sweep, index);
+            let (value, size) = backup(state, values);
+            if !value.is_finite() {
+                return Err(PlanningError::Overflow(state));
+            }
+            if value != values[state] {
+                largest = largest.max((value - values[state]).abs() / size.clamp(f64::MIN_POSITIVE, f64::MAX));
+                values[state] = value;
+            }
+            checks.state()?;
+        }
+        if largest == 0.0 || (largest <= LAST_BITS && largest >= previous) {
+            return Ok(true);
+        }
+        previous = largest;
+        checks.now()?;
+    }
+    Ok(false)
 }
 
 #[cfg(test)]
