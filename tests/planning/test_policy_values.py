@@ -77,7 +77,7 @@ def test_runs_and_optima_are_policies() -> None:
         (np.zeros(16), TypeError, "policy must hold integers if it has an action for each state"),
         ("randm", ValueError, "did you mean 'random'"),
         (None, TypeError, "policy must be an array of actions or of probabilities"),
-        (lambda state: [0.5, 0.5], ValueError, "policy must return an action or 4 probabilities"),
+        (lambda state: [0.5, 0.5], ValueError, "policy must return the number of an action or 4 probabilities"),
     ],
 )
 def test_what_is_no_policy_is_refused_by_name(policy: Any, error: type[Exception], message: str) -> None:

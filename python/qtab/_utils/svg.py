@@ -85,6 +85,13 @@ def field(title: str, values: NDArray[np.float64]) -> str:
     return _picture(title, f"{scaled}{''.join(paths)}</g>{labels}", HEIGHT + 58)
 
 
+def state_values(name: str, values: NDArray[np.float64]) -> str:
+    """Returns a picture of (*cells,) values of states: a field of those with two components, else a line."""
+    if values.ndim == 2:
+        return field(f"{name}, {' rows by '.join(map(str, values.shape))} columns", values)
+    return lines(f"{name} by the number of the state", {"value": values.ravel()})
+
+
 class _Scale:
     """Maps values to the height of the picture."""
 

@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab.discretizers import Edges, Rounding
-from qtab.planning.even_points import even_points
-from qtab.planning.grid_environments import GridEnvironment
+from qtab.planning.grid_environments import GridEnvironment, even_points
 from qtab.results.run import Run
 from qtab.training.run_env import make_run_env
 

@@ -6,10 +6,9 @@ from typing import Any
 
 import numpy as np
 from gymnasium.envs.classic_control import AcrobotEnv, CartPoleEnv, MountainCarEnv, PendulumEnv
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from qtab.envs import classic_control as rust
-from qtab.planning.even_points import even_points
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +37,19 @@ class GridEnvironment:
     """The value of each attribute of two values that Rust calls true."""
     fixed: Mapping[str, Any] = field(default_factory=dict)
     """Constants that the search takes for granted."""
+
+
+def even_points(low: ArrayLike, high: ArrayLike, count: int) -> NDArray[np.float64]:
+    """Returns (count, components) points that cover a box evenly, by an additive recurrence.
+
+    M. Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018.
+    """
+    lower, upper = np.array(low), np.array(high)
+    root = 2.0
+    for _ in range(64):
+        root = (1.0 + root) ** (1.0 / (len(lower) + 1))
+    steps = root ** -np.arange(1.0, len(lower) + 1)
+    return np.asarray(lower + (upper - lower) * ((0.5 + np.arange(1, count + 1)[:, None] * steps) % 1.0))
 
 
 def _midpoints(low: float, high: float, count: int) -> NDArray[np.float64]:

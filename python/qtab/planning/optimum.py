@@ -220,23 +220,28 @@ class Optimum:
             if found:
                 raise ValueError(f"run must be on the environment of this optimum, got another one: {'; '.join(found)}")
 
-    def __str__(self) -> str:
-        certainty = "exact" if self.exact else "the best known policy, not proven optimal"
-        lines = {
+    def _facts(self, times: str) -> dict[str, str]:
+        """What is printed and what notebooks show, before the time."""
+        facts = {
             "expected return": f"{self.expected_return:.6g} within {self.max_episode_steps:,} steps",
+            "certainty": "exact" if self.exact else "the best known policy, not proven optimal",
             "threshold": "none" if self.reward_threshold is None else f"{self.reward_threshold:g}",
-            "method": f"{self.method}, discount {self.discount:g}: {certainty}",
-            "states": " x ".join(map(str, self.values.shape)) + f", {self.q_values.shape[-1]} actions",
+            "method": f"{self.method}, discount {self.discount:g}",
+            "states": times.join(map(str, self.values.shape)) + f", {self.q_values.shape[-1]} actions",
         }
         if self.search is not None:
             lengths = self.search.steps
-            lines["episodes"] = f"{lengths.min()} to {lengths.max()} steps from {len(lengths):,} starts"
-            lines["predict"] = f"mean return {self.search.predict_return:.6g} from the same starts"
+            facts["episodes"] = f"{lengths.min()} to {lengths.max()} steps from {len(lengths):,} starts"
+            facts["predict"] = f"mean return {self.search.predict_return:.6g} from the same starts"
         if self.stationary is not None:
-            lines["stationary"] = (
+            facts["stationary"] = (
                 f"{self.stationary.expected_return:.6g} by the {self.stationary.label} policy that ignores the time"
             )
-        lines["time"] = f"{self.seconds:.3g} s"
+        return {**facts, "time": f"{self.seconds:.3g} s"}
+
+    def __str__(self) -> str:
+        lines = self._facts(" x ")
+        lines["method"] += f": {lines.pop('certainty')}"
         return "\n".join([self.env, *(f"  {name:17}{text}" for name, text in lines.items())])
 
     def __repr__(self) -> str:
@@ -248,22 +253,8 @@ class Optimum:
 
     def _repr_html_(self) -> str:
         """A table and the state values, for notebooks."""
-        facts: dict[str, object] = {
-            "expected return": f"{self.expected_return:.6g} within {self.max_episode_steps:,} steps",
-            "certainty": "exact" if self.exact else "the best known, not proven optimal",
-            "method": f"{self.method}, discount {self.discount:g}",
-            "threshold": "none" if self.reward_threshold is None else f"{self.reward_threshold:g}",
-            "states": " × ".join(map(str, self.values.shape)) + f", {self.q_values.shape[-1]} actions",
-        }
-        if self.stationary is not None:
-            facts["stationary policy"] = f"{self.stationary.expected_return:.6g}, {self.stationary.label}"
-        facts["time"] = f"{self.seconds:.3g} s"
-        values = self.values.reshape(-1) if self.values.ndim != 2 else self.values
-        if values.ndim == 2:
-            picture = svg.field(f"State values, {values.shape[0]} rows by {values.shape[1]} columns", values)
-        else:
-            picture = svg.lines("The value of each state, by its number", {"value": values})
-        return html.summary(f"Optimum of {self.env}", facts, picture)
+        facts: dict[str, object] = {**self._facts(" × ")}
+        return html.summary(f"Optimum of {self.env}", facts, svg.state_values("State values", self.values))
 
 
 def _each(name: str, values: Any, count: int) -> list[Any]:

@@ -94,7 +94,13 @@ def of_array(name: str, policy: ArrayLike, cells: Discretizer, actions: Actions)
             f"{name} must have the shape {shape} of actions or {(*shape, count)} of probabilities, got {array.shape}"
         )
     table = array.astype(np.float64).reshape(cells.n_rows, count)
-    _check(name, table)
+    if not (table >= 0.0).all():
+        row = int(np.flatnonzero(~(table >= 0.0).all(axis=1))[0])
+        raise ValueError(f"{name} must hold probabilities of at least 0, got {shown(table[row].tolist())} in row {row}")
+    sums = table.sum(axis=1)
+    wrong = np.flatnonzero(~(np.abs(sums - 1.0) <= SUM_TOLERANCE))
+    if len(wrong):
+        raise ValueError(f"{name} must sum to 1 in every state, got {sums[wrong[0]]:.6g} in row {wrong[0]}")
     return table
 
 
@@ -144,26 +150,32 @@ def _of_function(
             observation = tuple(numbers.tolist())
         elif isinstance(space, gym.spaces.MultiDiscrete):
             observation = numbers.astype(space.dtype)
-        answer = np.asarray(policy(observation))
-        if answer.shape == ():
-            table[row] = _of_actions(name, answer.reshape(1), actions)[0]
-        elif answer.shape == (len(actions),) and answer.dtype.kind in "iuf":
-            table[row] = answer
-        else:
-            raise ValueError(
-                f"{name} must return an action or {len(actions)} probabilities, got {shown(answer.tolist())} for "
-                f"the observation {observation!r}"
-            )
-    _check(name, table)
+        table[row] = answered(name, policy(observation), observation, actions)
     return table
 
 
-def _check(name: str, table: NDArray[np.float64]) -> None:
-    """Refuses what is not a distribution over the actions in every row."""
-    if not (table >= 0.0).all():
-        row = int(np.flatnonzero(~(table >= 0.0).all(axis=1))[0])
-        raise ValueError(f"{name} must hold probabilities of at least 0, got {shown(table[row].tolist())} in row {row}")
-    sums = table.sum(axis=1)
-    wrong = np.flatnonzero(~(np.abs(sums - 1.0) <= SUM_TOLERANCE))
-    if len(wrong):
-        raise ValueError(f"{name} must sum to 1 in every state, got {sums[wrong[0]]:.6g} in row {wrong[0]}")
+def answered(name: str, answer: Any, observation: Any, actions: Actions) -> list[float]:
+    """Returns (actions,): the answer of a function to an observation, an action or probabilities, as probabilities.
+
+    Raises:
+        TypeError: if it does not hold numbers.
+        ValueError: for an action that does not exist, or if it is no distribution over the actions.
+    """
+    first, count = actions.first, len(actions)
+    where = f"for the observation {shown(np.asarray(observation).tolist())}"
+    try:
+        given = np.asarray(answer)
+    except ValueError:  # lists of different lengths
+        given = np.asarray(None)
+    if given.shape == () and given.dtype.kind in "iu":
+        if not first <= given < first + count:
+            raise ValueError(f"{name} must return actions from {first} to {first + count - 1}, got {given} {where}")
+        return [float(action == given) for action in range(first, first + count)]
+    if given.shape != (count,) or given.dtype.kind not in "iuf":
+        kind = ValueError if given.dtype.kind in "iuf" and given.shape else TypeError
+        raise kind(f"{name} must return the number of an action or {count} probabilities, got {shown(answer)} {where}")
+    if not (given >= 0).all() or not abs(float(given.sum()) - 1.0) <= SUM_TOLERANCE:
+        raise ValueError(
+            f"{name} must return probabilities of at least 0 that sum to 1, got {shown(given.tolist())} {where}"
+        )
+    return [float(number) for number in given]

@@ -85,10 +85,7 @@ class PolicyValues:
             "error": f"below {self.error:.1g}",
             "states": " × ".join(map(str, self.values.shape)),
         }
-        if self.values.ndim == 2:
-            picture = svg.field(f"State values, {' rows by '.join(map(str, self.values.shape))} columns", self.values)
-        else:
-            picture = svg.lines("The value of each state, by its number", {"value": self.values.reshape(-1)})
+        picture = svg.state_values("State values", self.values)
         return html.summary(f"Values of a policy in {self.env}", facts, picture)
 
 

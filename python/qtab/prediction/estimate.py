@@ -1,7 +1,8 @@
 """``qtab.estimate_values``: estimates the values of a given policy from episodes, with many seeds at once."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, cast
+from dataclasses import fields
+from typing import TYPE_CHECKING, Any
 
 import gymnasium as gym
 from gymnasium.envs.registration import EnvSpec
@@ -15,7 +16,7 @@ from qtab.planning.policies import GivenPolicy
 from qtab.prediction.estimates import ValueEstimates
 from qtab.prediction.runs import recorded_episodes, run_prediction
 from qtab.prediction.settings import Method, PredictionSettings
-from qtab.prediction.task import resolve_prediction
+from qtab.prediction.task import OF_OBSERVATIONS, resolve_prediction
 from qtab.training.resolve import log_default_limit, log_python_stepping
 from qtab.training.train_many import seed_sequence, thread_count
 
@@ -132,43 +133,14 @@ def estimate_values(
             with probabilities that do not sum to 1, or a ``behavior`` that does not cover it.
         KeyboardInterrupt: on Ctrl-C.
     """
-    settings = PredictionSettings(
-        method=method,
-        episodes=episodes,
-        learning_rate=learning_rate,
-        learning_rate_schedule=learning_rate_schedule,
-        min_learning_rate=min_learning_rate,
-        learning_rate_decay=learning_rate_decay,
-        learning_rate_warm_up=learning_rate_warm_up,
-        discount=discount,
-        n_steps=n_steps,
-        trace_decay=trace_decay,
-        first_visit=first_visit,
-        weighted=weighted,
-        initial_value=initial_value,
-        on_truncation=cast("Any", on_truncation),
-        bit_generator=cast("Any", bit_generator),
-    )
+    arguments = locals()
+    settings = PredictionSettings(**{field.name: arguments[field.name] for field in fields(PredictionSettings)})
+    of_task = (*OF_OBSERVATIONS, "max_episode_steps", "env_kwargs")
+    given = {name: arguments[name] for name in of_task if arguments[name] is not None}
     check_progress(progress)
     limit = memory_limit(None)
     numbers = seed_sequence(seeds, limit)
     points = recorded_episodes(record, settings.episodes)
-    of_task = {
-        "max_episode_steps": max_episode_steps,
-        "discretizer": discretizer,
-        "tilings": tilings,
-        "tiles": tiles,
-        "hashed_rows": hashed_rows,
-        "bins": bins,
-        "edges": edges,
-        "scale": scale,
-        "low": low,
-        "high": high,
-        "actions": actions,
-    }
-    given: dict[str, Any] = {name: value for name, value in of_task.items() if value is not None}
-    if env_kwargs is not None:
-        given["env_kwargs"] = env_kwargs
     resolved, space = resolve_prediction(env, policy, settings, numbers[0], given)
     log_default_limit(resolved)
     log_python_stepping(resolved)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qtab._utils import html, svg
+from qtab._utils.checks import required
 from qtab._utils.fields import with_fields
 from qtab._utils.shown import shown
 from qtab.config import Config
@@ -71,7 +72,7 @@ class ValueEstimates:
     @property
     def n_active(self) -> int:
         """The number of weights that add up to a value."""
-        return _required(self.discretizer).n_active if self.rows is None else self.rows.shape[1]
+        return required("discretizer", self.discretizer).n_active if self.rows is None else self.rows.shape[1]
 
     @property
     def values(self) -> NDArray[np.float64]:
@@ -252,11 +253,7 @@ class ValueEstimates:
         title = f"Estimated values in {self.env}"
         if self.rows is None:
             return html.summary(title, facts)
-        if len(self.shape) == 2:
-            picture = svg.field(f"Mean values, {' rows by '.join(map(str, self.shape))} columns", self.mean)
-        else:
-            picture = svg.lines("The mean value of each state, by its number", {"value": self.mean.ravel()})
-        return html.summary(title, facts, picture)
+        return html.summary(title, facts, svg.state_values("Mean values", self.mean))
 
     def _size(self, times: str) -> str:
         if self.rows is None:
@@ -277,9 +274,3 @@ def _of_shape(name: str, numbers: ArrayLike, shape: tuple[int, ...], where: str)
     if array.shape != shape:
         raise ValueError(f"{name} must have the shape {shape} of the {where}, got {array.shape}")
     return array
-
-
-def _required(discretizer: Discretizer | None) -> Discretizer:
-    if discretizer is None:
-        raise ValueError("the discretizer is unknown")
-    return discretizer

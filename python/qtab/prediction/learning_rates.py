@@ -1,6 +1,6 @@
 """The learning rate of a prediction: which schedules a method takes, and the checks of their options."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, get_args
 
 from qtab._utils import checks
@@ -57,24 +57,48 @@ def checked_learning_rate(method: str, episodes: int, given: Mapping[str, Any]) 
     if schedule is None and implied_schedule("learning_rate", given, "visits") == "linear":
         checked["learning_rate_schedule"] = schedule = "linear"
     kind = schedule or ("visits" if value is None else "constant")
-    for name, (schedules, default) in OPTIONS.items():
+    rate = 1.0 if value is None else value
+
+    def check(name: str, option: Any) -> float | int:
+        if name == "learning_rate_warm_up":
+            return checks.integer(name, option, least=0, most=episodes - 1)
+        return checks.real(name, option, 0.0, rate if name == "min_learning_rate" else 1.0)
+
+    return checked | applied("learning_rate_schedule", kind, OPTIONS, given, check, fill=schedule is not None)
+
+
+def applied(
+    choice: str,
+    chosen: str,
+    options: Mapping[str, tuple[tuple[str, ...], Any]],
+    given: Mapping[str, Any],
+    check: Callable[[str, Any], Any],
+    *,
+    fill: bool = True,
+) -> dict[str, Any]:
+    """Returns the options that apply to a choice, checked.
+
+    Args:
+        choice: The setting that decides which options apply.
+        chosen: Its value.
+        options: For each option the values to which it applies, and its default; None if it must be given.
+        given: The settings.
+        check: Checks the value of an option, by its name.
+        fill: Whether defaults take the place of options that are not given.
+
+    Raises:
+        ValueError: if an option is missing, or given although it does not apply.
+    """
+    checked = {}
+    for name, (values, default) in options.items():
         option = given[name]
-        if kind in schedules:
-            if option is not None or schedule is not None:
-                checked[name] = _option(name, default if option is None else option, value, episodes)
+        if chosen in values and (fill or option is not None):
+            if option is None and default is None:
+                raise ValueError(f"{name} must be given for {choice} {chosen!r}, got None")
+            checked[name] = check(name, default if option is None else option)
         elif option is not None:
-            raise ValueError(
-                f"{name} applies to learning_rate_schedule {listed(schedules)}, not to {kind!r}, got {shown(option)}"
-            )
+            raise ValueError(f"{name} applies to {choice} {listed(values)}, not to {chosen!r}, got {shown(option)}")
     return checked
-
-
-def _option(name: str, option: Any, learning_rate: float | None, episodes: int) -> float | int:
-    if name == "learning_rate_warm_up":
-        return checks.integer(name, option, least=0, most=episodes - 1)
-    if name == "learning_rate_decay":
-        return checks.real(name, option, 0.0, 1.0)
-    return checks.real(name, option, 0.0, 1.0 if learning_rate is None else learning_rate)
 
 
 def rate_settings(given: Mapping[str, Any]) -> dict[str, Any]:

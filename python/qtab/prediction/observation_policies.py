@@ -13,7 +13,7 @@ from qtab.discretizers import Discretizer
 from qtab.discretizers.box import BoxDiscretizer
 from qtab.envs.actions import Actions
 from qtab.planning.optimum import Optimum
-from qtab.planning.policies import SUM_TOLERANCE, GivenPolicy, equal_probabilities, probabilities, refuse_time_aware
+from qtab.planning.policies import GivenPolicy, answered, equal_probabilities, probabilities, refuse_time_aware
 from qtab.results.action_values import read_by_policy
 from qtab.results.run import Run
 
@@ -64,37 +64,9 @@ class FunctionPolicy:
         return {
             "type": "function",
             "function": self.function,
-            "read": self.checked_probabilities,
+            "read": lambda answer, observation: answered(self.name, answer, observation, self.actions),
             "first_action": self.actions.first,
         }
-
-    def checked_probabilities(self, answer: Any, observation: Any) -> list[float]:
-        """Returns an answer that is no action as a list of probabilities.
-
-        Raises:
-            TypeError: if it does not hold numbers.
-            ValueError: for an action that does not exist, or if it is no distribution over the actions.
-        """
-        first, count = self.actions.first, len(self.actions)
-        where = f"for the observation {shown(np.asarray(observation).tolist())}"
-        try:
-            given = np.asarray(answer)
-        except ValueError:  # lists of different lengths
-            given = np.asarray(None)
-        if given.shape == () and given.dtype.kind in "iu":
-            last = first + count - 1
-            raise ValueError(f"{self.name} must return actions from {first} to {last}, got {given} {where}")
-        if given.shape != (count,) or given.dtype.kind not in "iuf":
-            kind = ValueError if given.dtype.kind in "iuf" and given.shape else TypeError
-            raise kind(
-                f"{self.name} must return the number of an action or {count} probabilities, got {shown(answer)} {where}"
-            )
-        if not (given >= 0).all() or not abs(float(given.sum()) - 1.0) <= SUM_TOLERANCE:
-            raise ValueError(
-                f"{self.name} must return probabilities of at least 0 that sum to 1, got {shown(given.tolist())} "
-                f"{where}"
-            )
-        return [float(number) for number in given]
 
 
 ObservationPolicy: TypeAlias = TablePolicy | GreedyPolicy | FunctionPolicy

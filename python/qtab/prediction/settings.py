@@ -7,10 +7,8 @@ from typing import Any, Literal, TypeAlias, get_args
 
 from qtab._utils import checks
 from qtab._utils.fields import with_fields
-from qtab._utils.shown import shown
 from qtab.config.choices import BitGenerator, LearningRateSchedule, OnTruncation
-from qtab.config.options import listed
-from qtab.prediction.learning_rates import checked_learning_rate
+from qtab.prediction.learning_rates import applied, checked_learning_rate
 
 Method: TypeAlias = Literal[
     "td",
@@ -96,18 +94,7 @@ class PredictionSettings:
             "on_truncation": checks.choice("on_truncation", self.on_truncation, get_args(OnTruncation)),
             "bit_generator": checks.choice("bit_generator", self.bit_generator, get_args(BitGenerator)),
         }
-        for name, (methods, default) in _OPTIONS.items():
-            value = given[name]
-            if method not in methods:
-                if value is not None:
-                    raise ValueError(
-                        f"{name} applies to method {listed(methods)}, not to {method!r}, got {shown(value)}"
-                    )
-                continue
-            if value is None and default is None:
-                raise ValueError(f"{name} must be given for method {method!r}, got None")
-            checked[name] = default if value is None else _option(name, value)
-        given.update(checked)
+        given.update(checked | applied("method", method, _OPTIONS, given, _option))
 
     def replace(self, **changes: Any) -> "PredictionSettings":
         """Returns a copy with some settings changed.
