@@ -34,8 +34,9 @@ impl PredictionRule for OfflineLambdaReturn {
             return;
         }
         self.episode.compute_returns(values, step.next, self.trace_decay);
+        let every_visit = !self.first_visit;
         for (visit, &target) in self.episode.visits.iter().zip(&self.episode.returns) {
-            if visit.first || !self.first_visit {
+            if every_visit || visit.first {
                 values.update(visit.state, target);
             }
         }
