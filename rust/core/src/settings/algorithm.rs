@@ -2,16 +2,16 @@
 
 use std::marker::PhantomData;
 
-use super::{LearningRateSpec, Settings};
+use super::{LearningRateSpec, SettingSource};
 use crate::learners::{AnyAlgorithm, TargetPolicy, TraceKind, TraceOptions};
 
 /// Reads the options of an algorithm.
-type Reader<S> = fn(&S) -> Result<AnyAlgorithm, <S as Settings>::Error>;
+type Reader<S> = fn(&S) -> Result<AnyAlgorithm, <S as SettingSource>::Error>;
 
 /// Every algorithm by its name, with what reads its options from settings `S`.
 pub struct AlgorithmRows<S>(PhantomData<S>);
 
-impl<S: Settings> AlgorithmRows<S> {
+impl<S: SettingSource> AlgorithmRows<S> {
     /// The rows. `qtab.config` lists the same names; a test compares the two lists.
     pub const ROWS: [(&'static str, Reader<S>); 23] = [
         ("q_learning", |_| Ok(AnyAlgorithm::QLearning)),
@@ -86,7 +86,7 @@ impl AnyAlgorithm {
     ///
     /// # Errors
     /// If a setting is missing or does not fit.
-    pub fn parse<S: Settings>(
+    pub fn parse<S: SettingSource>(
         settings: &S,
         episodes: u64,
         max_episode_steps: u64,
@@ -113,32 +113,32 @@ impl AnyAlgorithm {
 }
 
 /// A number in [0, 1].
-fn share<S: Settings>(settings: &S, name: &'static str) -> Result<f64, S::Error> {
+fn share<S: SettingSource>(settings: &S, name: &'static str) -> Result<f64, S::Error> {
     settings.number(name, 0.0, 1.0)
 }
 
-fn not_negative<S: Settings>(settings: &S, name: &'static str) -> Result<f64, S::Error> {
+fn not_negative<S: SettingSource>(settings: &S, name: &'static str) -> Result<f64, S::Error> {
     settings.number(name, 0.0, f64::MAX)
 }
 
 /// Up to 2: with tile coding it is divided among the tilings.
-fn value_learning_rate<S: Settings>(settings: &S) -> Result<f64, S::Error> {
+fn value_learning_rate<S: SettingSource>(settings: &S) -> Result<f64, S::Error> {
     settings.number("value_learning_rate", 0.0, 2.0)
 }
 
-fn n_steps<S: Settings>(settings: &S) -> Result<usize, S::Error> {
+fn n_steps<S: SettingSource>(settings: &S) -> Result<usize, S::Error> {
     settings.integer("n_steps", 1, 1_000_000).map(|n_steps| n_steps as usize)
 }
 
-fn planning_steps<S: Settings>(settings: &S) -> Result<u32, S::Error> {
+fn planning_steps<S: SettingSource>(settings: &S) -> Result<u32, S::Error> {
     settings.integer("planning_steps", 0, 1_000_000).map(|steps| steps as u32)
 }
 
-fn target_policy<S: Settings>(settings: &S) -> Result<TargetPolicy, S::Error> {
+fn target_policy<S: SettingSource>(settings: &S) -> Result<TargetPolicy, S::Error> {
     settings.word("target_policy", &[("greedy", TargetPolicy::Greedy), ("behavior", TargetPolicy::Behavior)])
 }
 
-fn traces<S: Settings>(settings: &S) -> Result<TraceOptions, S::Error> {
+fn traces<S: SettingSource>(settings: &S) -> Result<TraceOptions, S::Error> {
     let kinds = [
         ("accumulating", TraceKind::Accumulating),
         ("replacing", TraceKind::Replacing),

@@ -9,7 +9,7 @@ pub use policy::PolicySpec;
 pub use schedule::{LearningRateSpec, SCHEDULES, ScheduleSpec};
 
 /// What holds settings. Each reader returns an error for a setting that is not there, and `None` for one of another type.
-pub trait Settings {
+pub trait SettingSource {
     /// What is wrong with a setting.
     type Error;
 

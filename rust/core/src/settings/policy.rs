@@ -1,6 +1,6 @@
 //! How actions are chosen.
 
-use super::{ScheduleSpec, Settings};
+use super::{ScheduleSpec, SettingSource};
 use crate::StopFlag;
 use crate::memory::AllocationError;
 use crate::policies::{AnyPolicy, TieBreaking, Ucb};
@@ -41,7 +41,7 @@ impl PolicySpec {
     ///
     /// # Errors
     /// If a setting is missing or does not fit.
-    pub fn parse<S: Settings>(settings: &S, episodes: u64) -> Result<Self, S::Error> {
+    pub fn parse<S: SettingSource>(settings: &S, episodes: u64) -> Result<Self, S::Error> {
         let kinds =
             [("epsilon_greedy", PolicyKind::EpsilonGreedy), ("softmax", PolicyKind::Softmax), ("ucb", PolicyKind::Ucb)];
         let ties = || settings.word("ties", &[("first", TieBreaking::First), ("random", TieBreaking::Random)]);

@@ -1,6 +1,6 @@
 //! How the learning rate and the exploration rate change during training.
 
-use super::Settings;
+use super::SettingSource;
 use crate::StopFlag;
 use crate::memory::AllocationError;
 use crate::schedules::{LearningRate, Schedule};
@@ -75,13 +75,13 @@ impl ScheduleSpec {
     ///
     /// # Errors
     /// If a setting is missing or does not fit.
-    pub(super) fn epsilon<S: Settings>(settings: &S, episodes: u64) -> Result<Self, S::Error> {
+    pub(super) fn epsilon<S: SettingSource>(settings: &S, episodes: u64) -> Result<Self, S::Error> {
         let names = ["epsilon", "min_epsilon", "epsilon_decay", "epsilon_warm_up"];
         Self::parse(settings, settings.word("epsilon_schedule", &SCHEDULES[..3])?, names, 1.0, episodes)
     }
 
     /// The schedule of the settings with these names: the rate, the minimum, the decay, the warm-up.
-    fn parse<S: Settings>(
+    fn parse<S: SettingSource>(
         settings: &S,
         kind: ScheduleKind,
         [value, minimum, decay, warm_up]: [&'static str; 4],
@@ -117,7 +117,7 @@ impl LearningRateSpec {
     ///
     /// # Errors
     /// If a setting is missing or does not fit.
-    pub(super) fn parse<S: Settings>(settings: &S, most: f64, episodes: u64) -> Result<Self, S::Error> {
+    pub(super) fn parse<S: SettingSource>(settings: &S, most: f64, episodes: u64) -> Result<Self, S::Error> {
         let names = ["learning_rate", "min_learning_rate", "learning_rate_decay", "learning_rate_warm_up"];
         let kind = settings.word("learning_rate_schedule", &SCHEDULES)?;
         if kind == ScheduleKind::Visits {

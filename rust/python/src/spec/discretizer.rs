@@ -3,7 +3,7 @@
 use pyo3::prelude::*;
 use qtab_core::features::{AnyGrid, Axis, Bins, Edges, MAX_TILINGS, Rounding, TileCoding};
 use qtab_core::numeric::Float;
-use qtab_core::settings::Settings;
+use qtab_core::settings::SettingSource;
 
 use super::fields::{Fields, Variant};
 use super::product::ProductSpec;

@@ -3,7 +3,7 @@
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use qtab_core::settings::Settings;
+use qtab_core::settings::SettingSource;
 
 use crate::error::{invalid, required};
 
@@ -74,7 +74,7 @@ impl<'py> Fields<'py> {
     }
 }
 
-impl Settings for Fields<'_> {
+impl SettingSource for Fields<'_> {
     type Error = PyErr;
 
     fn has(&self, name: &str) -> bool {

@@ -10,7 +10,7 @@ use qtab_core::StopFlag;
 use qtab_core::learners::ActionMasks;
 use qtab_core::memory::{collect, filled, from_fn};
 use qtab_core::random::{NoRng, Rng};
-use qtab_core::settings::Settings;
+use qtab_core::settings::SettingSource;
 
 use super::fields::Fields;
 use crate::error::{allocation, invalid};

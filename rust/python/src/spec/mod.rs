@@ -14,7 +14,7 @@ use pyo3::prelude::*;
 use qtab_core::learners::AnyAlgorithm;
 use qtab_core::memory::MemoryRoom;
 use qtab_core::q_table::TerminalUpdate;
-use qtab_core::settings::Settings;
+use qtab_core::settings::SettingSource;
 
 pub(crate) use action_masks::ActionMasksSpec;
 pub(crate) use discretizer::{DISCRETIZERS, DiscretizerSpec, FloatType, TilesSpec};

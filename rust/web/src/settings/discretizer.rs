@@ -1,7 +1,7 @@
 //! How observations become rows of the table.
 
 use qtab_core::features::{AnyGrid, Axis, Bins, Edges, MAX_TILINGS, Rounding, TileCoding};
-use qtab_core::settings::Settings;
+use qtab_core::settings::SettingSource;
 
 use super::fields::{Fields, SettingError};
 use crate::environment::Bounds;

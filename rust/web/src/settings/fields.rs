@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use qtab_core::settings::Settings;
+use qtab_core::settings::SettingSource;
 use serde::Serialize;
 use serde_json::{Map, Value};
 
@@ -80,7 +80,7 @@ impl<'a> Fields<'a> {
     }
 }
 
-impl Settings for Fields<'_> {
+impl SettingSource for Fields<'_> {
     type Error = SettingError;
 
     fn has(&self, name: &str) -> bool {

@@ -7,7 +7,7 @@ use qtab_core::learners::{Agent, AnyAlgorithm};
 use qtab_core::memory::{AllocationError, filled, from_fn};
 use qtab_core::q_table::TerminalUpdate;
 use qtab_core::random::{AgentRng, Rng, SeedSequence};
-use qtab_core::settings::{LearningRateSpec, PolicySpec, Settings as _};
+use qtab_core::settings::{LearningRateSpec, PolicySpec, SettingSource as _};
 use qtab_core::{QTable, StopFlag};
 use serde_json::Value;
 

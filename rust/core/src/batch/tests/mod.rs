@@ -4,7 +4,7 @@ mod runs;
 
 use proptest::prelude::*;
 
-use self::runs::{DEFAULT, RunSettings, cart_pole, mountain_car, tiled_mountain_car};
+use self::runs::{DEFAULT, Settings, cart_pole, mountain_car, tiled_mountain_car};
 use super::batched_run::advance_all_at;
 use super::{BatchRule, LANES, SimdTrainer};
 use crate::envs::classic_control::{CartPole, MountainCar};
@@ -79,7 +79,7 @@ fn check_at<E, F, A, U, const N: usize, const M: usize, const K: usize>(
 #[test]
 fn a_batch_equals_single_runs() {
     for (episodes, chunks) in [(1000, &[u64::MAX][..]), (300, &[5000, 3, u64::MAX])] {
-        let settings = RunSettings { episodes, ..DEFAULT };
+        let settings = Settings { episodes, ..DEFAULT };
         let seeds = std::array::from_fn::<_, LANES, _>(|seed| seed as u32);
         check(seeds, |seed| mountain_car(MountainCar::default(), QLearning, settings, seed), episodes, chunks);
         check(seeds, |seed| cart_pole(CartPole::default(), QLearning, settings, seed), episodes, chunks);
@@ -89,14 +89,14 @@ fn a_batch_equals_single_runs() {
 
 #[test]
 fn runs_with_different_settings_keep_them() {
-    let other = RunSettings { discount: 0.5, ..DEFAULT };
+    let other = Settings { discount: 0.5, ..DEFAULT };
     let make = |seed| mountain_car(MountainCar::default(), QLearning, if seed == 1 { other } else { DEFAULT }, seed);
     check([0, 1], make, 20, &[u64::MAX]);
 }
 
 #[test]
 fn each_run_keeps_its_learning_rate() {
-    let other = RunSettings { learning_rate: 0.7, ..DEFAULT };
+    let other = Settings { learning_rate: 0.7, ..DEFAULT };
     let make = |seed| cart_pole(CartPole::default(), QLearning, if seed == 1 { other } else { DEFAULT }, seed);
     check([0, 1, 2, 3], make, 20, &[u64::MAX]);
 }
@@ -104,7 +104,7 @@ fn each_run_keeps_its_learning_rate() {
 #[test]
 fn an_observation_without_a_row_fails_as_in_a_single_run() {
     let fast = MountainCar { max_speed: 1.0, force: 0.1, ..MountainCar::default() };
-    let settings = RunSettings { epsilon: 0.0, ..DEFAULT };
+    let settings = Settings { epsilon: 0.0, ..DEFAULT };
     assert!(mountain_car(fast, QLearning, settings, 0).advance(Budget { episodes: 20, work: u64::MAX }).is_err());
     check([0, 1, 2, 3], |seed| mountain_car(fast, QLearning, settings, seed), 20, &[9, u64::MAX]);
     let weightless = CartPole { total_mass: 0.0, ..CartPole::default() };
@@ -112,14 +112,14 @@ fn an_observation_without_a_row_fails_as_in_a_single_run() {
     check([0, 1, 2, 3], |seed| cart_pole(weightless, QLearning, settings, seed), 20, &[9, u64::MAX]);
 }
 
-fn any_settings() -> impl Strategy<Value = RunSettings> {
+fn any_settings() -> impl Strategy<Value = Settings> {
     let terminal_update = prop_oneof![Just(TerminalUpdate::Assign), Just(TerminalUpdate::Target)];
     let epsilon = prop_oneof![Just(0.0), Just(1.0), 0.0..=1.0];
     let max_episode_steps = prop_oneof![Just(1_u64), Just(200), 2_u64..400];
     (terminal_update, 0.0..=1.0, 0.0..=1.0, epsilon, max_episode_steps).prop_map(
         |(terminal_update, learning_rate, discount, epsilon, max_episode_steps)| {
             let episodes = DEFAULT.episodes;
-            RunSettings { terminal_update, learning_rate, discount, epsilon, max_episode_steps, episodes }
+            Settings { terminal_update, learning_rate, discount, epsilon, max_episode_steps, episodes }
         },
     )
 }
@@ -170,7 +170,7 @@ proptest! {
         settings in any_settings(),
         chunks in chunks(),
     ) {
-        let settings = RunSettings { learning_rate: settings.learning_rate * scale, ..settings };
+        let settings = Settings { learning_rate: settings.learning_rate * scale, ..settings };
         let (seeds, episodes) = ([0, 1, 2, 3], settings.episodes);
         check(seeds, |seed| tiled_mountain_car(hashed, by_visit_count, QLearning, settings, seed), episodes, &chunks);
         check(seeds, |seed| tiled_mountain_car(hashed, by_visit_count, Sarsa, settings, seed), episodes, &chunks);

@@ -15,7 +15,7 @@ use crate::trainer::Trainer;
 
 /// The settings of a run.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct RunSettings {
+pub(super) struct Settings {
     pub(super) terminal_update: TerminalUpdate,
     pub(super) learning_rate: f64,
     pub(super) discount: f64,
@@ -24,7 +24,7 @@ pub(super) struct RunSettings {
     pub(super) episodes: usize,
 }
 
-pub(super) const DEFAULT: RunSettings = RunSettings {
+pub(super) const DEFAULT: Settings = Settings {
     terminal_update: TerminalUpdate::Assign,
     learning_rate: 0.2,
     discount: 0.9,
@@ -38,7 +38,7 @@ fn run<E, F, A, U, const N: usize, const M: usize>(
     features: F,
     learning_rate: A,
     rule: U,
-    settings: RunSettings,
+    settings: Settings,
     seed: u32,
 ) -> SimdTrainer<E, F, N, A, U>
 where
@@ -65,7 +65,7 @@ where
 pub(super) fn mountain_car<U: UpdateRule<[u32; 1], Agent<3, EpsilonGreedy, f64>>>(
     env: MountainCar,
     rule: U,
-    settings: RunSettings,
+    settings: Settings,
     seed: u32,
 ) -> SimdTrainer<MountainCar, Rounding<f32, [Axis<f32>; 2]>, 3, f64, U> {
     let grid = Rounding::new([Axis::new(-1.2, 0.6, 10.0), Axis::new(-0.07, 0.07, 100.0)]);
@@ -76,7 +76,7 @@ pub(super) fn mountain_car<U: UpdateRule<[u32; 1], Agent<3, EpsilonGreedy, f64>>
 pub(super) fn cart_pole<U: UpdateRule<[u32; 1], Agent<2, EpsilonGreedy, Schedule>>>(
     env: CartPole,
     rule: U,
-    settings: RunSettings,
+    settings: Settings,
     seed: u32,
 ) -> SimdTrainer<CartPole, Bins<f32, [Edges; 4]>, 2, Schedule, U> {
     // Few edges, none, and enough for the binary search.
@@ -91,7 +91,7 @@ pub(super) fn tiled_mountain_car<U: UpdateRule<FixedTiles<8>, Agent<3, EpsilonGr
     hashed: Option<u32>,
     by_visit_count: bool,
     rule: U,
-    settings: RunSettings,
+    settings: Settings,
     seed: u32,
 ) -> SimdTrainer<MountainCar, FixedTileCoding<f32, 2, 8>, 3, LearningRate, U> {
     let tiles = TileCoding::<f32, 8>::new(&[-1.2, -0.07], &[0.6, 0.07], &[4, 3], 8);
@@ -105,6 +105,6 @@ pub(super) fn tiled_mountain_car<U: UpdateRule<FixedTiles<8>, Agent<3, EpsilonGr
         let schedule = Schedule::linear(settings.learning_rate, 0.0, settings.episodes as u64, 1);
         LearningRate::scheduled(schedule, 8)
     };
-    let settings = RunSettings { terminal_update: TerminalUpdate::Target, ..settings };
+    let settings = Settings { terminal_update: TerminalUpdate::Target, ..settings };
     run(MountainCar::default(), features, learning_rate, rule, settings, seed)
 }
