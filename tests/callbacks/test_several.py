@@ -129,8 +129,8 @@ def test_one_that_cannot_start_leaves_the_others_ended_and_nothing_trained(tmp_p
         ({print}, r"^callback must be callable, got {"),
         ([print, 3], r"^callback\[1\] must be callable, got 3$"),
         ([print, [print]], r"^callback\[1\] must be callable, got \["),
-        (StopAtReturn, r"^callback must be made from its class, as in StopAtReturn\(\.\.\.\), got the class itself$"),
-        ([LivePlot], r"^callback\[0\] must be made from its class, as in LivePlot\(\.\.\.\), got the class itself$"),
+        (StopAtReturn, r"^callback must be an instance, as in StopAtReturn\(\.\.\.\), got the class itself$"),
+        ([LivePlot], r"^callback\[0\] must be an instance, as in LivePlot\(\.\.\.\), got the class itself$"),
     ],
 )
 def test_what_cannot_be_called_is_refused_by_name_before_anything_is_made(callback, message):

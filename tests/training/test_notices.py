@@ -10,7 +10,7 @@ import qtab
 from qtab.training import resolve
 from support.environments import ScriptedEnv
 
-UNLIMITED = "CliffWalking-v1 has no time limit of its own: an episode ends after 10,000 steps"
+UNLIMITED = "CliffWalking-v1 has no time limit: an episode ends after 10,000 steps"
 
 
 @pytest.fixture

@@ -111,7 +111,7 @@ def test_a_wrapper_with_statistics_of_its_own_starts_where_the_last_call_left_it
     run = qtab.train(env, **settings)
     report = qtab.verify(run, env=env)
     assert (report.equal, report.repeats, report.wrapper) == (False, False, wrapper.__name__)
-    assert f"its wrapper {wrapper.__name__} keeps statistics, which start where the last call left them" in str(report)
+    assert f"its wrapper {wrapper.__name__} keeps statistics from one call to the next" in str(report)
     assert "give train and verify a new environment each, and call verify without episodes=" in str(report)
     # The advice, followed.
     assert qtab.verify(run, env=make()).equal

@@ -116,8 +116,11 @@ def test_runs_in_processes_are_reported_too():
     [
         ({"callback": 3}, r"^callback must be callable, got 3$"),
         ({"callback": [print, None]}, r"^callback\[1\] must be callable, got None$"),
-        ({"callback": EvaluateEvery()}, r"^callback must take a RunsProgress here: EvaluateEvery is for a single run"),
-        ({"callback": EvaluateEvery}, r"^callback must be made from its class, as in EvaluateEvery"),
+        (
+            {"callback": EvaluateEvery()},
+            r"^callback must take a RunsProgress; EvaluateEvery works only with qtab.train",
+        ),
+        ({"callback": EvaluateEvery}, r"^callback must be an instance, as in EvaluateEvery"),
         ({"callback_every": 0}, r"^callback_every must be an integer of at least 1, got 0$"),
         ({"callback_every": 1.5}, r"^callback_every must be an integer of at least 1, got 1\.5$"),
         ({"progress": "yes"}, r"^progress must be True, False or None, got 'yes'$"),

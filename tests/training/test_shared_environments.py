@@ -38,7 +38,7 @@ def test_a_second_thread_is_refused_and_the_first_goes_on(wrap):
     env = Calls(ScriptedEnv([ONE]), meddle)
     run = train(env)
     assert_same_run(run, train(ScriptedEnv([ONE])))
-    assert "is being trained in by another thread" in str(errors[0])
+    assert "is in use by another thread's training" in str(errors[0])
     assert len(run_of(errors[0]).episode_returns) == 0
     # Afterwards it is free again, for any thread.
     assert_same_run(train(env), run)
@@ -92,6 +92,6 @@ def test_a_run_that_another_thread_resumes_there_is_refused_before_it_touches_th
     called[0] = meddle
     env = Calls(scripted, before)
     run = train(env)
-    assert "is being trained in by another thread" in str(errors[0])
+    assert "is in use by another thread's training" in str(errors[0])
     assert scripted.seeds == [0, None, None]
     assert_same_run(run, train(ScriptedEnv([ONE])))

@@ -1,4 +1,4 @@
-"""The action masks of a run: where training finds them, and those that are known before the first episode."""
+"""The action masks of a run: the source training reads them from, and the masks known before the first episode."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -15,17 +15,17 @@ from qtab.discretizers import Discretizer, TimeAware
 from qtab.discretizers.identity import Identity
 
 MAX_KNOWN_STATES = 100_000
-"""For how many states a mask is computed before the first episode."""
+"""The most states for which masks are computed before the first episode."""
 
 
 @dataclass(frozen=True, eq=False)
 class ActionMasks:
-    """Which actions the states have."""
+    """The actions that each state allows."""
 
     source: MaskSourceSpec
-    """Where an environment that is stepped in Python finds the mask of an observation."""
+    """The source of the mask of an observation, for an environment that is stepped in Python."""
     known: NDArray[np.bool_] | None = None
-    """(rows, actions): the masks of all states, for an environment that Rust steps."""
+    """(rows, actions): the masks of all states, for an environment stepped in Rust."""
 
     def spec(self) -> ActionMasksSpec:
         """Returns the masks as the extension takes them."""
@@ -35,11 +35,11 @@ class ActionMasks:
 
 
 NO_MASKS = ActionMasks({"type": "none"})
-"""Every state has all actions."""
+"""No masks: every state allows all actions."""
 
 
 def asks_for_masks(action_mask: Mask) -> bool:
-    """Returns whether a run with the setting ``action_mask`` has masks.
+    """Returns whether a run with this setting of ``action_mask`` has masks.
 
     Raises:
         ValueError: for the setting of a saved run whose function is not given.
@@ -50,13 +50,13 @@ def asks_for_masks(action_mask: Mask) -> bool:
 
 
 def observed_masks(action_mask: Mask, env: gym.Env) -> ActionMasks:
-    """Returns the masks of an environment that is stepped in Python, by a setting that asks for masks."""
+    """Returns the masks of an environment that is stepped in Python; ``action_mask`` must ask for masks."""
     function = action_mask if callable(action_mask) else mask_method(env)
     return ActionMasks({"type": "info"} if function is None else {"type": "function", "function": function})
 
 
 def mask_method(env: gym.Env) -> Callable[[Any], Any] | None:
-    """Returns a function that calls an environment's ``action_masks()``, sb3-contrib's convention; None without one."""
+    """Returns a function that calls ``env.action_masks()``, sb3-contrib's convention; None without one."""
     try:
         method = env.get_wrapper_attr("action_masks")
     except AttributeError:
@@ -65,21 +65,21 @@ def mask_method(env: gym.Env) -> Callable[[Any], Any] | None:
 
 
 def known_masks(action_mask: Mask, env: gym.Env, discretizer: Discretizer, n_actions: int) -> ActionMasks | None:
-    """Returns the masks of every state of an environment that Rust steps; None where they cannot be known.
+    """Returns the masks of all states of an environment stepped in Rust; None if they cannot be known in advance.
 
-    They are known where observations are discrete, and the environment has Taxi's method ``action_mask(state)`` or the
-    setting is a function that gives each of them a mask. A state that is never reached needs none: a function may raise
-    a ``LookupError`` for it, or return what is no mask. Python then steps the environment, and the first such state
-    that is reached is refused.
+    The masks are known if observations are discrete, and either the environment has Taxi's method
+    ``action_mask(state)`` or the setting is a function that returns a mask for each observation. For a state that is
+    never reached, the function may raise a ``LookupError`` or return an invalid mask. Python then steps the
+    environment, and reaching such a state raises an error.
 
     Args:
-        action_mask: The setting, which asks for masks.
+        action_mask: The setting; it must ask for masks.
         env: The environment.
-        discretizer: Maps its observations to rows.
+        discretizer: Maps observations to rows.
         n_actions: The length of a mask.
 
     Raises:
-        Exception: whatever else the function raises, with a note of the observation where Python has notes.
+        Exception: any other exception of the function, with a note that names the observation (Python 3.11 or later).
     """
     if isinstance(discretizer, TimeAware):
         of_cells = known_masks(action_mask, env, discretizer.cells, n_actions)
@@ -115,7 +115,7 @@ def _observations(discretizer: Identity) -> Iterator[Any]:
 
 
 def mask_bytes(masks: ActionMasks, discretizer: Discretizer, n_actions: int) -> int:
-    """Returns how many bytes the masks take while a run trains."""
+    """Returns the memory that the masks take while a run trains, in bytes."""
     if masks.source["type"] == "none":
         return 0
     return n_actions * (math.prod(discretizer.shape) if discretizer.n_active == 1 else 1)

@@ -1,4 +1,4 @@
-"""Callbacks: what one of your own can be built on, and several as one, which are called when they are due."""
+"""Callbacks: a base class for your own, and a list that calls each callback when it is due."""
 
 import inspect
 from abc import ABC, abstractmethod
@@ -23,10 +23,10 @@ Callbacks: TypeAlias = Callback | Sequence[Callback]
 
 
 class BaseCallback(ABC):
-    """A callback that is told when training begins and ends, and that may have its own interval.
+    """Base class of callbacks that are notified when training begins and ends, and that may set their own interval.
 
-    Any callable can be a callback; this class is for those that open files or keep a state. One object can serve
-    several runs one after the other: :meth:`on_start` begins anew, and :meth:`on_resume` continues.
+    Any callable can be a callback; this class is for callbacks that open files or keep state. One object can serve
+    several runs in turn: :meth:`on_start` starts afresh, and :meth:`on_resume` continues.
 
     Args:
         every: The number of episodes between two calls; None takes ``callback_every``.
@@ -40,7 +40,7 @@ class BaseCallback(ABC):
         self.every = None if every is None else checks.integer("every", every, least=1)
 
     def __repr__(self) -> str:
-        """The arguments that differ from their defaults, as Python spells them."""
+        """Returns the call that makes this callback, with the arguments that differ from their defaults."""
         parameters = inspect.signature(type(self)).parameters.values()
         found = {one.name: getattr(self, one.name, one.default) for one in parameters}
         changed = [one.name for one in parameters if repr(found[one.name]) != repr(one.default)]
@@ -48,11 +48,11 @@ class BaseCallback(ABC):
         return f"{type(self).__name__}({', '.join(given)})"
 
     def on_start(self, config: Config, env: gym.Env | None) -> None:  # noqa: B027 - need not do anything
-        """Called before the first episode, to begin anew and to refuse what cannot work.
+        """Called before the first episode, to start afresh and to reject a run that the callback cannot handle.
 
         Args:
             config: The complete config of the run.
-            env: The environment that Python steps, which belongs to the run; None if Rust steps it.
+            env: The run's environment if Python steps it; None if Rust does.
         """
 
     def on_resume(self, config: Config, env: gym.Env | None, earlier: "Run") -> None:  # noqa: ARG002
@@ -61,16 +61,16 @@ class BaseCallback(ABC):
         Args:
             config: The complete config of the whole run.
             env: As for :meth:`on_start`.
-            earlier: The run that is resumed: its first episodes.
+            earlier: The run that is resumed, with its first episodes.
         """
         self.on_start(config, env)
 
     @abstractmethod
     def __call__(self, progress: Progress) -> bool | None:
-        """Called after every ``every`` episodes and after the last one. It stops the run by returning False."""
+        """Called every ``every`` episodes and after the last one. Returning False stops the run."""
 
     def on_end(self) -> None:  # noqa: B027 - need not do anything
-        """Called once after :meth:`on_start` succeeded, also after an exception: closes what that opened."""
+        """Called once at the end if :meth:`on_start` succeeded, also after an exception, to close files."""
 
 
 def _shown(value: Any) -> str:
@@ -113,9 +113,9 @@ class CallbackList:
         return min([total, *((done // every + 1) * every for _, every in self._callbacks)])
 
     def __call__(self, progress: Progress) -> bool:
-        """Calls those that are due; returns False if one of them stops the run.
+        """Calls the callbacks that are due; returns False if one of them stops the run.
 
-        The others are then called as well, so that all have seen where the run ended.
+        All others are then called as well, so that every callback sees the end of the run.
         """
         at_end, proceed = progress.episodes == progress.total, True
         for callback, every in self._callbacks:
@@ -130,10 +130,10 @@ class CallbackList:
 
 
 def as_tuple(callbacks: Any) -> tuple[Any, ...]:
-    """Returns the callbacks of a call: none, one, or those of a sequence.
+    """Returns the callbacks as a tuple, given None, one callback or a sequence.
 
     Raises:
-        TypeError: for anything else, or for a class of callbacks instead of one that was made from it.
+        TypeError: for anything else, or for a callback class instead of an instance.
     """
     if callbacks is None:
         return ()
@@ -146,7 +146,7 @@ def _checked(name: str, callback: Any) -> Any:
     if not callable(callback):
         raise TypeError(f"{name} must be callable, got {callback!r}")
     if isinstance(callback, type) and issubclass(callback, BaseCallback):
-        raise TypeError(f"{name} must be made from its class, as in {callback.__name__}(...), got the class itself")
+        raise TypeError(f"{name} must be an instance, as in {callback.__name__}(...), got the class itself")
     return callback
 
 

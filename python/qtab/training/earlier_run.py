@@ -1,4 +1,4 @@
-"""The run that a call resumes: where it is found, whether it can be resumed, and what must agree with it."""
+"""The run that a call resumes: loads it, and checks that it can be resumed with the settings given."""
 
 import logging
 import os
@@ -34,20 +34,20 @@ from qtab.training.run_env import environment_of, resolve_run
 
 _LOGGER = logging.getLogger("qtab")
 _OF_ENV = ("env_kwargs", "max_episode_steps")
-"""The settings that an environment object brings along: another value changes the dynamics."""
+"""The settings that an environment object determines; another value changes the dynamics."""
 
 
 def earlier_run(name: str, run: Any, action_mask: Any = None) -> Run:
-    """Returns a run that is given itself or by the path of its file.
+    """Returns a run, given as an object or as the path of its file.
 
     Args:
-        name: The argument that gives it, for messages.
-        run: Its value.
-        action_mask: The function of its action masks, which a file does not hold; anything else changes nothing.
+        name: The name of the argument, for messages.
+        run: The value of the argument.
+        action_mask: The function for the action masks, which a file cannot hold; any other value is ignored.
 
     Raises:
         OSError: if the file cannot be read.
-        TypeError: if it is neither a run nor a path.
+        TypeError: if ``run`` is neither a run nor a path.
         ValueError: for a file that is not a run.
     """
     if not isinstance(run, Run):
@@ -61,19 +61,19 @@ def earlier_run(name: str, run: Any, action_mask: Any = None) -> Run:
 
 
 def resolve_again(name: str, run: Run, episodes: Any, env: gym.Env | None) -> ResolvedRun:
-    """Resolves the whole run of which an earlier part is given.
+    """Resolves the whole run, given its earlier part.
 
     Args:
-        name: The argument that gives the earlier part, for messages.
+        name: The name of the argument that gives the earlier part, for messages.
         run: The earlier part.
-        episodes: How many episodes the whole run has; None takes that of ``run``.
-        env: The environment; None makes that of ``run``.
+        episodes: The number of episodes of the whole run; None takes that of ``run``.
+        env: The environment; None makes the environment of ``run``.
 
     Raises:
         gymnasium.error.Error: if the environment is not registered.
         TypeError: for an argument of the wrong type.
-        ValueError: if the run cannot be resumed, has finished as many episodes already, or ``env`` is not that of
-            ``run``.
+        ValueError: if the run cannot be resumed, has already finished that many episodes, or ``env`` is not the
+            environment of ``run``.
     """
     config = _config(name, run, episodes)
     _check_id(run, env)
@@ -82,7 +82,7 @@ def resolve_again(name: str, run: Run, episodes: Any, env: gym.Env | None) -> Re
     if env is None:
         resolved = resolve_run(config, over(config, kept))
     else:
-        # The environment brings its own keyword arguments along.
+        # The environment object determines its keyword arguments.
         resolved = resolve(env, over(config, {**kept, "env_kwargs": {}}))
         _check_settings(run, resolved.config, _OF_ENV)
         _check_env(run, resolved)
@@ -95,12 +95,12 @@ def resolve_again(name: str, run: Run, episodes: Any, env: gym.Env | None) -> Re
 
 
 def has_finished(run: Run, episodes: Any, options: TrainingOptions) -> bool:
-    """Returns whether a run has all its episodes already and no more are asked for, which it logs.
+    """Returns whether a run has all its episodes already and no more are requested, and logs this.
 
     Args:
         run: The earlier part.
-        episodes: How many episodes the whole run is to have; None takes that of ``run``.
-        options: What else the call asks for, which is checked.
+        episodes: The number of episodes that the whole run is to have; None takes that of ``run``.
+        options: The other arguments of the call, which are checked.
 
     Raises:
         TypeError: for an argument of the wrong type.
@@ -117,7 +117,7 @@ def has_finished(run: Run, episodes: Any, options: TrainingOptions) -> bool:
 
 
 def with_function(run: Run, function: Any) -> Run:
-    """Returns a run from a file with the function that was its discretizer, where one is given."""
+    """Returns a run from a file, with its discretizer replaced by the original function if one is given."""
     if not isinstance(run.config.discretizer, MissingFunction) or not callable(function):
         return run
     config = replace_checked(run.config, discretizer=function)
@@ -125,7 +125,7 @@ def with_function(run: Run, function: Any) -> Run:
 
 
 def check_agrees(run: Run, env: str | EnvSpec | gym.Env | None, settings: Mapping[str, Any]) -> None:
-    """Checks that the settings given beside ``resume`` are those of the run. The number of episodes may differ.
+    """Checks that the settings given with ``resume`` are those of the run. The number of episodes may differ.
 
     Args:
         run: The run that is resumed.
@@ -151,25 +151,25 @@ def check_agrees(run: Run, env: str | EnvSpec | gym.Env | None, settings: Mappin
 
 
 def _check_id(run: Run, env: Any) -> None:
-    """Checks that an environment that is given, if any, has the id or the class of the run's."""
+    """Checks that the environment given, if any, has the id or class of the run's environment."""
     if env is not None and (id_given := _id(env)) is not None and _bare(id_given) != _bare(run.config.env):
         raise _differs("env", run.config.env, id_given)
 
 
 def _check_env(run: Run, resolved: ResolvedRun) -> None:
-    """Checks that the environment that was found is the one that the run was trained on, as far as that is known."""
+    """Checks that the resolved environment is the one the run was trained on, as far as that is known."""
     description = trained_on(run.config)
     if description is not None and (found := differences(description, environment_of(resolved))):
         raise ValueError(f"env must be that of the run to resume, got another one: {'; '.join(found)}")
 
 
 def _check_settings(run: Run, config: Config, names: Iterable[str]) -> None:
-    """Checks that a config has those settings of the run that are named."""
+    """Checks that the named settings of a config are those of the run."""
     spec = gym.registry.get(_bare(run.config.env))
     registered = {} if spec is None else spec.kwargs
     for name in names:
         wanted = getattr(config, name)
-        # An environment object brings along all arguments, those that its id is registered with included.
+        # An environment object has all arguments, including those its id is registered with.
         if name == "env_kwargs" and {**registered, **run.config.env_kwargs} == {**registered, **wanted}:
             continue
         if replace_checked(run.config, **{name: wanted}) != run.config:
@@ -184,7 +184,7 @@ def _differs(name: str, expected: Any, got: Any) -> ValueError:
 
 
 def _id(env: Any) -> str | None:
-    """The id of an environment, or the name of its class; None for what is none."""
+    """Returns the id of an environment, or the name of its class; None if ``env`` is not an environment."""
     if isinstance(env, str):
         return versioned(env)
     if isinstance(env, gym.Env):
@@ -193,16 +193,16 @@ def _id(env: Any) -> str | None:
 
 
 def _bare(env: str) -> str:
-    """An id without the package that it names."""
+    """Returns an id without its package."""
     return env.rpartition(":")[2]
 
 
 def snapshots_of(options: TrainingOptions, total: int, earlier: Run | None) -> tuple[int, ...]:
-    """Returns the episodes of all snapshots of a run of ``total`` episodes, those of its earlier part first.
+    """Returns the episodes of all snapshots of a run of ``total`` episodes, the earlier part's first.
 
     Raises:
         TypeError: if ``options.snapshots`` is neither an integer nor a sequence of integers.
-        ValueError: if a number in it is out of range, or names an episode that is over.
+        ValueError: if a number in ``options.snapshots`` is out of range, or names an episode already finished.
     """
     if earlier is None:
         return snapshot_episodes(options.snapshots, total)
@@ -212,15 +212,15 @@ def snapshots_of(options: TrainingOptions, total: int, earlier: Run | None) -> t
 
 
 def counts_visits(run: Run, visits: Any) -> bool:
-    """Returns whether the visits of a run that is resumed are counted on.
+    """Returns whether a resumed run continues to count visits.
 
     Args:
         run: The earlier part.
-        visits: What the call asks for.
+        visits: The argument ``visits`` of the call.
 
     Raises:
-        TypeError: if it is not a boolean.
-        ValueError: if it asks for visits, and the earlier part did not count them.
+        TypeError: if ``visits`` is not a boolean.
+        ValueError: if ``visits`` is True, and the earlier part did not count visits.
     """
     if checks.boolean("visits", visits) and run.visits is None:
         raise ValueError("visits must be False: the run to resume did not count the visits of its first episodes")
@@ -228,12 +228,12 @@ def counts_visits(run: Run, visits: Any) -> bool:
 
 
 def _config(name: str, run: Run, episodes: Any) -> Config:
-    """The config of the whole run."""
+    """Returns the config of the whole run."""
     finished = len(run.episode_returns)
     if run.state is None:
         raise ValueError(
-            f"{name} must have the state of its training, which runs of train_many and files of earlier versions do "
-            "not have; qtab.train(..., initial_q=run.q_table) continues to learn from its table"
+            f"{name} must have the state of its training, which runs of train_many and files of earlier versions "
+            "lack; qtab.train(..., initial_q=run.q_table) continues to learn from its table"
         )
     count = run.config.episodes if episodes is None else checks.count("episodes", episodes, least=1)
     if count <= finished:
@@ -242,7 +242,7 @@ def _config(name: str, run: Run, episodes: Any) -> Config:
 
 
 def log_what_differs(run: Run, config: Config) -> None:
-    """Logs where the result is not that of an uninterrupted run, or may not be."""
+    """Logs why the result differs, or may differ, from that of an uninterrupted run."""
     falling = falling_rates(config)
     if config.episodes != run.config.episodes and falling:
         _LOGGER.warning(

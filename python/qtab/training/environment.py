@@ -17,7 +17,7 @@ from qtab.training.action_masks import NO_MASKS, ActionMasks
 
 _lock = threading.Lock()
 _threads: dict[int, tuple[int, int]] = {}
-"""For each environment in use, by its id: the thread that uses it, and how many times over."""
+"""For each environment in use, by ``id(env)``: the thread that uses it, and the depth of nested uses."""
 
 
 @dataclass(frozen=True)
@@ -32,11 +32,11 @@ class NativeEnvironment:
         return {"type": "native", "env": self.parameters}
 
     def exclusively(self) -> AbstractContextManager[None]:
-        """Each run has an environment of its own."""
+        """Does nothing: each run has a separate environment."""
         return nullcontext()
 
     def close(self) -> None:
-        """There is nothing to close."""
+        """Does nothing: there is nothing to close."""
 
 
 @dataclass(frozen=True)
@@ -73,24 +73,24 @@ Environment: TypeAlias = NativeEnvironment | PythonEnvironment
 
 
 class ObservedEnv(gym.Wrapper[Any, Any, Any, Any]):
-    """An environment whose observations a discretizer reads before the extension does; all else is as it is."""
+    """Passes each observation through a discretizer before the extension reads it; the rest is unchanged."""
 
     def __init__(self, env: gym.Env, discretizer: Discretizer) -> None:
         super().__init__(env)
         self._discretizer = discretizer
         self.observation: Any = None
-        """The last observation as the environment returned it."""
+        """The last observation, as returned by the environment."""
 
     def _observe(self, observation: Any) -> Any:
         self.observation = observation
         return self._discretizer.observe(observation)
 
     def __str__(self) -> str:
-        """The environment's own text, which messages show."""
+        """Returns the text of the wrapped environment, for messages."""
         return str(self.env)
 
     def reset(self, **kwargs: Any) -> Any:
-        """Resets the environment. What is not an answer as Gymnasium's API says is left to the extension."""
+        """Resets the environment. The extension checks that the result follows Gymnasium's API."""
         answer: Any = self.env.reset(**kwargs)
         if isinstance(answer, tuple) and len(answer) == 2 and isinstance(answer[1], dict):
             return self._observe(answer[0]), answer[1]
@@ -104,18 +104,18 @@ class ObservedEnv(gym.Wrapper[Any, Any, Any, Any]):
         return answer
 
     def of_observation(self, function: Callable[[Any], Any]) -> Callable[[Any], Any]:
-        """Returns a function, such as one for action masks, that is given the environment's own observations."""
+        """Wraps a function, such as one for action masks, so that it receives the original observations."""
         return lambda _read: function(self.observation)
 
 
 @contextmanager
 def exclusively(env: gym.Env) -> Iterator[None]:
-    """Keeps other threads from training in the same environment, whichever wrappers they see it through.
+    """Keeps other threads from training in the same environment, whatever wrappers they use.
 
-    The thread itself may use it again, as a callback does that evaluates.
+    The same thread may use the environment again, as in a callback that evaluates.
 
     Raises:
-        RuntimeError: if another thread uses it.
+        RuntimeError: if another thread uses the environment.
     """
     innermost = env.unwrapped
     key, thread = id(innermost), threading.get_ident()
@@ -123,8 +123,8 @@ def exclusively(env: gym.Env) -> Iterator[None]:
         owner, depth = _threads.get(key, (thread, 0))
         if owner != thread:
             raise RuntimeError(
-                f"{innermost} is being trained in by another thread: two runs at a time would mix up their episodes, "
-                "so give each thread an environment of its own"
+                f"{innermost} is in use by another thread's training: two runs at a time would mix up their episodes, "
+                "so give each thread a separate environment"
             )
         _threads[key] = (thread, depth + 1)
     try:

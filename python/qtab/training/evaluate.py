@@ -1,4 +1,4 @@
-"""``qtab.evaluate``: how good the greedy policy of a run is."""
+"""``qtab.evaluate``: measures the greedy policy of a run."""
 
 from collections.abc import Mapping
 from contextlib import closing
@@ -46,7 +46,7 @@ GREEDY: Mapping[str, Any] = {
     "epsilon_schedule": "constant",
     "ties": "first",
 }
-"""Settings with which training evaluates: it learns nothing, and takes the first of several greedy actions."""
+"""Settings with which training becomes evaluation: no learning, and ties go to the first greedy action."""
 
 
 @with_fields
@@ -59,12 +59,12 @@ class Evaluation:
     lengths: NDArray[np.int64]
     """(episodes,): the number of steps of each episode."""
     terminated: NDArray[np.bool_]
-    """(episodes,): whether each ended in a terminal state."""
+    """(episodes,): whether each episode ended in a terminal state."""
     seed: int
     """The seed of the environment."""
     reward_threshold: float | None
-    """The return at which Gymnasium considers the environment solved; None where it gives none, or only for another
-    time limit or other keyword arguments."""
+    """The return at which Gymnasium considers the environment solved; None if Gymnasium defines none for this time
+    limit and these keyword arguments."""
 
     def __repr__(self) -> str:
         return f"<Evaluation of {self._episodes}: mean return {self._mean}, seed {self.seed}>"
@@ -79,7 +79,7 @@ class Evaluation:
         return f"{self.mean_return:.2f}{error}"
 
     def _repr_html_(self) -> str:
-        """A table and a histogram of the returns, for notebooks."""
+        """Returns a table and a histogram of the returns, for notebooks."""
         facts: dict[str, object] = {
             "mean return": self._mean + (" (standard error)" if len(self.returns) > 1 else ""),
             "returns": f"{self.returns.min():.6g} to {self.returns.max():.6g}",
@@ -135,19 +135,19 @@ def evaluate(
     max_episode_steps: int | None = None,
     progress: bool | None = None,
 ) -> Evaluation:
-    """Plays episodes with a run's greedy policy, without exploration and without learning.
+    """Plays episodes with a run's greedy policy, without exploration or learning.
 
-    Of several greedy actions the first is taken.
+    Ties go to the first of the greedy actions.
 
     Args:
         run: The run to evaluate.
         episodes: The number of episodes.
         seed: The seed of the environment; None draws one, which the evaluation records.
-        env: Another environment than the run's, or one like it where that cannot be made again: an id, an EnvSpec, or
-            an environment, which is not closed. None makes the environment that the run was trained on, with its
+        env: A different environment, or a copy of the run's if qtab cannot make it again: an id, an EnvSpec, or an
+            environment, which is not closed. None makes the environment that the run was trained on, with its
             wrappers and changed attributes.
-        env_kwargs: Keyword arguments for the environment's constructor; None takes those of the run, or with ``env``
-            none.
+        env_kwargs: Keyword arguments for the environment's constructor; None takes those of the run, or none if
+            ``env`` is given.
         max_episode_steps: The time limit of an episode, in steps; None takes that of the run.
         progress: Whether to show a progress bar. None shows one on a terminal or in a notebook if the episodes take
             more than a second.
@@ -155,8 +155,8 @@ def evaluate(
     Raises:
         gymnasium.error.UnregisteredEnv: without ``env``, for a run whose environment is not registered.
         TypeError: for an argument of the wrong type.
-        ValueError: for an argument out of range, an environment with other spaces than the run's, or without ``env``
-            one that cannot be made again as it was in training; the message says why.
+        ValueError: for an argument out of range, an environment whose spaces differ from the run's, or, without
+            ``env``, an environment that cannot be made again as it was in training; the message gives the reason.
     """
     checks.instance("run", run, Run)
     check_progress(progress)
@@ -164,8 +164,8 @@ def evaluate(
     config = run.config
     if config.time_aware and max_episode_steps not in (None, config.max_episode_steps):
         raise ValueError(
-            f"max_episode_steps must be {config.max_episode_steps} for a run with time_aware=True, whose policy is "
-            f"that of its time limit, got {shown(max_episode_steps)}"
+            f"max_episode_steps must be {config.max_episode_steps} for a run with time_aware=True, whose policy "
+            f"depends on its time limit, got {shown(max_episode_steps)}"
         )
     if env is None:
         spec_of_run(config.env)
@@ -174,7 +174,7 @@ def evaluate(
         limit = time_limit(env)
         if config.time_aware and limit is not None and limit < required("max_episode_steps", config.max_episode_steps):
             raise ValueError(
-                f"env must have a time limit of at least {config.max_episode_steps} steps, that of the run with "
+                f"env must have a time limit of at least {config.max_episode_steps} steps, as in the run with "
                 f"time_aware=True, got {limit}"
             )
     else:
@@ -182,7 +182,7 @@ def evaluate(
         with closing(make_env(spec, env_kwargs or {})) as made:
             check_spaces(run, made)
     is_derived = config.origin is not None and "backend" in config.origin.derived
-    # Over the run's own settings, so that no preset adds any.
+    # Start from the run's settings, so that no preset adds any.
     settings = over(
         config,
         {

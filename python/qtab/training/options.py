@@ -1,4 +1,4 @@
-"""What a call of ``train`` asks for beside the settings of the run: none of it changes a number."""
+"""The arguments of ``train`` that are not settings of the run; none of them changes a result."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ class TrainingOptions:
     record: int = 0
     visits: bool = False
     snapshots: int | Sequence[int] | None = None
-    """Checked when the number of episodes is known."""
+    """Checked once the number of episodes is known."""
     progress: bool | None = None
     memory_limit: int | None = None
 
@@ -37,5 +37,5 @@ class TrainingOptions:
         self.callbacks()
 
     def callbacks(self) -> CallbackList:
-        """Returns the callbacks as one."""
+        """Returns the callbacks as one callback."""
         return CallbackList(self.callback, int(self.callback_every))

@@ -1,4 +1,4 @@
-"""What follows from the spaces of an environment before its discretizer is built: presets yield to wrappers."""
+"""Adapts a config to the spaces of its environment: drops preset settings that wrappers made meaningless."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -23,12 +23,12 @@ _OF_DISCRETIZERS = ("discretizer", *(name for name, option in OPTIONS.items() if
 
 
 def set_aside(env: gym.Env, config: Config, asked: Mapping[str, Any]) -> Config:
-    """Returns a config without those settings of its preset that mean nothing in the spaces that wrappers made.
+    """Returns a config without the preset settings that have no meaning in the spaces of the wrapped environment.
 
     Args:
         env: The environment, with its wrappers.
-        config: The settings that were asked for over those of the preset.
-        asked: The settings that were asked for.
+        config: The preset, overridden by the settings given.
+        asked: The settings given.
     """
     if config.preset is None:
         return config
@@ -50,7 +50,7 @@ def set_aside(env: gym.Env, config: Config, asked: Mapping[str, Any]) -> Config:
 
 
 def _same_units(one: Any, other: Any) -> bool:
-    """Whether two spaces are equal but for the dtypes and the shapes of Boxes."""
+    """Returns whether two spaces are equal except for the dtypes and shapes of Boxes."""
     if one is other or one == other:
         return True
     if not isinstance(one, spaces.Box) or not isinstance(other, spaces.Box) or one.low.size != other.low.size:
@@ -65,15 +65,15 @@ def _with_defaults(config: Config, names: list[str], asked: Mapping[str, Any]) -
 def _is_discrete(space: Any, config: Config) -> bool:
     try:
         return integer_bounds(space) is not None or is_discrete(Layout.of_space(space), config)
-    except ValueError:  # it cannot be served, which is said elsewhere
+    except ValueError:  # unsupported space: reported elsewhere
         return False
 
 
 def infer_discretizer(space: Any, config: Config, asked: Mapping[str, Any]) -> Config:
-    """Returns a config whose discretizer is ``"identity"`` where the observations are discrete and none was asked for.
+    """Returns a config whose discretizer is ``"identity"`` if observations are discrete and no discretizer was given.
 
     Raises:
-        ValueError: if a scale was asked for, which has no meaning then; or the space cannot be served.
+        ValueError: if a scale was given, which then has no meaning, or if the space is not supported.
     """
     if config.discretizer != "round":
         return config

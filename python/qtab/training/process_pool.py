@@ -1,4 +1,4 @@
-"""Runs whose environments are stepped in Python, in worker processes of their own."""
+"""Trains runs whose environments are stepped in Python, in worker processes."""
 
 import _thread
 import multiprocessing
@@ -23,7 +23,7 @@ from qtab.training.resolve import resolve
 from qtab.training.resolved_run import ResolvedRun, masks_of
 
 POLL_SECONDS = 0.2
-"""How often to look for Ctrl-C, which does not interrupt a wait on Windows, and in a worker for the pool's end."""
+"""The interval of checks for Ctrl-C, which cannot interrupt a wait on Windows, and, in workers, for the pool's end."""
 STOPPED = "the other runs were stopped"
 
 
@@ -38,7 +38,7 @@ def train_in_processes(
 ) -> list[tuple[int, Exception]]:
     """Trains each seed in a worker process and fills in the results; returns the runs that failed first, if any.
 
-    After some more runs it calls ``report``, which stops the others by returning False.
+    Calls ``report`` whenever more runs are finished; if it returns False, the other runs are stopped.
     """
     # cloudpickle also takes functions of the main script, as in Gymnasium's vector environments.
     limit, left = memory
@@ -73,8 +73,7 @@ def process_pool(workers: int, task: bytes | None = None) -> Iterator[ProcessPoo
         yield executor
     except BrokenProcessPool as error:
         raise RuntimeError(
-            "a worker process ended abruptly; where this is a script, it must keep its call behind "
-            "if __name__ == '__main__':"
+            "a worker process ended abruptly; a script must keep its call behind if __name__ == '__main__':"
         ) from error
     finally:
         stop.set()
@@ -85,18 +84,18 @@ def process_pool(workers: int, task: bytes | None = None) -> Iterator[ProcessPoo
 def trained_in_python(
     env: Any, settings: Mapping[str, Any], seed: int, memory: tuple[int, int]
 ) -> Iterator[tuple[ResolvedRun, _core.Trainer]]:
-    """Trains a run in an environment that Python steps; yields it with its trainer, and closes the environment.
+    """Trains a run in an environment stepped in Python; yields the run and its trainer, and closes the environment.
 
     Args:
         env: The environment, or a function that makes it.
         settings: The settings of the run.
-        seed: Its seed.
-        memory: What :func:`qtab._utils.memory.memory_left` returns.
+        seed: The seed of the run.
+        memory: The result of :func:`qtab._utils.memory.memory_left`.
 
     Raises:
         InterruptedError: if this is a worker process, and its parent stops the pool.
         OverflowError: if the values of the tables have overflowed.
-        Exception: what the environment or the settings raise.
+        Exception: any exception that the environment or the settings raise.
     """
     with closing(resolve(env() if callable(env) else env, {**settings, "seed": seed}, owns_env=True)) as resolved:
         trainer = _core.Trainer(resolved.spec(), resolved.seed, memory=memory)
@@ -113,7 +112,7 @@ def trained_in_python(
 
 
 def picklable(error: Exception) -> Exception:
-    """Returns an error that can be sent between processes: the given one, or one with the same message."""
+    """Returns an error that can be pickled: the given error, or a RuntimeError with the same message."""
     try:
         back = pickle.loads(pickle.dumps(error))  # noqa: S301 - made here
     except Exception:
@@ -124,7 +123,7 @@ def picklable(error: Exception) -> Exception:
 
 
 def _env_to_send(env: Any) -> Any:
-    """An id as its EnvSpec: a worker has not imported what registered it."""
+    """Returns the EnvSpec of an id: a worker has not imported the package that registered the id."""
     return spec_of(env) if isinstance(env, str) else env
 
 
@@ -145,18 +144,18 @@ def _fill(index: int, future: "Future[Any]", results: Results) -> Exception | No
 
 
 class _Worker:
-    """What a worker process was given at its start."""
+    """The data that a worker process receives at its start."""
 
     stop: Any = None
     training = False
-    """Whether a run is under way, which the pool's end interrupts."""
+    """Whether a run is in progress; the end of the pool interrupts it."""
     env: Any
     settings: Mapping[str, Any]
     memory: tuple[int, int]
 
 
 def _start_worker(stop: Any, task: bytes | None) -> None:
-    # Ctrl-C reaches the whole group of processes; the parent decides.
+    # Ctrl-C reaches the whole process group; only the parent handles it.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, _interrupt)
     threading.Thread(target=_end_with, args=(multiprocessing.parent_process(),), daemon=True).start()
@@ -173,7 +172,7 @@ def _end_with(parent: Any) -> None:
 
 
 def _interrupt_after(stop: Any) -> None:
-    """Interrupts the run that is under way when the pool ends: its episode may take for ever."""
+    """Interrupts the run in progress when the pool ends: its episode may never end."""
     # Not stop.wait(): the parent's stop.set() would wait for a waiting process that was killed.
     while not stop.is_set():
         time.sleep(POLL_SECONDS)
@@ -181,7 +180,7 @@ def _interrupt_after(stop: Any) -> None:
 
 
 def _interrupt(number: int, _frame: Any) -> None:
-    """Handles SIGTERM: one of the pool's end stops the run, any other one ends the process as usual."""
+    """Handles SIGTERM: sent at the end of the pool, it stops the run; otherwise it ends the process as usual."""
     if _Worker.stop is None or not _Worker.stop.is_set():
         signal.signal(number, signal.SIG_DFL)
         signal.raise_signal(number)

@@ -1,4 +1,4 @@
-"""What a callback receives while a run is in progress."""
+"""``qtab.Progress``: the argument of callbacks while a run is in progress."""
 
 import time
 from collections.abc import Callable
@@ -25,36 +25,36 @@ if TYPE_CHECKING:
 @with_fields
 @dataclass(frozen=True, repr=False)
 class Progress:
-    """The progress of a run, as a callback receives it. Later calls receive longer arrays with the same beginning.
+    """The progress of a run, passed to callbacks. Each call receives the arrays of the call before, extended.
 
-    ``tables``, ``q_table`` and ``run`` are copied when they are first read, and cost nothing otherwise. They must be
-    read during the call: afterwards the run has moved on.
+    ``tables``, ``q_table`` and ``run`` are copied when first read, and cost nothing otherwise. Read them during the
+    call: afterwards training has continued.
     """
 
     episodes: int
-    """How many episodes are finished."""
+    """The number of finished episodes."""
     total: int
-    """How many episodes the run has."""
+    """The number of episodes of the run."""
     returns: NDArray[np.float64]
     """(episodes,): the return of each finished episode, read-only."""
     lengths: NDArray[np.int64]
-    """(episodes,): the steps of each finished episode, read-only."""
+    """(episodes,): the number of steps of each finished episode, read-only."""
     _source: "ProgressSource | None" = field(default=None, repr=False, compare=False)
 
     def __repr__(self) -> str:
-        """One line: the returns are not shown."""
+        """Returns one line, without the returns."""
         last = self.returns[-FINAL_EPISODES:]
         mean = f", the last {len(last)} at {last.mean():.2f}" if len(last) else ""
         return f"<Progress: {self.episodes:,} of {self.total:,} episodes{mean}>"
 
     @property
     def episode(self) -> int:
-        """The number of the last finished episode, from 0; -1 before the first."""
+        """The index of the last finished episode, from 0; -1 before the first."""
         return self.episodes - 1
 
     @property
     def steps(self) -> int:
-        """The number of steps of all finished episodes together."""
+        """The total number of steps of all finished episodes."""
         return int(self.lengths.sum()) if self._source is None else self._source.steps
 
     @property
@@ -64,7 +64,7 @@ class Progress:
 
     @property
     def is_current(self) -> bool:
-        """Whether the run is still where it was at the call, so that its tables can be read."""
+        """Whether training has not continued since the call, so that the tables can be read."""
         return self._required.current
 
     @property
@@ -87,21 +87,21 @@ class Progress:
         """(k, rows, actions): a copy of the Q tables; two for Double Q-learning, else one.
 
         Raises:
-            RuntimeError: if it is first read after the call.
+            RuntimeError: if ``tables`` is first read after the call.
         """
         return self._current("tables").read_tables()
 
     @cached_property
     def q_table(self) -> NDArray[np.float64]:
-        """(*cells, actions): a copy of the values that the greedy policy reads; of two tables the sum.
+        """(*cells, actions): a copy of the values that the greedy policy uses; with two tables their sum.
 
         Raises:
-            RuntimeError: if it is first read after the call.
+            RuntimeError: if ``q_table`` is first read after the call.
             ValueError: with tile coding, which has no cells.
         """
         discretizer = self._current("q_table").discretizer
         if not discretizer.has_cells or self.config.action_mask is not False:
-            return self.run.q_table  # of tile coding its error says what works instead
+            return self.run.q_table  # with tile coding, its error names the alternative
         from qtab.results.action_values import read_by_policy
 
         first, *others = read_by_policy(self.config, self.tables)
@@ -112,10 +112,10 @@ class Progress:
     def run(self) -> "Run":
         """The run so far, to be evaluated, plotted or saved. Its ``completed`` is False before the last episode.
 
-        It has no recordings: the last episodes are those of the whole run.
+        It has no recordings, which are made of the last episodes of the whole run.
 
         Raises:
-            RuntimeError: if it is first read after the call.
+            RuntimeError: if ``run`` is first read after the call.
         """
         return self._current("run").make_run()
 
@@ -145,13 +145,13 @@ class ProgressSource:
     steps: int
     seconds: float
     current: bool = True
-    """False as soon as the run goes on: what the reader reads from then on belongs to a later time."""
+    """False once training has continued: the reader then reads later values."""
 
 
 class EpisodeReader:
-    """Reads the finished episodes of a trainer. Each call copies only the episodes since the last one.
+    """Reads the finished episodes of a trainer. Each call copies only the episodes since the last call.
 
-    It is a context manager, at whose end the last Progress can no longer read its tables.
+    It is a context manager; when it exits, the last Progress can no longer read its tables.
     """
 
     def __init__(
@@ -163,7 +163,7 @@ class EpisodeReader:
         self._episodes = self._steps = 0
         self._returns, self._lengths = np.empty(0, np.float64), np.empty(0, np.int64)
         self._rates: dict[Schedule, NDArray[np.float64]] = {}
-        """The rates of the first episodes."""
+        """The rates of the first episodes, by schedule."""
         self._source: ProgressSource | None = None
 
     def __enter__(self) -> "EpisodeReader":
@@ -178,7 +178,7 @@ class EpisodeReader:
         before, self._episodes = self._episodes, self._episodes + len(returns)
         total = self.config.episodes
         if self._episodes > len(self._returns):
-            # Doubled each time, so that over a run every episode is copied about once more.
+            # The capacity doubles, so that over a run each episode is copied about once more.
             capacity = min(max(self._episodes, 2 * len(self._returns)), total)
             self._returns = _enlarge(self._returns, before, capacity)
             self._lengths = _enlarge(self._lengths, before, capacity)
@@ -190,7 +190,7 @@ class EpisodeReader:
         return Progress(self._episodes, total, *columns, self._source)
 
     def epsilon(self, episode: int) -> float | None:
-        """Returns the exploration rate of an episode, counted from 0; None unless it is epsilon-greedy."""
+        """Returns the exploration rate of an episode, counted from 0; None unless exploration is epsilon-greedy."""
         return self._rate(epsilon(self.config), episode) if self.config.exploration == "epsilon_greedy" else None
 
     def learning_rate(self, episode: int) -> float:
@@ -201,7 +201,7 @@ class EpisodeReader:
     def _rate(self, schedule: Schedule, episode: int) -> float:
         known = self._rates.get(schedule, np.empty(0, np.float64))
         if episode >= len(known):
-            # As many as the columns have room for: their length doubles, so over a run few rates are computed twice.
+            # As many as the columns hold: their capacity doubles, so few rates are computed twice.
             count = max(len(self._returns), episode + 1)
             known = self._rates[schedule] = rates(schedule, self.config.episodes, count)
         return float(known[episode])
@@ -213,7 +213,7 @@ class EpisodeReader:
             self._source = None
 
     def read_tables(self) -> NDArray[np.float64]:
-        """Returns a copy of the tables as they are now, (k, rows, actions)."""
+        """Returns a copy of the current tables, (k, rows, actions)."""
         return self._trainer.tables().reshape(-1, self.discretizer.n_rows, len(self._resolved.actions))
 
 

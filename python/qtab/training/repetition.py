@@ -1,4 +1,4 @@
-"""Whether an environment repeats itself: the same seed and the same actions, with the same outcome."""
+"""Tests whether an environment repeats itself: whether equal seeds and actions give equal results."""
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager
@@ -15,16 +15,16 @@ def repeats_itself(
     actions: Sequence[Sequence[Any]],
     returns: Sequence[float],
 ) -> bool:
-    """Plays episodes twice more, and returns whether all was the same to the last bit.
+    """Plays episodes twice more, and returns whether all results are equal bit for bit.
 
-    Between the two it compares observations, rewards and ends, and with the first time the returns. The last time
-    begins with a reset by another seed: some environments draw from the generator of the reset before.
+    The two passes must have equal observations, rewards and ends, and the returns of the original episodes. The second
+    pass begins with a reset by another seed, since some environments draw from the generator of the previous reset.
 
     Args:
-        make: Called for each time; it returns the environment, which is left when the time is over.
-        seed: The seed of the first reset; no other reset has one.
-        actions: The actions of each episode, which stops where the environment ends it.
-        returns: The return of each episode when these actions were taken first.
+        make: Called for each pass; returns a context manager of the environment.
+        seed: The seed of the first reset; all other resets are unseeded.
+        actions: The actions of each episode, which stops early if the environment ends it.
+        returns: The return of each original episode.
     """
     outcomes = []
     for seeds_before in ((), (seed + 1,)):
@@ -37,7 +37,7 @@ def repeats_itself(
 
 
 def wrapper_with_statistics(env: gym.Env) -> str | None:
-    """Returns the class name of the outermost wrapper that keeps a running mean; None if there is none."""
+    """Returns the class name of the outermost wrapper with a running mean; None if there is none."""
     while isinstance(env, gym.Wrapper):
         if any(isinstance(value, RunningMeanStd) for value in vars(env).values()):
             return type(env).__name__
@@ -62,7 +62,7 @@ def _play(env: gym.Env, seed: int, actions: Sequence[Sequence[Any]]) -> tuple[li
 
 
 def encoded(value: Any) -> bytes:
-    """Returns bytes that are equal for equal bits, also of NaN: of an observation, or of what a step returns."""
+    """Encodes an observation, or the result of a step, as bytes that are equal for equal bits, also of NaN."""
     if isinstance(value, Mapping):
         return b"".join(encoded(name) + encoded(part) for name, part in value.items())
     if isinstance(value, tuple | list):

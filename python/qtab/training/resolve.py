@@ -1,4 +1,4 @@
-"""From what a user asked for to a :class:`ResolvedRun`: the environment found, and everything left open filled in."""
+"""Turns a user's request into a :class:`ResolvedRun`: finds the environment and fills in all defaults."""
 
 import logging
 from collections.abc import Mapping
@@ -36,50 +36,50 @@ from qtab.training.resolved_run import ResolvedRun, derived_settings
 
 _LOGGER = logging.getLogger("qtab")
 _logged: set[str] = set()
-"""The environments whose default time limit was logged in this process, and the messages that were."""
+"""The messages logged in this process, and the environments whose default time limit was logged."""
 READ_IN_PYTHON = "a function as the discretizer, or max_rows, reads each observation in Python"
 MASKS_BY_STEP = "its action masks are known only from step to step"
 
 
 @dataclass(frozen=True)
 class _Request:
-    """An environment, and what is asked for in it."""
+    """An environment, and the settings requested for it."""
 
     env: gym.Env
     entry: EnvEntry | None
     """The registry entry of the environment that Rust may step instead."""
     config: Config
-    """What is asked for over the preset: checked, and not yet complete."""
+    """The settings given, over those of the preset: checked, not yet complete."""
     asked: Mapping[str, Any]
-    """What is asked for without the preset."""
+    """The settings given, without the preset."""
     time_limit: int | None
-    """That of the environment."""
+    """The time limit of the environment, in steps."""
     python_reason: str | None = None
-    """Why an environment object is stepped in Python although that was not asked for, and what would help."""
+    """The reason why an environment object is stepped in Python although this was not requested, and a remedy."""
     spec: EnvSpec | None = None
-    """That of an environment that was made here."""
+    """The spec of an environment that was made here."""
 
     def description(self) -> EnvironmentDescription:
         """Describes the environment, before anything steps it."""
         if isinstance(self.env, KnownTable) and self.spec is not None:
             return describe_known(self.spec, self.config.env_kwargs, self.env)
-        # What Rust steps has the code of its library, as was just checked.
+        # An environment stepped in Rust has its library's code, as was just checked.
         is_checked = self.entry is not None and is_of_library(type(self.env.unwrapped))
         return describe(self.env, is_new=self.spec is not None, code=LIBRARY if is_checked else None)
 
 
 def resolve(env: str | EnvSpec | gym.Env, *layers: Mapping[str, Any], owns_env: bool = False) -> ResolvedRun:
-    """Finds the environment and fills in everything that is left open.
+    """Finds the environment and fills in all defaults.
 
     Args:
         env: An environment's id, its EnvSpec, or an environment.
-        *layers: Settings by the names of their fields, a later layer over an earlier one, all over the preset.
-        owns_env: Whether an environment that is given is closed: with the run, or at once if it is not needed. One
-            that is made here always is.
+        *layers: Settings by field name; later layers override earlier ones, and all override the preset.
+        owns_env: Whether to close an environment that is given, with the run, or at once if it is not needed. An
+            environment made here is always closed.
 
     Raises:
         gymnasium.error.Error: raised by Gymnasium for an unknown environment id.
-        TypeError: if ``env`` is something else, or a setting is unknown or has the wrong type.
+        TypeError: if ``env`` has the wrong type, or a setting is unknown or has the wrong type.
         ValueError: if a setting is out of range, or the backend or a space does not fit.
     """
     with ExitStack() as on_exit:
@@ -95,12 +95,12 @@ def resolve(env: str | EnvSpec | gym.Env, *layers: Mapping[str, Any], owns_env: 
             raise TypeError(f"env must be an environment id, an EnvSpec or an environment, got {shown(env)}")
         run = _fill_defaults(request, owns_env)
         if not run.is_native:
-            on_exit.pop_all()  # the run steps the environment, and closes it
+            on_exit.pop_all()  # the run closes the environment
     return run
 
 
 def _from_spec(env: str | EnvSpec, layers: tuple[Mapping[str, Any], ...]) -> _Request:
-    # An id keeps the package that it names, so that the config makes the environment anywhere.
+    # The id keeps its package, so that the config can make the environment anywhere.
     if isinstance(env, str):
         env = versioned(env)
     name, spec = (env.id, env) if isinstance(env, EnvSpec) else (env, spec_of(env))
@@ -123,15 +123,16 @@ def _from_spec(env: str | EnvSpec, layers: tuple[Mapping[str, Any], ...]) -> _Re
 
 
 def _match(env: gym.Env, config: Config, *, is_made: bool) -> tuple[EnvEntry | None, str | None]:
-    """The entry of an environment that Rust steps; otherwise None, and why not and what would help.
+    """Returns the entry of an environment that Rust can step; otherwise None, and the reason with a remedy.
 
     Args:
         env: The environment.
-        config: What is asked for.
-        is_made: Whether it was made from an id. A render mode then asks for frames, which Rust does not draw.
+        config: The settings given.
+        is_made: Whether the environment was made from an id. A render mode then requests frames, which Rust cannot
+            draw.
 
     Raises:
-        ValueError: if the backend is Rust, and Rust cannot step it.
+        ValueError: if the backend is Rust, and Rust cannot step the environment.
     """
     if config.backend == "gymnasium":
         return None, None
@@ -164,13 +165,13 @@ def _from_env(env: gym.Env, layers: tuple[Mapping[str, Any], ...]) -> _Request:
     entry, python_reason = _match(env, config, is_made=False)
     limit = time_limit(env)
     if limit is not None and config.max_episode_steps is not None:
-        # Its wrapper ends episodes there, whatever is asked for.
+        # Its TimeLimit wrapper ends episodes there, whatever the settings.
         config = replace_checked(config, max_episode_steps=min(limit, config.max_episode_steps))
     return _Request(env, entry, config, asked, limit, python_reason)
 
 
 def _check_not_shown(env: gym.Env) -> None:
-    """Leaves an environment with a render mode to Python, so that it can be seen, as one that is given by its id."""
+    """Raises an error for an environment with a render mode, so that Python steps it and its frames are shown."""
     if getattr(env.unwrapped, "render_mode", None) is not None:
         raise NotInRustError(
             f"its render_mode is {env.unwrapped.render_mode!r}",
@@ -229,7 +230,7 @@ def _fill_defaults(request: _Request, owns_env: bool) -> ResolvedRun:
 
 
 def _environment(request: _Request, actions: Actions, owns_env: bool) -> tuple[Environment, str | None]:
-    """The environment as Rust steps it, where Rust can and the backend allows it; else itself, and why."""
+    """Returns the environment for Rust if Rust can step it and the backend allows it; else for Python, and why."""
     entry, backend, reason = request.entry, request.config.backend, request.python_reason
     if entry is not None and backend != "gymnasium":
         try:
@@ -242,7 +243,7 @@ def _environment(request: _Request, actions: Actions, owns_env: bool) -> tuple[E
 
 
 def _fit_initial_q(config: Config, discretizer: Discretizer, n_actions: int) -> Any:
-    """The first Q table; for an algorithm of two tables one that is given is used twice, or beside values of 0."""
+    """Returns the initial Q table. For an algorithm with two tables, a single one is used twice, or with zeros."""
     initial_q, count = config.initial_q, n_tables(config.algorithm)
     if not isinstance(initial_q, np.ndarray):
         return initial_q
@@ -271,19 +272,19 @@ def _fit_initial_q(config: Config, discretizer: Discretizer, n_actions: int) -> 
 
 
 def time_limit_notice(run: ResolvedRun) -> str:
-    """Returns what to tell the user where the time limit is qtab's default (``run.default_time_limit``)."""
-    return f"{run.config.env} has no time limit of its own: an episode ends after {run.max_episode_steps:,} steps"
+    """Returns the message for a run whose time limit is qtab's default (``run.default_time_limit``)."""
+    return f"{run.config.env} has no time limit: an episode ends after {run.max_episode_steps:,} steps"
 
 
 def log_default_limit(run: ResolvedRun) -> None:
-    """Logs that the time limit is qtab's default, once in a process for each environment."""
+    """Logs that the time limit is qtab's default, once per process and environment."""
     if run.default_time_limit and run.config.env not in _logged:
         _logged.add(run.config.env)
         _LOGGER.warning("%s; max_episode_steps= sets another", time_limit_notice(run))
 
 
 def log_python_stepping(run: ResolvedRun) -> None:
-    """Logs why an environment is stepped in Python, where that was not asked for: once in a process for each reason."""
+    """Logs why an environment is stepped in Python if this was not requested, once per process and reason."""
     if run.python_reason is not None:
         message = f"{run.config.env} is stepped in Python, which is much slower than Rust: {run.python_reason}"
         if message not in _logged:

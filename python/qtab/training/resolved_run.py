@@ -1,4 +1,4 @@
-"""A run that is completely described: what training takes."""
+"""A completely described run, the input of training."""
 
 from dataclasses import dataclass, replace
 
@@ -21,7 +21,7 @@ class ResolvedRun:
     """The environment found, its spaces matched, and every setting filled in."""
 
     config: Config
-    """All settings as ``run.config`` shows them and files hold them."""
+    """All settings, as in ``run.config`` and in files."""
     environment: Environment
     discretizer: Discretizer
     actions: Actions
@@ -31,9 +31,9 @@ class ResolvedRun:
     default_time_limit: bool
     """Whether the environment has no time limit, so that ``max_episode_steps`` is qtab's default."""
     python_reason: str | None
-    """Why the environment is stepped in Python, where that was not asked for, and what would help; None otherwise."""
+    """The reason why the environment is stepped in Python although this was not requested, and a remedy; else None."""
     extensions: tuple[tuple[int, int], ...] = ()
-    """Those of :class:`qtab.results.run_state.RunState`."""
+    """As in :class:`qtab.results.run_state.RunState`."""
 
     @property
     def is_native(self) -> bool:
@@ -58,7 +58,7 @@ class ResolvedRun:
         return spec
 
     def spec(self) -> RunSpec:
-        """Returns the run, except for its seed, as the extension takes it."""
+        """Returns the run without its seed, as the extension takes it."""
         return {
             "env": self._env_spec(),
             "discretizer": self.discretizer.spec(),
@@ -70,18 +70,18 @@ class ResolvedRun:
 
 
 def masks_of(trainer: _core.Trainer, resolved: ResolvedRun) -> NDArray[np.bool_] | None:
-    """Returns (*cells, actions): which actions each cell has, as last seen; None without masks, or without cells."""
+    """Returns (*cells, actions): the last mask seen in each cell; None without masks or without cells."""
     masks = trainer.action_masks() if resolved.discretizer.has_cells else None
     return None if masks is None else masks.reshape(*resolved.discretizer.shape, len(resolved.actions))
 
 
 def derived_settings(asked: Config, config: Config, discretizer: Discretizer) -> frozenset[str]:
-    """Returns the settings that were not given, and that follow from the environment or from other settings.
+    """Returns the settings that were not given but follow from the environment or from other settings.
 
     Args:
-        asked: The settings that were given, and those of the preset.
+        asked: The settings given, and those of the preset.
         config: All settings of the run.
-        discretizer: That of the run.
+        discretizer: The discretizer of the run.
     """
     names = {"max_episode_steps", *discretizer.settings()}
     derived = {name for name in names if not is_set(getattr(asked, name)) and is_set(getattr(config, name))}

@@ -1,4 +1,4 @@
-"""Puts a trainer, and an environment that is stepped in Python, where an earlier run stopped."""
+"""Restores a trainer, and an environment stepped in Python, to the point where an earlier run stopped."""
 
 import logging
 from typing import Any
@@ -17,7 +17,7 @@ _LOGGER = logging.getLogger("qtab")
 
 
 def restore(trainer: _core.Trainer, resolved: ResolvedRun, earlier: Run) -> None:
-    """Makes a new trainer the one that an earlier run had, and logs where the episode that it stopped in is lost.
+    """Restores the trainer of an earlier run, and logs if the episode in which the run stopped is lost.
 
     Raises:
         ValueError: if the state of the earlier run does not fit.
@@ -39,14 +39,14 @@ def restore(trainer: _core.Trainer, resolved: ResolvedRun, earlier: Run) -> None
         ) from None
     if is_lost:
         _LOGGER.warning(
-            "the run was stopped within episode %s (counted from 0), which cannot be continued: another one begins, "
+            "the run was stopped within episode %s (counted from 0), which cannot be continued: a new episode begins, "
             "and from there on the results differ from those of an uninterrupted run",
             f"{len(earlier.episode_returns):,}",
         )
 
 
 def continue_after(env: gym.Env, steps: int) -> None:
-    """Tells an environment that changes with time how many steps were taken, by its method ``resume_after``."""
+    """Passes the number of steps taken to ``resume_after``, a method of environments that change with time."""
     resume_after = getattr(env.unwrapped, "resume_after", None)
     if callable(resume_after):
         resume_after(steps)
@@ -63,18 +63,18 @@ def _restore_generator(env: gym.Env, seed: int, state: RunState) -> None:
 
 
 def _with_arrays(state: Any) -> Any:
-    """Turns the lists of JSON into the arrays that some bit generators have."""
+    """Converts JSON lists into the arrays that some bit generators need."""
     if isinstance(state, dict):
         return {name: _with_arrays(value) for name, value in state.items()}
     return np.array(state, np.uint64) if isinstance(state, list) else state
 
 
 def state_of(trainer: _core.Trainer, resolved: ResolvedRun, snapshots: tuple[int, ...]) -> RunState | None:
-    """Returns what :func:`restore` will need; None, with a warning, if that fails, so that what was learned is kept.
+    """Returns the state for :func:`restore`. If that fails, logs a warning and returns None, so the run is not lost.
 
     Args:
         trainer: The trainer.
-        resolved: Its run.
+        resolved: The run of the trainer.
         snapshots: The episodes at which snapshots are still to be taken.
     """
     environment = resolved.environment
@@ -83,6 +83,6 @@ def state_of(trainer: _core.Trainer, resolved: ResolvedRun, snapshots: tuple[int
         if isinstance(environment, PythonEnvironment):
             generator = generator_state(environment.env.unwrapped.np_random)
         return RunState(trainer.checkpoint(), generator, snapshots, resolved.extensions)
-    except Exception as error:  # whatever it is, such as an environment that fails
+    except Exception as error:  # such as an environment that fails
         _LOGGER.warning("the run cannot be resumed: its state could not be read (%s: %s)", type(error).__name__, error)
         return None

@@ -1,4 +1,4 @@
-"""The environment of a run: made again as it was in training, settings resolved in it, and others compared with it."""
+"""The environment of a run: makes it again as in training, resolves settings in it, compares others with it."""
 
 from collections.abc import Callable, Mapping
 from contextlib import closing
@@ -29,7 +29,7 @@ from qtab.training.resolve import resolve
 from qtab.training.resolved_run import ResolvedRun
 
 Attempt = Callable[[Any, dict[str, Any]], ResolvedRun]
-"""Resolves settings in an environment: an id, or a function that makes one."""
+"""Resolves settings in an environment, given as an id or as a function that makes it."""
 
 
 def make_run_env(
@@ -42,19 +42,19 @@ def make_run_env(
 ) -> gym.Env:
     """Makes the environment of a run, with its wrappers, its arguments, its changed attributes and its time limit.
 
-    An id from a file must be registered: nothing is imported for it.
+    An id from a file must already be registered: no module is imported for it.
 
     Args:
         config: The config of the run.
-        of: Which class to make for an environment that both Gymnasium and this package implement, with equal numbers:
+        of: The class to make for an environment that both Gymnasium and this package implement, with equal numbers:
             "either" makes the faster one (this package's), "gymnasium" Gymnasium's, and "id" that of the run's id.
-        env_kwargs: Other keyword arguments than the run's; None takes those.
-        max_episode_steps: Another time limit; None takes the run's.
-        render_mode: The render mode, if it is to be seen.
+        env_kwargs: Keyword arguments of the environment; None takes the run's.
+        max_episode_steps: The time limit, in steps; None takes the run's.
+        render_mode: The render mode; None does not render.
 
     Raises:
         gymnasium.error.UnregisteredEnv: if the run was trained on an environment that is not registered.
-        ValueError: if the environment cannot be made as it was; the message says why, and asks for ``env=``.
+        ValueError: if the environment cannot be made as it was; the message gives the reason and asks for ``env=``.
     """
     name = gymnasium_id(config.env)
     known = name in ENTRIES and of != "id"
@@ -86,27 +86,27 @@ def resolve_run(config: Config, settings: Mapping[str, Any]) -> ResolvedRun:
         gymnasium.error.UnregisteredEnv: if the run was trained on an environment that is not registered.
         ValueError: if the environment cannot be made as it was, or a setting does not fit.
     """
-    spec_of_run(config.env)  # the name of a class without an id is not taken for one
+    spec_of_run(config.env)  # raises for a class name, which is not an id
     return as_in_training(config, {"env_kwargs": config.env_kwargs, **settings}, resolve_made)[0]
 
 
 def resolve_made(env: Any, settings: Mapping[str, Any]) -> ResolvedRun:
-    """Resolves settings in an environment, an id, or what a function makes."""
+    """Resolves settings in an environment, given as an object, an id, or a function that makes it."""
     return resolve(env(), settings, owns_env=True) if isinstance(env, partial) else resolve(env, settings)
 
 
 def as_in_training(
     config: Config, settings: Mapping[str, Any], attempt: Attempt
 ) -> tuple[ResolvedRun, Any, dict[str, Any]]:
-    """Resolves settings in the environment of a config's run: by its id if that makes the environment of the training.
+    """Resolves settings in the environment of a config's run: by its id if the id makes the training environment.
 
     Args:
         config: The config.
-        settings: What is asked for.
+        settings: The settings given.
         attempt: Resolves settings in an environment.
 
     Returns:
-        The resolved run, the environment with which ``attempt`` found it, and the settings for that.
+        The resolved run, and the environment and the settings that ``attempt`` was called with.
 
     Raises:
         ValueError: if the environment cannot be made as it was, or a setting does not fit.
@@ -139,14 +139,14 @@ def environment_of(resolved: ResolvedRun) -> EnvironmentDescription:
 
 
 def _others(config: Config, env_kwargs: Any) -> bool:
-    """Whether other keyword arguments than those of a config are given."""
+    """Returns whether ``env_kwargs`` are given and differ from those of a config."""
     if env_kwargs is None:
         return False
     return not isinstance(env_kwargs, Mapping) or dict(env_kwargs) != dict(config.env_kwargs)
 
 
 def _check_plain(config: Config, description: EnvironmentDescription) -> None:
-    """Checks that the environment is what its id makes: otherwise other arguments would undo what was changed in it."""
+    """Checks that the environment is the one its id makes: otherwise new arguments would undo changes made to it."""
     with closing(make_env(spec_of_run(config.env), config.env_kwargs, disable_env_checker=True)) as env:
         changed = differences(description, describe(env, is_new=True))
     if changed:
@@ -156,7 +156,7 @@ def _check_plain(config: Config, description: EnvironmentDescription) -> None:
 def collect_for(
     env: Any, function: Callable[..., Any], config: Base | None, settings: Mapping[str, Any]
 ) -> tuple[Any, Base]:
-    """Calls :func:`qtab.config.layers.collect`, but keeps derived settings if an object is the config's environment."""
+    """Calls :func:`qtab.config.layers.collect`; keeps derived settings if an object is the config's environment."""
     given, base = collect(function, env, config, settings)
     if isinstance(env, gym.Env) and isinstance(config, Config):
         description = trained_on(config)
@@ -168,16 +168,16 @@ def collect_for(
 def resolve_over(
     env: Any, base: Base, settings: Mapping[str, Any], attempt: Attempt
 ) -> tuple[ResolvedRun, Any, dict[str, Any]]:
-    """Resolves the settings of a call over the config that it starts from.
+    """Resolves the settings of a call over its base config.
 
     Args:
         env: The environment of the call.
-        base: The config or the settings that it starts from.
+        base: The config or the settings that the call starts from.
         settings: The settings given.
         attempt: Resolves settings in an environment.
 
     Returns:
-        The resolved run, its environment as ``attempt`` took it, and the settings for that.
+        The resolved run, and the environment and the settings that ``attempt`` was called with.
 
     Raises:
         ValueError: if the environment of the config cannot be made as it was, or a setting does not fit.
@@ -192,12 +192,12 @@ def resolve_over(
 
 
 def _with_origin_of(resolved: ResolvedRun, config: Config, names: Mapping[str, Any]) -> ResolvedRun:
-    """Returns a resolved run that knows which of the settings it takes from a config had been derived there.
+    """Returns a resolved run that records which of the settings taken from a config had been derived there.
 
     Args:
         resolved: The resolved run.
         config: The config.
-        names: The settings that were given over it.
+        names: The settings given, which override the config.
     """
     ours, theirs = resolved.config.origin, config.origin
     if ours is None or theirs is None or theirs.environment is None:
@@ -207,10 +207,10 @@ def _with_origin_of(resolved: ResolvedRun, config: Config, names: Mapping[str, A
 
 
 def check_spaces(run: Run, env: gym.Env) -> None:
-    """Checks that an environment has spaces for which the tables of a run were made.
+    """Checks that an environment has the spaces that the tables of a run were made for.
 
     Raises:
-        ValueError: if it has others.
+        ValueError: if the spaces differ.
     """
     try:
         actions = choose_actions(env.action_space, run.config.actions)
@@ -229,7 +229,7 @@ def check_same(run: Run, env: gym.Env) -> None:
     """Checks that an environment is the one that a run was trained on, as far as that is known.
 
     Raises:
-        ValueError: if it is another one; the message says what differs.
+        ValueError: if it is not; the message lists the differences.
     """
     check_spaces(run, env)
     description = trained_on(run.config)
@@ -241,7 +241,7 @@ def check_env(env: Any) -> None:
     """Checks the type of the argument ``env``.
 
     Raises:
-        TypeError: if it is neither None, an id, an EnvSpec nor an environment.
+        TypeError: if ``env`` is not None, an id, an EnvSpec or an environment.
     """
     if env is not None and not isinstance(env, str | EnvSpec | gym.Env):
         raise TypeError(f"env must be an environment id, an EnvSpec or an environment, got {shown(env)}")

@@ -1,4 +1,4 @@
-"""How much memory runs take, which is known before they start."""
+"""Computes the memory that runs take before they start."""
 
 import math
 
@@ -25,21 +25,21 @@ BYTES_PER_VALUE = {
     "gradient_bandit": 16,
     "actor_critic_lambda": 16,
 }
-"""What an algorithm keeps for each value of its table: traces, or what followed each state-action pair."""
+"""Additional bytes per table value by algorithm: traces, or the model's outcome of each state-action pair."""
 BYTES_PER_VISIT_COUNT = 4
 BYTES_PER_RECORDING = 512
-"""About the size of a recorded episode without its actions: the state of a generator, as Python keeps it."""
+"""The approximate size of a recorded episode without its actions: the state of a generator as Python objects."""
 RESTORED = 3
 """The approximate memory that restoring the state of a run takes, as a multiple of its size."""
 
 
 def tables_shape(resolved: ResolvedRun, runs: int) -> tuple[int, int, int, int]:
-    """Returns the shape of the Q tables of so many runs: (runs, k, rows, actions)."""
+    """Returns the shape of the Q tables of ``runs`` runs: (runs, k, rows, actions)."""
     return runs, n_tables(resolved.config.algorithm), resolved.discretizer.n_rows, len(resolved.actions)
 
 
 def bytes_in_progress(resolved: ResolvedRun) -> int:
-    """Returns how many bytes a run takes while it trains, without what its environment takes."""
+    """Returns the memory of a run while it trains, without its environment, in bytes."""
     values = math.prod(tables_shape(resolved, 1))
     per_value = 8 + BYTES_PER_VALUE.get(resolved.config.algorithm, 0)
     if resolved.config.learning_rate_schedule == "visits":
@@ -51,16 +51,16 @@ def bytes_in_progress(resolved: ResolvedRun) -> int:
 
 
 def bytes_of_run(resolved: ResolvedRun) -> int:
-    """Returns how many bytes a run takes until its episodes are copied from the trainer's lists to arrays."""
+    """Returns the memory of a run until its episodes are copied from the trainer's lists to arrays, in bytes."""
     return bytes_in_progress(resolved) + resolved.config.episodes * BYTES_PER_EPISODE
 
 
 def table_words(resolved: ResolvedRun, needed: int) -> tuple[str, str]:
-    """Returns words for messages about too little memory: the table, if episodes take less, and what would help.
+    """Returns two parts of a message about too little memory: the table, if it outweighs the episodes, and a remedy.
 
     Args:
         resolved: The run.
-        needed: How many bytes are needed.
+        needed: The number of bytes needed.
     """
     if 2 * resolved.config.episodes * (BYTES_PER_EPISODE + BYTES_PER_RECORDING) > needed:
         return "", ""
@@ -75,17 +75,17 @@ def table_words(resolved: ResolvedRun, needed: int) -> tuple[str, str]:
 def check_run_memory(
     resolved: ResolvedRun, options: TrainingOptions, snapshots: int, earlier: Run | None = None
 ) -> tuple[int, int]:
-    """Checks that one run fits into the memory limit.
+    """Checks that a run fits into the memory limit.
 
     Args:
         resolved: The run.
-        options: What else is asked for: the limit, recordings, visits.
-        snapshots: How many copies of the tables it keeps.
-        earlier: The run that it continues, if it does.
+        options: The limit, recordings and visits of the call.
+        snapshots: The number of copies of the tables that the run keeps.
+        earlier: The earlier run that it continues, if any.
 
     Returns:
-        The limit in bytes, and how many of them are left for what grows during the run: recordings, and what its
-        algorithm stores of an episode or of its model.
+        The limit in bytes, and the bytes left for data that grows during the run: recordings, and the episode or
+        model that its algorithm stores.
 
     Raises:
         MemoryError: if the run does not fit.

@@ -1,4 +1,4 @@
-"""The progress of many runs: what a callback of ``train_many`` receives, and the parts that it is called between."""
+"""The progress of many runs: the argument of callbacks of ``train_many``, and training in parts between calls."""
 
 import time
 from collections.abc import Callable, Sequence
@@ -18,7 +18,7 @@ from qtab.training.callbacks import BaseCallback, as_tuple
 from qtab.training.resolved_run import ResolvedRun
 
 SECONDS_PER_PART = 1.0
-"""The approximate time between two calls where ``callback_every`` does not set their distance."""
+"""The approximate time between two calls if ``callback_every`` is not set."""
 LANES = 8
 """A thread trains up to this many runs at once, as in ``rust/core/src/simd/mod.rs``; a part that divides evenly leaves
 none of them idle."""
@@ -29,9 +29,9 @@ class RunsProgress:
     """The progress of many runs, as a callback receives it."""
 
     runs: int
-    """How many runs are finished."""
+    """The number of finished runs."""
     total: int
-    """How many runs there are."""
+    """The number of all runs."""
     seconds: float
     """The wall-clock time since the training began."""
     _seeds: Sequence[int] = field(repr=False)
@@ -46,17 +46,17 @@ class RunsProgress:
 
     @cached_property
     def returns(self) -> NDArray[np.float64]:
-        """(runs, episodes): the returns of the finished runs, copied when they are first read."""
+        """(runs, episodes): the returns of the finished runs, copied when first read."""
         return self._results["returns"][self._finished]
 
     @cached_property
     def lengths(self) -> NDArray[np.int64]:
-        """(runs, episodes): the steps of each episode of the finished runs, copied when they are first read."""
+        """(runs, episodes): the number of steps of each episode of the finished runs, copied when first read."""
         return self._results["lengths"][self._finished]
 
     @cached_property
     def finished(self) -> Runs:
-        """The finished runs, copied when they are first read, to be plotted or saved."""
+        """The finished runs, copied when first read, to be plotted or saved."""
         return self._make_runs(self._finished)
 
 
@@ -84,7 +84,7 @@ class RunsReporter:
         for one in self._callbacks:
             if isinstance(one, BaseCallback):
                 name = type(one).__name__
-                raise TypeError(f"callback must take a RunsProgress here: {name} is for a single run, qtab.train")
+                raise TypeError(f"callback must take a RunsProgress; {name} works only with qtab.train, a single run")
         self.every = None if callback_every is None else checks.integer("callback_every", callback_every, least=1)
         self._progress = progress
         self._bar: ProgressBar | None = None
@@ -93,7 +93,7 @@ class RunsReporter:
         self.stopped = False
 
     def start(self, seeds: Sequence[int], results: Results, make_runs: MakeRuns) -> ProgressBar:
-        """Returns the progress bar, which is a context manager, for runs that begin now."""
+        """Returns the progress bar of runs that begin now, as a context manager."""
         self._seeds, self._results, self._began = seeds, results, time.perf_counter()
         self._make_runs = make_runs
         self._bar = ProgressBar(len(seeds), "run", self._progress)
@@ -101,7 +101,7 @@ class RunsReporter:
 
     @property
     def is_used(self) -> bool:
-        """Whether anyone looks at the progress."""
+        """Whether there is a progress bar or a callback."""
         return bool(self._callbacks) or (self._bar is not None and self._bar.is_shown)
 
     def report(self) -> bool:
@@ -128,9 +128,9 @@ def train_in_parts(
     memory: tuple[int, int],
     reporter: RunsReporter,
 ) -> list[tuple[int, Exception]]:
-    """Trains a native environment with many seeds, some of them at a time, and reports after each part.
+    """Trains a native environment with many seeds in parts, and reports after each part.
 
-    Returns the index of each run that failed, and its error; no part is started after a failure.
+    Returns the index and the error of each failed run; no part is started after a failure.
     """
     spec, done, size = resolved.spec(), 0, min(reporter.every or threads, len(seeds))
     while done < len(seeds):
@@ -149,7 +149,7 @@ def train_in_parts(
 
 
 def _next_size(runs: int, seconds: float, threads: int) -> int:
-    """About as many runs as take a second, and a multiple of what all threads train at once."""
+    """Returns a number of runs that take about a second, a multiple of the runs that all threads train at once."""
     wanted = min(int(runs * SECONDS_PER_PART / max(seconds, 1e-9)), 8 * runs)
     for together in (threads * LANES, threads):
         if wanted >= together:

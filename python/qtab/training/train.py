@@ -64,26 +64,27 @@ def train(
 
     Args:
         env: An environment's id, its EnvSpec, or an environment, which is not closed. None takes the environment of
-            ``config``. Where Rust implements an environment and it is as ``gymnasium.make`` returns it, Rust trains
-            with the same numbers and leaves the object untouched. Any other environment is stepped in Python as it is;
-            the logger ``qtab`` gives the reason once, unless ``progress`` is False.
-        config: The settings to start from: the config of a run, ``qtab.train(config=run.config)``, repeats the run
-            exactly, in the environment that it was trained on, with its wrappers. Of a Config, the settings that do not
-            apply beside the keywords are ignored, and with another environment its ``env_kwargs``, its ``preset`` and
-            what followed from its own environment, such as the time limit. A mapping gives only some settings, as
-            keywords do.
-        resume: A run that was stopped early, or the path of its file, to be continued exactly where it stopped; see
-            :func:`qtab.resume`. It brings its settings along: those given here must be the same, except for
-            ``episodes``. Visits and snapshots are continued if the run has them. A run that has all its episodes is
-            returned as it is, and a message says so.
-        callback: A callable, or a sequence of them, called with a :class:`qtab.Progress` after every
-            ``callback_every`` episodes and after the last one. Any of them stops the run by returning False. Those of
+            ``config``. If Rust implements an environment and it is unchanged since ``gymnasium.make``, Rust trains
+            with the same numbers and leaves the object untouched. Any other environment is stepped in Python; the
+            logger ``qtab`` gives the reason once, unless ``progress`` is False.
+        config: The settings to start from. ``qtab.train(config=run.config)`` repeats a run exactly, in the environment
+            that it was trained on, with its wrappers. Settings of a Config that do not apply together with the
+            keywords are ignored; with another environment, so are its ``env_kwargs``, its ``preset`` and settings
+            derived from its own environment, such as the time limit. A mapping gives only some settings, as keywords
+            do.
+        resume: A run that was stopped early, or the path of its file, to continue exactly where it stopped; see
+            :func:`qtab.resume`. Its settings apply: any given here must be the same, except for ``episodes``. Visits
+            and snapshots are continued if the run has them. A run that has all its episodes is returned unchanged,
+            and a message is logged.
+        callback: A callable, or a sequence of them, called with a :class:`qtab.Progress` every ``callback_every``
+            episodes and after the last one. Any of them stops the run by returning False. The callbacks of
             :mod:`qtab.callbacks` save, log, evaluate and draw.
-        callback_every: The number of episodes between two calls, for callbacks without an interval of their own.
+        callback_every: The number of episodes between two calls, for callbacks without their own interval.
         record: The number of last episodes to keep for replay, in ``run.recordings``.
         visits: Whether to count how often each action was taken in each cell, in ``run.visits``.
-        snapshots: How many copies of the tables to keep, in ``run.snapshots``: evenly spaced over the episodes, the
-            last one included; or after how many episodes to copy them, such as ``(0, 10, 100)``, 0 being before all.
+        snapshots: The number of copies of the tables to keep in ``run.snapshots``, evenly spaced over the episodes and
+            including the last one; or the episodes after which to copy them, such as ``(0, 10, 100)``, where 0 is
+            before the first.
         progress: Whether to show a progress bar. None shows one on a terminal or in a notebook if the run takes more
             than a second.
         memory_limit: The number of bytes that the run may take; None means half of the machine's memory, but no
@@ -96,11 +97,10 @@ def train(
     Raises:
         gymnasium.error.Error: raised by Gymnasium for an unknown environment id.
         MemoryError: before the first episode, if the run would take more than ``memory_limit``; during the run, if its
-            recordings do, or what its algorithm stores of an episode or of its model, or if there is not that much
-            memory.
+            recordings, or the episode or model that its algorithm stores, exceed the limit or the machine's memory.
         TypeError: for an argument of the wrong type, or an unknown one.
         ValueError: for an argument out of range, spaces that do not fit, or a run that cannot be resumed.
-        OverflowError: if the values diverge; it names the episode and the likely cause.
+        OverflowError: if the values diverge; the message names the episode and the likely cause.
         KeyboardInterrupt: on Ctrl-C. Like any exception raised by the environment or the callback, it carries the run
             so far as ``.run``.
     """
@@ -166,9 +166,9 @@ def train_resolved(resolved: ResolvedRun, options: TrainingOptions | None = None
         trainer.check_tables()
     except BaseException as error:
         if isinstance(error, ValueError) and error.args and is_raised_in(error, train_resolved):
-            # One of the extension, about an observation: those of an environment or a callback are left alone.
+            # Raised by the extension for an observation; errors of an environment or a callback pass unchanged.
             error.args = (resolved.discretizer.in_terms_of_space(str(error)), *error.args[1:])
-        with suppress(MemoryError):  # where even the copies do not fit, the error itself still does
+        with suppress(MemoryError):  # if the copies do not fit either, raise the error without them
             attach(error, run=_run(resolved, trainer, began, collector))
         raise
     return _run(resolved, trainer, began, collector)
@@ -182,7 +182,7 @@ def _run(
     *,
     over: bool = True,
 ) -> Run:
-    """The run that a trainer has made; one that is not over goes on afterwards, and has no recordings yet."""
+    """Returns the run of a trainer. A run that is not ``over`` continues afterwards, and has no recordings yet."""
     tables = trainer.tables()
     returns, lengths, terminated = trainer.take_episodes() if over else trainer.episodes()
     kept = trainer.take_recordings() if over else []

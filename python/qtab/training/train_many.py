@@ -52,10 +52,10 @@ def train_many(
     progress: bool | None = None,
     **settings: Unpack[SharedSettings],
 ) -> Runs:
-    """Trains one agent per seed. Run ``i`` equals ``train(env, seed=seeds[i], ...)`` to the bit for any ``threads``.
+    """Trains one agent per seed. Run ``i`` equals ``train(env, seed=seeds[i], ...)`` bit for bit for any ``threads``.
 
-    Environments in Rust run on threads, without Python's interpreter lock. Those stepped in Python run in processes. As
-    always with :mod:`multiprocessing`, a script then needs ``if __name__ == "__main__":`` around its call.
+    Environments in Rust run on threads, without Python's interpreter lock. Those stepped in Python run in processes;
+    as always with :mod:`multiprocessing`, a script then needs ``if __name__ == "__main__":`` around its call.
 
     Args:
         env: An environment's id, its EnvSpec, or a function that makes one and is called several times. None takes the
@@ -66,20 +66,20 @@ def train_many(
         tables: Whether to keep the Q tables.
         memory_limit: The number of bytes that the runs may take; None means half of the machine's memory, but no
             more than is free.
-        callback: A callable, or a sequence of them, called with a :class:`qtab.RunsProgress` whenever some more runs
-            are finished, and after the last one. Any of them stops the training by returning False.
-        callback_every: The number of runs between two calls; None takes as many as need about a second.
+        callback: A callable, or a sequence of them, called with a :class:`qtab.RunsProgress` whenever more runs are
+            finished, and after the last one. Any of them stops the training by returning False.
+        callback_every: The number of runs between two calls; None calls about once a second.
         progress: Whether to show a progress bar. None shows one on a terminal or in a notebook if the runs take more
             than a second.
         **settings: The settings that all runs share, explained below.
 
     Returns:
-        The runs. ``runs.completed`` is False if a callback stopped the training; only the finished runs are there.
+        The runs. ``runs.completed`` is False if a callback stopped the training; only finished runs are included.
 
     Raises:
         gymnasium.error.Error: raised by Gymnasium for an unknown environment id.
-        MemoryError: before the first run, if they would take more than ``memory_limit``; during the runs, if what their
-            algorithm stores of episodes or of its model does.
+        MemoryError: before the first run, if the runs would take more than ``memory_limit``; during the runs, if the
+            episodes or models that their algorithm stores exceed the limit.
         TypeError: for an argument of the wrong type, an unknown one, or an environment instead of a function.
         ValueError: for an argument out of range, or a repeated seed.
         OverflowError: if the values of a run diverge.
@@ -91,14 +91,14 @@ def train_many(
     numbers = seed_sequence(seeds, limit)
     workers = thread_count(threads)
     env, base = collect(train_many, env, config, settings)
-    # The largest seed is the one that the bit generator may refuse.
+    # The bit generator may reject the largest seed.
     largest = numbers[-1] if isinstance(numbers, range) else max(numbers)
     template, env, overrides = resolve_over(env, base, {**settings, "seed": largest}, resolve_template)
     resolved = template.with_seed(numbers[0])
     log_default_limit(resolved)
     log_python_stepping(resolved)
     if tables and isinstance(resolved.discretizer, AssignedRows):
-        raise ValueError("tables must be left out with max_rows: each run assigns the rows of its table by itself")
+        raise ValueError("tables must be left out with max_rows: each run assigns the rows of its table differently")
     began = time.perf_counter()
 
     def make_runs(finished: NDArray[np.bool_]) -> Runs:
@@ -120,7 +120,7 @@ def train_many(
                 error.add_note(f"in the run with seed {numbers[index]}")
             raise error
     except BaseException as error:
-        with suppress(MemoryError):  # where even the copies do not fit, the error itself still does
+        with suppress(MemoryError):  # if the copies do not fit either, raise the error without them
             finished = make_runs(results["finished"])
             attach(error, run=finished, runs=finished)
         raise
@@ -128,16 +128,16 @@ def train_many(
 
 
 def seed_sequence(seeds: Any, limit: int) -> Sequence[int]:
-    """Returns the seeds as Python integers; an integer N means 0 to N - 1, and is not made a list.
+    """Returns the seeds as Python integers; an integer N becomes ``range(N)``.
 
     Args:
-        seeds: The seeds, as the user gave them.
-        limit: How many bytes all runs may take.
+        seeds: The seeds, as given by the user.
+        limit: The number of bytes that all runs may take.
 
     Raises:
-        MemoryError: if there are so many that their runs would take more, however short.
-        TypeError: if they are not integers.
-        ValueError: if there is none, one is negative, or one appears twice.
+        MemoryError: if even the shortest runs of so many seeds would exceed the limit.
+        TypeError: if a seed is not an integer.
+        ValueError: if there is no seed, a seed is negative, or a seed appears twice.
     """
     if hasattr(seeds, "__index__") and not np.ndim(seeds):  # an array has an __index__ too
         count = checks.integer("seeds", seeds, least=1)
@@ -163,11 +163,11 @@ def seed_numbers(seeds: Any) -> tuple[int, ...]:
 
 
 def thread_count(threads: int | None) -> int:
-    """Returns how many threads to use: by default one for each core that this process may run on.
+    """Returns the number of threads to use: by default one for each core available to this process.
 
     Raises:
-        TypeError: if it is not an integer.
-        ValueError: if it is less than one, or more than a process can have.
+        TypeError: if ``threads`` is not an integer.
+        ValueError: if ``threads`` is less than one, or more than a process can have.
     """
     if threads is not None:
         return checks.threads(threads)
@@ -177,14 +177,14 @@ def thread_count(threads: int | None) -> int:
 
 
 def resolve_template(env: str | EnvSpec | MakeEnv, settings: Mapping[str, Any]) -> ResolvedRun:
-    """Resolves a run of which others differ by their seed; its environment is closed again.
+    """Resolves a run that the others differ from only by their seed; its environment is closed again.
 
     Raises:
         TypeError: for a single environment, which several runs cannot share.
     """
     if isinstance(env, gym.Env):
         raise TypeError(
-            "env must be an id, an EnvSpec or a function that makes an environment: many runs cannot share one"
+            "env must be an id, an EnvSpec or a function that makes an environment: runs cannot share an environment"
         )
     made: Any = env
     if callable(env):
@@ -196,7 +196,7 @@ def resolve_template(env: str | EnvSpec | MakeEnv, settings: Mapping[str, Any]) 
     if callable(env) and resolved.is_native and not _makes_equals(env, made):
         if settings.get("backend") == "rust":
             raise ValueError("env must make equal environments at every call for backend 'rust', got two that differ")
-        # Each run makes an environment then, in a process of its own.
+        # Each run then makes an environment, in a separate process.
         resolved = resolve(env(), {**settings, "backend": "gymnasium"}, owns_env=True)
         resolved.close()
     return resolved
@@ -210,17 +210,17 @@ def _makes_equals(make_env: MakeEnv, made: gym.Env) -> bool:
 def allocate_results(
     resolved: ResolvedRun, runs: int, at_once: int, keep_tables: bool, limit: int
 ) -> tuple[Results, tuple[int, int]]:
-    """Returns arrays for the results of many runs, and the limit with what it leaves for what grows during the runs.
+    """Returns arrays for the results of many runs, the limit, and the bytes left for data that grows during the runs.
 
     Args:
         resolved: One of the runs.
-        runs: How many there are.
-        at_once: How many are trained at the same time.
+        runs: The number of runs.
+        at_once: The number of runs trained at the same time.
         keep_tables: Whether to keep the Q tables.
-        limit: How many bytes the results and the runs in progress may take.
+        limit: The number of bytes that the results and the runs in progress may take.
 
     Raises:
-        MemoryError: if they would take more.
+        MemoryError: if the results and the runs in progress would exceed the limit.
     """
     episodes = resolved.config.episodes
     values = math.prod(tables_shape(resolved, 1))
@@ -249,7 +249,7 @@ def train_in_threads(
     *,
     keep_going: bool,
 ) -> list[tuple[int, Exception]]:
-    """Trains a native environment with many seeds; returns the index of each run that failed, and its error.
+    """Trains a native environment with many seeds; returns the index and the error of each failed run.
 
     Unless ``keep_going`` is set, the first failure ends all runs.
     """
@@ -284,7 +284,7 @@ def _runs(
 
 
 def _masks(resolved: ResolvedRun, results: Results, rows: Any) -> NDArray[np.bool_] | None:
-    """(runs, *cells, actions): the masks of runs in Rust are known from the start; None where there are none."""
+    """Returns (runs, *cells, actions): the masks, which are known from the start in Rust; None without masks."""
     shape = (*resolved.discretizer.shape, len(resolved.actions))
     runs = len(results["finished"][rows])
     if resolved.masks.known is not None:

@@ -1,4 +1,4 @@
-"""Whether a run solved its environment: the one definition of it, and what it was measured by."""
+"""Decides whether a run solved its environment; the only definition of "solved"."""
 
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -23,7 +23,7 @@ from qtab.training.evaluate import evaluate
 from qtab.training.run_env import can_be_made
 
 EVALUATION_EPISODES = 100
-"""Episodes of the greedy policy, where its return is not computed exactly."""
+"""The number of episodes to play with the greedy policy if its return is not computed exactly."""
 
 
 @dataclass(frozen=True)
@@ -31,17 +31,17 @@ class Goal:
     """The return from which a run counts as solved."""
 
     threshold: float | None
-    """Gymnasium's threshold, where it holds."""
+    """Gymnasium's threshold, if it applies."""
     best: float | None = None
-    """The return of the best policy that the run could learn, where one is known."""
+    """The return of the best policy that the run could learn, if known."""
     label: str = ""
-    """What ``best`` is."""
+    """The description of ``best`` in messages."""
     registered: float | None = None
-    """The threshold of the environment as it is registered, also where it does not hold."""
+    """The registered threshold of the environment, even if it does not apply."""
 
     @property
     def least(self) -> float | None:
-        """The threshold; where there is none, or no policy reaches it, 2 % below the best return; or None."""
+        """The threshold; if there is none or no policy reaches it, 2 % below the best return, or None if unknown."""
         if self.threshold is not None and (self.best is None or self.threshold <= self.best):
             return self.threshold
         return None if self.best is None else self.best - max(0.02 * abs(self.best), 0.01)
@@ -57,26 +57,26 @@ class Goal:
 
 @dataclass(frozen=True)
 class Verdict:
-    """Whether a run solved its environment, and the returns that decide it. It prints as what was measured."""
+    """Whether a run solved its environment, and the returns that decide it. ``str`` lists the returns."""
 
     solved: bool | None
-    """True where the greedy policy's return, or where that is not exact the mean of the last 100 training episodes,
-    reaches the goal. None where there is no goal, or neither is known."""
+    """True if the greedy policy's return, or, where that is not exact, the mean of the last 100 training episodes
+    reaches the goal. None if there is no goal, or neither is known."""
     goal: Goal
     last: int
-    """The number of the last training episodes: 100, or all where there are fewer, which do not count."""
+    """The number of last training episodes averaged: 100, or all if there are fewer, which then do not count."""
     final_return: float
-    """Their mean return."""
+    """The mean return of the last training episodes."""
     greedy_return: float | None
-    """The mean return of the greedy policy; None where it was not measured, as there is no goal or Rust does not step
-    the environment."""
+    """The mean return of the greedy policy; None if it was not measured, because there is no goal or Rust does not
+    step the environment."""
     greedy_is_exact: bool
-    """Whether it was computed from a transition table, not from 100 episodes."""
+    """Whether the greedy return was computed from a transition table instead of from 100 episodes."""
     why_unknown: str = ""
-    """Why ``solved`` is None."""
+    """The reason why ``solved`` is None."""
 
     def numbers(self) -> dict[str, Any]:
-        """Returns the verdict in plain values, for JSON."""
+        """Returns the verdict as plain values, for JSON."""
         return {
             "threshold": self.goal.threshold,
             "goal_return": self.goal.least,
@@ -98,7 +98,7 @@ def judge(run: Run, optimum: KnownOptimum | None) -> Verdict:
 
     Args:
         run: The run.
-        optimum: The optimum of its environment, where it is known; see :func:`qtab.planning.solve.quick_optimum`.
+        optimum: The optimum of its environment, if known; see :func:`qtab.planning.solve.quick_optimum`.
     """
     goal, last = _goal(run.config, optimum), run.episode_returns[-SOLVED_EPISODES:]
     final = float(last.mean()) if len(last) else float("nan")
@@ -117,13 +117,13 @@ def judge(run: Run, optimum: KnownOptimum | None) -> Verdict:
 
 
 def _greedy_return(run: Run, optimum: KnownOptimum | None) -> tuple[float | None, bool]:
-    """Returns the return of a run's greedy policy, and whether it is exact; None where Rust cannot play it.
+    """Returns the return of a run's greedy policy, and whether it is exact; None if Rust cannot play it.
 
-    With preferences the trained policy is their softmax. The exact return of the greedy policy would not decide for it,
-    so episodes are played instead, beside which the training episodes count.
+    With preferences the trained policy is their softmax, so the exact return of the greedy policy would not decide
+    whether the run is solved. Episodes are played instead, and the training episodes count as well.
     """
     if optimum is not None and optimum.exact and run.config.algorithm not in PREFERENCES:
-        with suppress(ValueError):  # a table of other rows than the states
+        with suppress(ValueError):  # the rows of the table are not the states
             return float(optimum.solver.greedy_return(run)[0]), True
     if run.config.backend != "rust" or not can_be_made(run.config):
         return None, False
@@ -140,7 +140,7 @@ def _goal(config: Config, optimum: KnownOptimum | None) -> Goal:
     within_reach = goal.threshold is not None and goal.threshold <= optimum.expected_return
     if within_reach or config.time_aware or not optimum.exact or optimum.stationary is None:
         return goal
-    best = optimum.stationary.expected_return  # a table that does not count the steps can hold no better policy
+    best = optimum.stationary.expected_return  # the best policy that does not depend on the step count
     if np.isclose(best, optimum.expected_return, rtol=1e-9, atol=1e-12):
         return goal
     return replace(goal, best=best, label="best return without a count of the steps")

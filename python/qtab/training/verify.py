@@ -35,38 +35,38 @@ class Verification:
     env: str
     seed: int
     episodes: int
-    """How many episodes were compared."""
+    """The number of compared episodes."""
     returns_equal: bool
     lengths_equal: bool
     table_equal: bool
     episode: int | None
-    """The first episode (from 0) in which the two differ; None where none does."""
+    """The first episode (from 0) in which the two differ; None if none does."""
     step: int | None
-    """The first step (from 0) of that episode at which their actions differ; None where none does."""
+    """The first step (from 0) of ``episode`` at which their actions differ; None if none does."""
     versions: dict[str, str]
     repeats: bool | None = None
-    """Whether the environment gave the same results twice for the same seed and actions; None where nothing differs."""
+    """Whether the environment gave the same results twice for the same seed and actions; None if nothing differs."""
     wrapper: str | None = None
-    """The class name of a wrapper of ``env`` with statistics of its own; None where nothing differs, or without one."""
+    """The class name of a wrapper of ``env`` that keeps statistics; None without one or if nothing differs."""
     trained_with: dict[str, str] | None = None
-    """The platform and the versions of the run that are not those of this comparison; None where nothing differs."""
+    """The platform and versions of the run that differ from those of this comparison; None if nothing differs."""
     table_of_run: bool = True
     """Whether the Q table compared was the run's own. False if the run holds no table after exactly these episodes:
-    only its first ones are compared, or it was stopped within an episode. The table then comes from training again."""
+    only its first ones are compared, or it was stopped within one. The table then comes from training again."""
 
     @property
     def equal(self) -> bool:
-        """Whether returns, lengths and the Q table, see :attr:`table_of_run`, are equal byte for byte."""
+        """Whether returns, lengths and the Q table (see :attr:`table_of_run`) are equal byte for byte."""
         return self.returns_equal and self.lengths_equal and self.table_equal
 
     def __repr__(self) -> str:
-        """One line: ``print`` shows the whole report."""
+        """Returns one line; ``print`` shows the whole report."""
         episodes = counted(self.episodes, "episode")
         found = "equal" if self.equal else "DIFFERENT" + ("" if self.episode is None else f" from {self._place} on")
         return f"<Verification of {self.env}: seed {self.seed}, {episodes}, {found}>"
 
     def __str__(self) -> str:
-        """A report of several lines."""
+        """Returns a report of several lines."""
         lines = [self._heading, *(f"  {name:7}  {word}" for name, word in self._words().items())]
         if self.episode is not None:
             lines.append(f"  they differ from {self._place} on (counted from 0)")
@@ -77,7 +77,7 @@ class Verification:
         return "\n".join(lines)
 
     def _repr_html_(self) -> str:
-        """The report as a table, for notebooks."""
+        """Returns the report as a table, for notebooks."""
         facts = {"compared": f"{self.episodes:,} episodes, byte for byte", **self._words()}
         if self.episode is not None:
             facts["they differ from"] = f"{self._place} on (counted from 0)"
@@ -90,7 +90,7 @@ class Verification:
         return html.summary(f"Verification of {self.env}, seed {self.seed}", {**facts, **self.versions})
 
     def _about_the_environment(self) -> list[str]:
-        """What the environment has to do with a difference, in lines of a report."""
+        """Returns lines of the report about the environment as a cause of the difference."""
         lines = []
         if self.repeats is False:
             lines.append("the environment does not repeat itself: the same seed and actions gave different results the")
@@ -98,17 +98,17 @@ class Verification:
         elif self.repeats:
             lines.append("the environment repeats itself: the same seed and actions gave the same results twice")
         if self.wrapper is not None:
-            lines.append(f"its wrapper {self.wrapper} keeps statistics, which start where the last call left them:")
+            lines.append(f"its wrapper {self.wrapper} keeps statistics from one call to the next:")
             lines.append("give train and verify a new environment each, and call verify without episodes=")
         return lines
 
     def _about_the_machine(self) -> list[str]:
-        """What other libraries have to do with a difference, in lines of a report."""
+        """Returns lines of the report about other libraries as a cause of the difference."""
         if not self.trained_with:
             return []
         trained_with = ", ".join(f"{name} {value}" for name, value in self.trained_with.items())
         return [
-            f"the run was trained with {trained_with}: other libraries may round a sine or a cosine in another way",
+            f"the run was trained with {trained_with}: other libraries may round a sine or a cosine differently",
         ]
 
     @property
@@ -137,24 +137,24 @@ def verify(
 ) -> Verification:
     """Trains a run's config again with Gymnasium's environment and the reference learner in plain NumPy, and compares.
 
-    Where the two differ, the reference's actions are taken twice more, to tell whether the environment repeats itself.
+    If the two differ, the reference's actions are taken twice more, to find out whether the environment repeats itself.
 
     Args:
-        run: What to verify.
-        episodes: Compare only the first episodes, using the full run's schedule: where these are not all of them, the
-            run holds no table of that time, and the one that Rust has after training again is compared. None compares
-            all episodes and the run's own Q table.
-        env: The environment, where that of the run cannot be made again: an environment, which is not closed, an id or
-            an EnvSpec. It must be the one that the run was trained on.
+        run: The run to verify.
+        episodes: The number of first episodes to compare, using the full run's schedule. The run holds no table of an
+            earlier episode, so Rust trains again for the table to compare. None compares all episodes and the run's
+            own Q table.
+        env: The environment, for a run whose environment qtab cannot make again: an environment, which is not closed,
+            an id or an EnvSpec. It must be the one that the run was trained on.
         progress: Called after every episode of the reference with the number done and the total.
 
     Raises:
         gymnasium.error.UnregisteredEnv: without ``env``, for a run whose environment is not registered.
         TypeError: for an argument of the wrong type.
-        MemoryError: if the tables of the reference do not fit into what is free.
+        MemoryError: if the tables of the reference do not fit into the free memory.
         ValueError: for an argument out of range, an environment that is not that of the run, or an interrupted run
-            without ``episodes``. Of a run that was resumed with more episodes while a rate fell, only the episodes
-            before can be compared.
+            without ``episodes``. If a run was resumed with more episodes and a falling rate, only the episodes before
+            the extension can be compared.
     """
     checks.instance("run", run, Run)
     check_env(env)
@@ -228,14 +228,14 @@ def verify(
 
 
 def _environment(config: Config, env: gym.Env | None) -> gym.Env:
-    """Gymnasium's own environment, also where the id names qtab's."""
+    """Returns Gymnasium's own environment, even if the id names qtab's."""
     if env is not None:
         return gym.wrappers.TimeLimit(env, checks.required("max_episode_steps", config.max_episode_steps))
     return make_run_env(config, of="gymnasium")
 
 
 def _again(config: Config, env: gym.Env | None, episodes: int) -> tuple[NDArray[np.float64], list[Any]]:
-    """Trains in Rust again: the table after so many episodes, and the actions of the last of them."""
+    """Trains in Rust again; returns the table after ``episodes`` episodes, and the actions of the last one."""
     fields = _fields(config, env)
     resolved = resolve_run(config, fields) if env is None else resolve(env, fields)
     try:
@@ -256,7 +256,7 @@ def _fields(config: Config, env: gym.Env | None) -> dict[str, Any]:
 
 
 def _first_difference(*pairs: tuple[NDArray[Any], NDArray[Any]]) -> int | None:
-    """The first index at which the arrays of a pair differ, for any of the pairs."""
+    """Returns the first index at which the arrays of any pair differ."""
     unequal = np.any([theirs != ours for theirs, ours in pairs], axis=0)
     return int(np.argmax(unequal)) if unequal.any() else None
 
@@ -272,7 +272,7 @@ def _first_step(config: Config, env: gym.Env | None, run: Run, recorder: "_Recor
 
 
 class _Recorder(gym.Wrapper[Any, Any, Any, Any]):
-    """Keeps every action, and reports the progress of the reference."""
+    """Records every action, and reports the progress of the reference."""
 
     def __init__(self, env: gym.Env, total: int, progress: Callable[[int, int], None] | None) -> None:
         super().__init__(env)
