@@ -124,7 +124,7 @@ def test_the_first_block_of_the_page_writes_the_file(tmp_path, monkeypatch):
 
 def test_what_json_does_not_have_is_refused(tmp_path):
     run = qtab.train("FrozenLake-v1", episodes=2, seed=0, env_kwargs={"reward_schedule": (float("inf"), 0, 0)})
-    with pytest.raises(ValueError, match="env_kwargs must hold what JSON can"):
+    with pytest.raises(ValueError, match="env_kwargs must be JSON data"):
         run.to_json(tmp_path / "run.json")
     assert list(tmp_path.iterdir()) == []
     with pytest.raises(OSError, match="path"):

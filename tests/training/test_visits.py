@@ -147,7 +147,7 @@ def test_a_number_of_snapshots_is_spread_over_the_run(snapshots: Any, episodes: 
         ({"snapshots": 2.5}, TypeError, "snapshots must be an integer or a sequence of episode numbers, got 2.5"),
         ({"snapshots": True}, TypeError, "snapshots must be an integer or a sequence of episode numbers, got True"),
         ({"snapshots": "3"}, TypeError, "snapshots must be an integer or a sequence of episode numbers, got '3'"),
-        ({"snapshots": []}, ValueError, "snapshots must be how many, or hold at least one episode number"),
+        ({"snapshots": []}, ValueError, "snapshots must be a number, or hold at least one episode number"),
         ({"snapshots": np.array([2.5])}, TypeError, r"^snapshots\[0\] must be an integer from 0 to 10, got .*2\.5"),
         ({"snapshots": np.array([[1, 2]])}, TypeError, r"^snapshots\[0\] must be an integer from 0 to 10, got "),
         ({"snapshots": [11]}, ValueError, r"^snapshots\[0\] must be an integer from 0 to 10, got 11$"),

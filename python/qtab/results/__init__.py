@@ -1,1 +1,1 @@
-"""What training returns: runs, their summaries, and how a run is saved."""
+"""The results of training: runs, their summaries and their files."""

@@ -1,4 +1,4 @@
-"""The action values of a run, with -inf for the actions that an observation does not have, also before it began."""
+"""The action values of a run, also of its initial tables, with -inf for the actions that an observation excludes."""
 
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
@@ -27,20 +27,20 @@ def summed(parts: Iterable[NDArray[np.float64]]) -> NDArray[np.float64]:
 
 
 def read_by_policy(config: Config, tables: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Returns the tables, (k, ...), whose sum the greedy policy reads: of preferences and state values the former."""
+    """Returns the tables, (k, ...), whose sum the greedy policy uses; preferences without the state values."""
     return tables[:1] if config.algorithm in WITH_STATE_VALUES else tables
 
 
 def greedy_table(run: "Run") -> NDArray[np.float64]:
-    """Returns (1, rows, actions): the table that the greedy policy reads; of two their sum."""
+    """Returns (1, rows, actions): the table that the greedy policy uses; with two tables their sum."""
     return summed(read_by_policy(run.config, run.tables))[np.newaxis]
 
 
 def state_values(run: "Run", observation: Any, steps: Any = 0) -> NDArray[np.float64]:
-    """Returns the () or (n,) values of observations under the policy that was learned.
+    """Returns the () or (n,) values of observations under the learned policy.
 
     Raises:
-        ValueError: of an algorithm that learns preferences alone.
+        ValueError: for an algorithm that learns only preferences.
     """
     if run.config.algorithm in WITH_STATE_VALUES:
         active = np.moveaxis(rows_of(run, observation, steps), -1, 0)
@@ -48,19 +48,19 @@ def state_values(run: "Run", observation: Any, steps: Any = 0) -> NDArray[np.flo
     if run.config.algorithm in PREFERENCES:
         raise ValueError(
             f"values needs an algorithm that learns values, got a run of {run.config.algorithm!r}, which learns "
-            "preferences alone: run.q_values(observation) are those"
+            "only preferences: run.q_values(observation) returns them"
         )
     return np.asarray(np.max(of_observations(run, observation, steps), axis=-1) / len(run.tables))
 
 
 def of_cells(run: "Run") -> NDArray[np.float64]:
-    """Returns (*cells, actions): the values or preferences that the greedy policy reads; of two tables the sum."""
+    """Returns (*cells, actions): the values or preferences that the greedy policy uses; with two tables their sum."""
     values = summed(read_by_policy(run.config, run.tables)).reshape(*run.discretizer.shape, len(run.actions))
     return values if run.action_masks is None else np.where(run.action_masks, values, -np.inf)
 
 
 def of_observations(run: "Run", observation: Any, steps: Any = 0) -> NDArray[np.float64]:
-    """Returns the (actions,) values of an observation, or the (n, actions) values of n, after a number of steps."""
+    """Returns the (actions,) or (n, actions) values of one or n observations after ``steps`` steps."""
     rows = rows_of(run, observation, steps)
     values = _of_rows(run, rows)
     available = _available(run, observation, rows)
@@ -68,11 +68,11 @@ def of_observations(run: "Run", observation: Any, steps: Any = 0) -> NDArray[np.
 
 
 def to_choose_from(run: "Run", observation: Any, action_masks: Any, steps: Any = 0) -> NDArray[np.float64]:
-    """Returns the values of observations to choose an action by, masked by ``action_masks`` if they are given.
+    """Returns the values by which to choose the actions of observations, masked by ``action_masks`` if given.
 
     Raises:
         TypeError: if the masks do not hold booleans or integers.
-        ValueError: if they do not fit, or none are given and none are known.
+        ValueError: if the masks do not fit, or none are given and none are known.
     """
     rows = rows_of(run, observation, steps)
     values = _of_rows(run, rows)
@@ -106,7 +106,7 @@ def _of_rows(run: "Run", rows: NDArray[np.int64]) -> NDArray[np.float64]:
 
 
 def _available(run: "Run", observation: Any, rows: NDArray[np.int64]) -> NDArray[np.bool_] | None:
-    """Which actions the observations have, of shape (..., actions): by the function, or as last seen in their cells."""
+    """Returns (..., actions): the masks of observations, from the function or as last seen in their cells."""
     setting = run.config.action_mask
     if callable(setting):
         observations = run.discretizer.split(observation, None if rows.ndim == 1 else len(rows))
@@ -119,11 +119,11 @@ def _available(run: "Run", observation: Any, rows: NDArray[np.int64]) -> NDArray
 
 
 def mask_of_step(config: Config, env: gym.Env, observation: Any, info: Mapping[str, Any]) -> NDArray[np.bool_] | None:
-    """Returns the mask of what an environment's ``reset`` or ``step`` has just returned; None without masks.
+    """Returns the mask of the last result of an environment's ``reset`` or ``step``; None without masks.
 
     Raises:
-        TypeError: if it does not hold booleans or integers.
-        ValueError: if it does not fit, there is none, or the function that gives it is not known.
+        TypeError: if the mask does not hold booleans or integers.
+        ValueError: if the mask does not fit or is missing, or its function is not known.
     """
     setting = config.action_mask
     if setting is False:
@@ -153,6 +153,6 @@ def initial_tables(run: "Run") -> NDArray[np.float64]:
 
 
 def are_finite(run: "Run") -> bool:
-    """Returns whether all values are finite; those of missing actions are -inf from the start."""
+    """Returns whether all values are finite, except for excluded actions, which are -inf from the start."""
     finite = np.isfinite(run.tables)
     return bool(finite.all() or (finite | np.isneginf(initial_tables(run))).all())

@@ -1,4 +1,4 @@
-"""What the axes of a run's tables mean: the components of the observation, and the actions."""
+"""The meaning of the axes of a run's tables: the components of the observation, and the actions."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -28,18 +28,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Axis:
-    """A component of the observation, and how the discretizer divides it."""
+    """A component of the observation and its cells."""
 
     name: str
-    """Its name in Gymnasium's documentation, in lower case, such as ``"position"``; for an unknown environment
+    """The name in Gymnasium's documentation, in lower case, such as ``"position"``; for an unknown environment
     ``"state"`` if the observation is one integer, else ``"observation[0]"`` and so on."""
     unit: str
-    """Its unit; empty where it has none, or where it is not known."""
+    """The unit; empty if there is none or it is unknown."""
     edges: NDArray[np.float64]
-    """(cells + 1,): the ascending edges of its cells. Of tile coding, those of an unshifted tiling; of integers,
-    the numbers halfway between. The outermost are those of the space or of the discretizer; they can be infinite."""
+    """(cells + 1,): the ascending edges of the cells. With tile coding, the edges of an unshifted tiling; for integers,
+    the midpoints. The outermost edges are those of the space or of the discretizer; they can be infinite."""
     values: tuple[str, ...] = ()
-    """The names of its cells, where they have some, such as ``("no", "yes")``."""
+    """The names of the cells, if they have any, such as ``("no", "yes")``."""
 
     @property
     def label(self) -> str:
@@ -47,14 +47,14 @@ class Axis:
         return Quantity(self.name, self.unit).label
 
     def __repr__(self) -> str:
-        """One line: the edges are not shown."""
+        """Returns one line, without the edges."""
         cells = len(self.edges) - 1
         within = f"from {self.edges[0]:.6g} to {self.edges[-1]:.6g}" if cells else "of one value"
         return f"<Axis {self.label}: {counted(cells, 'cell')} {within}>"
 
 
 def run_quantities(config: Config, discretizer: "Discretizer") -> Quantities:
-    """Returns what the numbers of a run's environment mean, as far as that is known."""
+    """Returns the names and units of the numbers of a run's environment, as far as they are known."""
     known = observed_quantities(config.env, discretizer.low, discretizer.high)
     environment = trained_on(config)
     if environment is None:  # a file of an earlier version
@@ -66,7 +66,7 @@ def run_quantities(config: Config, discretizer: "Discretizer") -> Quantities:
 
 
 def axes_of(known: Quantities, discretizer: "Discretizer") -> tuple[Axis, ...]:
-    """Returns an axis for each component of the observations of an environment; the steps taken are the first one."""
+    """Returns an axis for each component of the observations; with ``time_aware`` the steps taken come first."""
     edges = discretizer.cell_edges()
     if isinstance(discretizer, TimeAware):
         return (Axis("steps taken", "", edges[0]), *axes_of(known, discretizer.cells))
@@ -91,7 +91,7 @@ def action_names(known: Quantities, actions: Actions) -> tuple[str, ...]:
 
 
 def _named_parts(action: Any) -> str:
-    """The numbers of a composite action, and the keys where it is a dict."""
+    """Returns the numbers of a composite action as text, with the keys of a dict."""
     if isinstance(action, dict):
         return "{" + ", ".join(f"{key}: {_named_parts(part)}" for key, part in action.items()) + "}"
     if isinstance(action, tuple):

@@ -1,4 +1,4 @@
-"""The behaviour policy of a run: how it chose actions, with the exploration of the end of its training."""
+"""The behaviour policy of a run, with the exploration at the end of its training."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,19 +8,19 @@ from qtab.config.policies import EpsilonGreedy, Ucb, policy
 
 
 def action_probabilities(config: Config, episodes: int, values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Returns (n, actions): the probability with which each action is chosen after so many episodes.
+    """Returns (n, actions): the probability of each action after ``episodes`` episodes.
 
     Args:
         config: The config of a run.
         episodes: The number of finished episodes, which determines ε.
-        values: (n, actions): the action values, -inf for unavailable actions; each row has an available one.
+        values: (n, actions): the action values, -inf for unavailable actions; each row has an available action.
     """
     chosen = policy(config)
     if isinstance(chosen, EpsilonGreedy):
         epsilon = chosen.epsilon.after(episodes, config.episodes)
         greedy = _greedy(values, chosen.ties == "random")
         return epsilon * _uniform(~np.isneginf(values)) + (1.0 - epsilon) * _uniform(greedy)
-    if isinstance(chosen, Ucb):  # the counts of its bounds are not part of a run
+    if isinstance(chosen, Ucb):  # a run does not hold the action counts that UCB needs
         return _uniform(_greedy(values, chosen.ties == "random"))
     with np.errstate(under="ignore"):
         weights = np.exp((values - values.max(axis=1, keepdims=True)) / chosen.temperature)
@@ -32,7 +32,7 @@ def sample(probabilities: NDArray[np.float64], generator: np.random.Generator) -
     """Returns (n,): an action drawn from each row of (n, actions) probabilities."""
     cumulative = np.cumsum(probabilities, axis=1)
     total = cumulative[:, -1:]
-    # Rounding may reach the total, and the last actions may have a probability of 0.
+    # After rounding, a draw may equal the total; the last actions may have probability 0.
     drawn = np.minimum(generator.random(total.shape) * total, np.nextafter(total, 0.0))
     actions: NDArray[np.int64] = np.argmax(drawn < cumulative, axis=1)
     return actions

@@ -1,4 +1,4 @@
-"""What holds for runs, and is checked of those that are saved or loaded: their parts fit together."""
+"""Checks that the parts of a run fit together, when it is saved or loaded."""
 
 import math
 from typing import TYPE_CHECKING
@@ -15,11 +15,12 @@ if TYPE_CHECKING:
 
 
 def check_consistent(run: "Run") -> None:
-    """Refuses a run that no training returns.
+    """Raises an error for a run that training cannot have returned.
 
     Raises:
         FloatingPointError: if the bounds of the discretizer overflow.
-        ValueError: if its parts contradict each other or its config, or a number is not finite; the message says which.
+        ValueError: if its parts contradict each other or its config, or a number is not finite; the message names the
+            part.
     """
     with np.errstate(all="raise"):
         _check_tables(run, run.tables, _shape(run))
@@ -34,7 +35,7 @@ def check_consistent(run: "Run") -> None:
 
 
 def check_consistent_runs(runs: "Runs") -> None:
-    """Refuses runs that ``train_many`` does not return.
+    """Raises an error for runs that ``train_many`` cannot have returned.
 
     Raises:
         FloatingPointError: if the bounds of the discretizer overflow.
@@ -55,7 +56,7 @@ def check_consistent_runs(runs: "Runs") -> None:
 
 
 def _shape(run: "Run | Runs") -> tuple[int, int, int]:
-    """The shape of the tables of one run."""
+    """Returns the shape of the tables of one run."""
     return n_tables(run.config.algorithm), run.discretizer.n_rows, len(run.actions)
 
 

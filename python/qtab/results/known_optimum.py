@@ -12,7 +12,7 @@ class KnownOptimum(Protocol):
 
     @property
     def label(self) -> str:
-        """``"optimum"``, or ``"best known"`` where it is not exact."""
+        """``"optimum"``, or ``"best known"`` if the result is not exact."""
 
     @property
     def exact(self) -> bool:
@@ -20,8 +20,8 @@ class KnownOptimum(Protocol):
 
     @property
     def stationary(self) -> Any:
-        """The best policy that ignores the number of steps taken; None where it is not known."""
+        """The best policy that ignores the number of steps taken; None if unknown."""
 
     @property
     def solver(self) -> Any:
-        """Computes the expected return of other policies."""
+        """The solver, which computes the expected return of other policies."""

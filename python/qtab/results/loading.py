@@ -1,4 +1,4 @@
-"""``qtab.load`` and ``qtab.load_runs``: saved runs, whose files are checked before use."""
+"""``qtab.load`` and ``qtab.load_runs``: read saved runs, after checking their files."""
 
 import logging
 import os
@@ -33,7 +33,7 @@ from qtab.results.saved_actions import restore_actions
 _LOGGER = logging.getLogger("qtab")
 Result = TypeVar("Result", Run, Runs)
 _MAX_REASON = 400
-"""The characters of the reason in an error: it may show values from the file."""
+"""The maximum length of the reason in an error, in characters: the reason may show values from the file."""
 
 
 def load(
@@ -42,28 +42,29 @@ def load(
     discretizer: Callable[[Any], Any] | None = None,
     action_mask: Callable[[Any], Any] | None = None,
 ) -> Run:
-    """Reads a run that :meth:`qtab.Run.save` wrote, after checking that not a byte of it was changed.
+    """Reads a run that :meth:`qtab.Run.save` wrote, after checking that no byte of it was changed.
 
     :func:`qtab.load_runs` reads the file of many runs, and :func:`qtab.load_sweep` the store of a sweep.
 
-    Files of earlier versions have no digest to check it by. They are read all the same, with a message of the logger
-    ``qtab`` that says so, and ``run.unchecked`` is True.
+    Files of earlier versions have no digest to check. They are read anyway; the logger ``qtab`` reports this, and
+    ``run.unchecked`` is True.
 
     The environment that a file names is used only if it is registered with Gymnasium: no module is imported because a
-    file names it. For ``"package:Name-v0"`` import the package first, or pass ``env=`` to what needs the environment.
+    file names it. For ``"package:Name-v0"``, import the package first, or pass ``env=`` to the functions that need the
+    environment.
 
     Args:
         path: The file.
-        discretizer: The function that was the run's discretizer, of which a file holds only the name. Without it the
-            run is loaded as well, but cannot read an observation.
-        action_mask: The function that gave the action masks of a run that was trained with one, which its file does
-            not hold. Without it the run can be looked at, and predicts for the cells that it has seen.
+        discretizer: The function that was the run's discretizer; a file holds only its name. Without the function the
+            run can be loaded, but cannot read observations.
+        action_mask: The function that gave the run's action masks, which a file cannot hold. Without the function the
+            run can be inspected, and predicts only for the cells that it has seen.
 
     Raises:
         OSError: if the file is missing or cannot be read.
         TypeError: if ``discretizer`` is given and is not a function, or the run had none.
-        ValueError: if it is not a run file, is damaged, or comes from another version of the format; the
-            message says why.
+        ValueError: if the file is not a run file, is damaged, or comes from another version of the format; the message
+            gives the reason.
     """
     return _load(path, "run file", run_file.RUN, _run, discretizer, action_mask)
 
@@ -74,7 +75,7 @@ def load_runs(
     discretizer: Callable[[Any], Any] | None = None,
     action_mask: Callable[[Any], Any] | None = None,
 ) -> Runs:
-    """Reads runs that :meth:`qtab.Runs.save` wrote, after checking that not a byte of them was changed.
+    """Reads runs that :meth:`qtab.Runs.save` wrote, after checking that no byte of them was changed.
 
     As for :func:`qtab.load`, no module is imported because a file names it.
 
@@ -86,8 +87,8 @@ def load_runs(
     Raises:
         OSError: if the file is missing or cannot be read.
         TypeError: if ``path`` is not a path, or ``discretizer`` is given and is not a function, or the runs had none.
-        ValueError: if it is not a file of runs, is damaged, or comes from another version of the format; the message
-            says why.
+        ValueError: if the file is not a file of runs, is damaged, or comes from another version of the format; the
+            message gives the reason.
     """
     return _load(path, "file of runs", run_file.RUNS, _runs, discretizer, action_mask)
 
@@ -106,9 +107,7 @@ def _load(
         result = restore(content, discretizer)
     _check_function(discretizer, result.config)
     if not content.has_digest:
-        _LOGGER.warning(
-            "%r has no digest, as files of earlier versions: that it is undamaged is not checked", str(path)
-        )
+        _LOGGER.warning("%r has no digest, like all files of earlier versions: damage cannot be detected", str(path))
     if trained_on(result.config) is None:
         _LOGGER.warning(
             "%r stores only the id and the arguments of its environment, like all files of earlier versions: wrappers, "
@@ -119,11 +118,11 @@ def _load(
 
 
 def with_action_mask(run: Result, action_mask: Callable[[Any], Any]) -> Result:
-    """Returns a run, or runs, from a file with the function that the file does not hold.
+    """Returns a run, or runs, from a file, with the function for action masks that the file cannot hold.
 
     Raises:
-        TypeError: if it is not a function.
-        ValueError: if they were not trained with one.
+        TypeError: if ``action_mask`` is not a function.
+        ValueError: if the run was not trained with a function.
     """
     if not callable(action_mask):
         raise TypeError(f"action_mask must be a function of the observation, got {shown(action_mask)}")
@@ -134,9 +133,9 @@ def with_action_mask(run: Result, action_mask: Callable[[Any], Any]) -> Result:
 
 @contextmanager
 def _opened(path: Path, kind: str) -> Iterator[BinaryIO]:
-    """Opens a file; what cannot be read from it is a ValueError that names the file and the kind of it.
+    """Opens a file; turns errors while reading it into a ValueError that names the file and the expected kind.
 
-    A FIFO, which would be waited for until something is written to it, is refused.
+    A FIFO raises an error, since reading it would wait until something is written.
 
     Raises:
         OSError: if the file is missing or cannot be read.
@@ -154,10 +153,10 @@ def _opened(path: Path, kind: str) -> Iterator[BinaryIO]:
 
 
 def _check_function(function: Any, config: Config) -> None:
-    """Checks that a function is given only for what was trained with one.
+    """Checks that a function is given only if the discretizer was a function.
 
     Raises:
-        TypeError: if it is not a function, or the discretizer was not one.
+        TypeError: if ``function`` is not a function, or the discretizer was not one.
     """
     if function is not None and (isinstance(config.discretizer, str | dict) or not callable(function)):
         had = f"{config.discretizer!r}, not a function" if isinstance(config.discretizer, str | dict) else "a function"
@@ -196,7 +195,7 @@ def _runs(content: run_file.Content, function: Callable[[Any], Any] | None) -> R
     if not isinstance(seeds, list):
         raise ValueError(f"its seeds must be a list, got {seeds!r}")
     rows = _integer(header, "rows")
-    if not rows < MAX_TABLE_SIZE:  # a file without tables may be much smaller than what its rows would need
+    if not rows < MAX_TABLE_SIZE:  # without tables, a small file may claim any number of rows
         raise ValueError(f"its number of rows must be less than 2**32, got {rows}")
     discretizer = discretizers.restore(shared["config"], stored, rows)
     if "action_masks" in stored:
@@ -217,13 +216,13 @@ def _shared_fields(content: run_file.Content, function: Callable[[Any], Any] | N
     """Returns the fields that the files of one run and of many runs have in common.
 
     Args:
-        content: What the file holds.
-        function: The function that was the discretizer, if it is given.
+        content: The content of the file.
+        function: The function that was the discretizer, if given.
 
     Raises:
-        KeyError: if one is missing.
-        TypeError: if the config holds what is no setting.
-        ValueError: if one is impossible.
+        KeyError: if a field is missing.
+        TypeError: if the config has an unknown setting.
+        ValueError: if a field has an impossible value.
     """
     header, stored = content.header, content.arrays
     seconds, versions = header["seconds"], header["versions"]
@@ -246,7 +245,7 @@ def _shared_fields(content: run_file.Content, function: Callable[[Any], Any] | N
 
 
 def _state(header: Mapping[str, Any], array: Any) -> RunState:
-    # Versions that did not continue snapshots or note extensions wrote none.
+    # Earlier versions, which did not continue snapshots or record extensions, wrote neither.
     return RunState.restore(array, header["generator"], header.get("snapshots", []), header.get("extensions", []))
 
 
@@ -269,7 +268,7 @@ def _config(header: Mapping[str, Any], stored: Mapping[str, Any], function: Call
 
 
 def _origin(header: Mapping[str, Any]) -> Origin | None:
-    """The origin that a file stores; None for files of earlier versions."""
+    """Returns the origin that a file stores; None for files of earlier versions."""
     if "origin" not in header:
         return None
     content = header["origin"]
@@ -280,11 +279,11 @@ def _origin(header: Mapping[str, Any]) -> Origin | None:
 
 
 def _integer(header: Mapping[str, Any], name: str) -> int:
-    """Returns an integer in a header.
+    """Returns an integer from a header.
 
     Raises:
-        KeyError: if it is missing.
-        ValueError: if it is something else.
+        KeyError: if ``name`` is missing.
+        ValueError: if the value is not an integer.
     """
     value = header[name]
     if isinstance(value, bool) or not isinstance(value, int):

@@ -1,4 +1,4 @@
-"""What a run file holds only where it was asked for: visits, action masks, snapshots and the average reward."""
+"""The optional arrays of a run file: visits, action masks, snapshots and the average reward."""
 
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def optional_arrays(run: "Run") -> dict[str, NDArray[Any]]:
-    """Returns the arrays to save."""
+    """Returns the optional arrays to save."""
     arrays: dict[str, NDArray[Any]] = {}
     if run.visits is not None:
         arrays["visits"] = run.visits
@@ -31,13 +31,13 @@ def optional_arrays(run: "Run") -> dict[str, NDArray[Any]]:
 def restore_optional(
     stored: Mapping[str, NDArray[Any]], tables: NDArray[np.float64], cells: tuple[int, ...], finished: int
 ) -> dict[str, Any]:
-    """Returns the fields of a run that these arrays of a file give, after checking them.
+    """Returns the fields of a run that the optional arrays of a file hold, after checking them.
 
     Args:
         stored: The arrays in the file.
         tables: The run's tables.
         cells: The shape of its discretizer.
-        finished: How many episodes the run has.
+        finished: The number of finished episodes.
 
     Raises:
         KeyError: if one of the two arrays of snapshots is missing.
@@ -73,7 +73,7 @@ def checked_masks(masks: NDArray[Any], shape: tuple[int, ...]) -> NDArray[np.boo
     """Returns the action masks in a file.
 
     Raises:
-        ValueError: if they are not booleans of this shape, or leave a state no action.
+        ValueError: if the masks are not booleans of this shape, or leave a state without actions.
     """
     if masks.dtype != np.bool_ or masks.shape != shape or not masks.any(axis=-1).all():
         raise ValueError(f"its action masks are not booleans of shape {shape} that leave each state an action")

@@ -16,7 +16,7 @@ WRITER = ""
 
 
 class WithPage:
-    """Gives a run its page."""
+    """A mixin with :meth:`to_html`."""
 
     def to_html(
         self,
@@ -30,16 +30,16 @@ class WithPage:
     ) -> None:
         """Writes one self-contained HTML page, completely or not at all.
 
-        It holds the summary, the learning curve, the values and the policy, with a slider over the snapshots where
-        ``snapshots=`` kept them, a greedy episode in motion where the environment can be rendered, the diagnosis where
-        Rust steps the environment, and all settings. It loads nothing from the network. With 50 snapshots it takes 1 to
-        3 MB; of more, 50 are shown.
+        It holds the summary, the learning curve, the values and the policy, with a slider over the snapshots if
+        ``snapshots=`` kept any, an animated greedy episode if the environment can be rendered, the diagnosis if Rust
+        steps the environment, and all settings. It loads nothing from the network. With 50 snapshots it takes 1 to
+        3 MB; at most 50 are shown.
 
         Args:
             path: The file.
-            optimum: A result of :func:`qtab.optimum`, or a return, to mark in the learning curve. None marks the one
-                that the diagnosis knows.
-            at: For observations of more than two components, the values of those that are not axes; see
+            optimum: A result of :func:`qtab.optimum`, or a return, to mark in the learning curve. None marks the
+                optimum that the diagnosis uses, if any.
+            at: For observations of more than two components, the values of the components that are not axes; see
                 :func:`qtab.plots.values`.
             layout: A map for numbered states; see :func:`qtab.plots.values`.
             env: The environment to render, as for :func:`qtab.play`; None takes the run's.
@@ -49,7 +49,7 @@ class WithPage:
             ModuleNotFoundError: without matplotlib or Pillow; the message names the ``pip install``.
             OSError: if the file cannot be written.
             TypeError: for an argument of the wrong type.
-            ValueError: for one that does not fit the environment.
+            ValueError: for an argument that does not fit the environment.
         """
         write_page: Any = importlib.import_module(WRITER).write_page
         write_page(self, path, optimum=optimum, at=at, layout=layout, env=env, progress=progress)

@@ -1,4 +1,4 @@
-"""A run's policy as JSON that any language can read; ``docs/how_to/export.md`` describes it and uses it."""
+"""A run's policy as JSON that any language can read; ``docs/how_to/export.md`` describes the format."""
 
 import json
 from pathlib import Path
@@ -19,7 +19,7 @@ FORMAT_VERSION = 1
 
 
 def plain_data(run: "Run") -> dict[str, Any]:
-    """Returns what it takes to follow a run's greedy policy: numbers, texts, lists and dicts alone."""
+    """Returns all data needed to follow a run's greedy policy, as numbers, strings, lists and dicts."""
     discretizer, actions = run.discretizer, run.actions
     return {
         "format": FORMAT,
@@ -43,10 +43,10 @@ def write(run: "Run", path: Path) -> None:
 
     Raises:
         OSError: if the file cannot be written.
-        TypeError: if the environment's keyword arguments hold what JSON cannot.
-        ValueError: if they hold a number that JSON cannot, the run is not one that training returns, or its
-            observations are nested, given to a function or assigned rows as they are seen, or tile coding has action
-            masks.
+        TypeError: if the environment's keyword arguments are not JSON data.
+        ValueError: if they hold a number that JSON cannot represent, the run is not one that training returns, its
+            observations are nested, its discretizer is a function or assigns rows as observations are seen, or it
+            combines tile coding with action masks.
     """
     try:
         check_consistent(run)
@@ -55,7 +55,7 @@ def write(run: "Run", path: Path) -> None:
     if run.config.time_aware:
         raise ValueError(
             "this run cannot be written: plain data describes policies without time_aware; "
-            "run.at_step(step).to_json(path) writes that of one step"
+            "run.at_step(step).to_json(path) writes the policy of one step"
         )
     if run.discretizer.reads_space:
         raise ValueError(
@@ -67,7 +67,7 @@ def write(run: "Run", path: Path) -> None:
     try:
         text = json.dumps(plain_data(run), allow_nan=False)
     except (TypeError, ValueError) as error:
-        raise type(error)(f"env_kwargs must hold what JSON can, got {run.config.env_kwargs!r}: {error}") from None
+        raise type(error)(f"env_kwargs must be JSON data, got {run.config.env_kwargs!r}: {error}") from None
     with replacing(path) as temporary:
         temporary.write_text(text + "\n", encoding="utf-8")
 
@@ -82,12 +82,12 @@ def _plain(action: Any) -> Any:
 
 
 def _masked(table: NDArray[np.float64], action_masks: NDArray[np.bool_] | None) -> NDArray[np.float64]:
-    """Returns a table with -inf where the mask of a cell excludes an action, as the run's policy reads it."""
+    """Returns a table with -inf where the mask of a cell excludes an action."""
     return table if action_masks is None else np.where(action_masks.reshape(table.shape), table, -np.inf)
 
 
 def _rows(table: NDArray[np.float64]) -> list[list[float | None]]:
-    """Returns a list for each row, with None for the -inf of an action that a state does not have."""
+    """Returns a list for each row, with None for the -inf of excluded actions."""
     rows: list[list[float | None]] = table.tolist()
     if np.isneginf(table).any():
         rows = [[None if value == -np.inf else value for value in row] for row in rows]

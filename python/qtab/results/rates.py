@@ -1,4 +1,4 @@
-"""The rates of each episode of a run, even if it was resumed with more episodes while a rate fell."""
+"""The rates in each episode of a run, even if it was resumed with more episodes and a falling rate."""
 
 from dataclasses import replace
 
@@ -10,24 +10,24 @@ from qtab.config.schedules import ByVisits, Constant, Linear, Schedule, epsilon,
 from qtab.results.run import Run
 
 POINTS = 1000
-"""The largest number of episodes, evenly spaced, at which a rate is computed."""
+"""The maximum number of evenly spaced episodes for which a rate is computed."""
 ONLY_FIRST = "only those can be repeated, because its falling rates were then spread over more episodes"
-"""Why the later episodes of a run that was extended cannot be repeated, for messages."""
+"""The reason why the later episodes of an extended run cannot be repeated, for messages."""
 
 
 def rates(schedule: Schedule, total: int, count: int) -> NDArray[np.float64]:
-    """Returns (count,): the values of a schedule in the first episodes of a run, with the bits that the learners use.
+    """Returns (count,): the values of a schedule in the first episodes of a run, bit for bit those of the learners.
 
     Args:
         schedule: The schedule.
         total: The number of episodes of the run, over which a linear fall is spread.
-        count: The number of episodes asked for. A run that is stopped early may need far fewer than ``total``.
+        count: The number of first episodes. A run that is stopped early may need far fewer than ``total``.
     """
     values = np.full(count, schedule.value)
     if isinstance(schedule, Constant):
         return values
     falling = values[schedule.warm_up :]
-    # As the learners do: an amount is subtracted, or a factor applied, after one episode after the other.
+    # Like the learners, subtract an amount or apply a factor after each episode in turn.
     if isinstance(schedule, Linear):
         falling[1:] = (schedule.value - schedule.minimum) / (total - schedule.warm_up)
         np.subtract.accumulate(falling, out=falling)
@@ -43,7 +43,7 @@ def rates(schedule: Schedule, total: int, count: int) -> NDArray[np.float64]:
 
 
 def rates_of(run: Run, schedule: Schedule, episodes: NDArray[np.int64]) -> NDArray[np.float64]:
-    """Returns (n,): the value that a schedule of the run's config had in each of n episodes, numbered from 0.
+    """Returns (n,): the values of a schedule of the run's config in n episodes, numbered from 0.
 
     Each extension spreads a linear fall over the new number of episodes, from the first episode on.
     """
@@ -56,7 +56,7 @@ def rates_of(run: Run, schedule: Schedule, episodes: NDArray[np.int64]) -> NDArr
 
 
 def learning_rates(run: Run) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-    """Returns (n,) evenly spaced episodes, the last one included, and (n,) learning rates; by visits, the first."""
+    """Returns (n,) evenly spaced episodes, including the last, and their (n,) learning rates; by visits, the first."""
     points, rate = _evenly_spaced(len(run.episode_returns)), learning_rate(run.config)
     if isinstance(rate, ByVisits):
         return points, np.full(len(points), rate.value)
@@ -64,7 +64,7 @@ def learning_rates(run: Run) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
 
 
 def epsilons(run: Run) -> NDArray[np.float64]:
-    """Returns (n,): the exploration rate of an epsilon-greedy policy in evenly spaced episodes, the last included."""
+    """Returns (n,): the rates of ε-greedy exploration in evenly spaced episodes, including the last."""
     return rates_of(run, epsilon(run.config), _evenly_spaced(len(run.episode_returns)))
 
 
@@ -73,7 +73,7 @@ def _evenly_spaced(episodes: int) -> NDArray[np.int64]:
 
 
 def falling_rates(config: Config) -> list[str]:
-    """Returns the rates that fall linearly, so that each episode's depends on the number of all episodes."""
+    """Returns the names of the rates that fall linearly, and so depend on the total number of episodes."""
     falling = []
     for rate in ("epsilon", "learning_rate"):
         value, least = getattr(config, rate), getattr(config, f"min_{rate}")
@@ -92,15 +92,15 @@ def extensions(run: Run, config: Config) -> tuple[tuple[int, int], ...]:
     earlier = () if run.state is None else run.state.extensions
     finished, episodes = len(run.episode_returns), run.config.episodes
     if finished == 0 or episodes == config.episodes or not falling_rates(config):
-        return earlier  # every episode has had the rates of the new number of episodes
+        return earlier  # the rates of the finished episodes do not change
     return (*earlier, (finished, episodes))
 
 
 def repeatable(run: Run) -> tuple[Run, int]:
-    """Returns a run with the config that its first episodes were trained with, and how many they are.
+    """Returns a run with the config of its first episodes, and the number of these episodes.
 
-    Training this config again repeats these episodes. They are all of them, unless the run was extended while a rate
-    fell: an episode's rate depends on the number of episodes that the run had at the time.
+    Training this config again repeats these episodes. They are all episodes, unless the run was extended with a
+    falling rate, which depends on the number of episodes that the run had at the time.
     """
     if run.state is None or not run.state.extensions:
         return run, len(run.episode_returns)

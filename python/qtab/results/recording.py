@@ -18,7 +18,7 @@ class Recording:
     start: Mapping[str, Any]
     """The state of the environment's bit generator before the episode's reset."""
     actions: tuple[Any, ...]
-    """What ``env.step`` was given: integers, with the start of a Discrete space added, or arrays."""
+    """The arguments of ``env.step``: integers, with the start of a Discrete space added, or arrays."""
 
     def __repr__(self) -> str:
         return f"<Recording of episode {self.episode}: {len(self.actions):,} actions>"

@@ -34,50 +34,49 @@ if TYPE_CHECKING:
 @with_fields
 @dataclass(frozen=True, eq=False, repr=False)
 class Run(WithPage):
-    """A finished or interrupted run: its config, its episodes, and what it learned."""
+    """A finished or interrupted run: its config, its episodes and the learned tables."""
 
     config: Config
     """Everything needed to repeat the run; defaults and preset are filled in."""
     tables: NDArray[np.float64]
     """(k, rows, actions): the Q tables; two for Double Q-learning, else one. Policy gradient methods have preferences
-    in the first one, and state values, if they learn them, in the second: the value of a row in each of its columns."""
+    in the first table and state values, if learned, in the second, where all columns of a row hold its value."""
     episode_returns: NDArray[np.float64]
     """(episodes,): the sum of rewards of each finished episode."""
     episode_lengths: NDArray[np.int64]
     """(episodes,): the number of steps of each finished episode."""
     terminated: NDArray[np.bool_]
-    """(episodes,): whether each ended in a terminal state, not only by its time limit."""
+    """(episodes,): whether each episode ended in a terminal state, not only by its time limit."""
     discretizer: Discretizer
     """Maps observations to rows of the tables."""
     actions: Actions
     """The environment's actions, in the order of the columns of the tables."""
     completed: bool
-    """False after an early stop; the tables then hold what was learned so far, an unfinished episode included."""
+    """False after an early stop; the tables then include the updates of an unfinished episode."""
     seconds: float
-    """How long the training took, in wall-clock time."""
+    """The wall-clock time of the training."""
     versions: Mapping[str, str]
     """The versions of qtab, Gymnasium, NumPy and Python, and the platform."""
     recordings: tuple[Recording, ...] = field(default=(), repr=False)
-    """The last episodes, where ``record=`` asked for them, to be replayed. They are not saved."""
+    """The last episodes, for replay, if ``record=`` was given. They are not saved."""
     unchecked: bool = field(default=False, repr=False)
-    """True for a run from a file of an earlier version, which has no digest: damage to it may not have been noticed."""
+    """True for a run from a file of an earlier version, which has no digest to detect damage."""
     visits: NDArray[np.int64] | None = field(default=None, repr=False)
-    """(*cells, actions): how often each action was taken in each cell, where ``visits=True`` counted it. With
-    tile coding (rows, actions): a step counts once for each weight of its action, one in each tiling. None if
-    they were not counted."""
+    """(*cells, actions): how often each action was taken in each cell; None without ``visits=True``. With tile coding
+    (rows, actions): a step counts once for each weight of its action, one in each tiling."""
     snapshots: Snapshots | None = field(default=None, repr=False)
-    """The tables at several episodes, where ``snapshots=`` asked for them; None elsewhere."""
+    """The tables at several episodes; None without ``snapshots=``."""
     action_masks: NDArray[np.bool_] | None = field(default=None, repr=False)
-    """(*cells, actions): which actions each cell has, as last seen; all, where it was never seen. None without
-    ``action_mask=``, and with tile coding."""
+    """(*cells, actions): the last mask seen in each cell; True in cells never seen. None without ``action_mask=``,
+    and with tile coding."""
     average_reward: float | None = field(default=None, repr=False)
-    """The average reward per step that differential Sarsa or Q-learning learned; None for other algorithms, and like
-    :attr:`state`."""
+    """The average reward per step that differential Sarsa or Q-learning learned; None for other algorithms, for
+    runs of ``train_many`` and from files of earlier versions."""
     state: RunState | None = field(default=None, repr=False)
-    """What :func:`qtab.resume` needs; None for runs of ``train_many`` and from files of earlier versions."""
+    """The state for :func:`qtab.resume`; None for runs of ``train_many`` and from files of earlier versions."""
 
     def __repr__(self) -> str:
-        """One line: the tables are not shown."""
+        """Returns one line, without the tables."""
         config, finished = self.config, len(self.episode_returns)
         episodes = str(finished) if self.completed else f"{finished} of {config.episodes}"
         last = self.episode_returns[-FINAL_EPISODES:]
@@ -86,7 +85,7 @@ class Run(WithPage):
         return f"<Run of {config.env}: {config.algorithm}, seed {config.seed}, {episodes} episodes{mean}{unchecked}>"
 
     def _repr_html_(self) -> str:
-        """A table and the learning curve, for notebooks."""
+        """Returns a table and the learning curve, for notebooks."""
         config, returns = self.config, self.episode_returns
         facts: dict[str, object] = {
             "algorithm": f"{config.algorithm}, seed {config.seed}",
@@ -108,7 +107,7 @@ class Run(WithPage):
 
     @property
     def trained_on(self) -> EnvironmentDescription | None:
-        """The environment in detail, as it was when training began; None where a file does not say it."""
+        """The environment in detail, as it was when training began; None if a file does not store it."""
         return trained_on(self.config)
 
     @property
@@ -118,10 +117,10 @@ class Run(WithPage):
 
     @property
     def q_table(self) -> NDArray[np.float64]:
-        """(*cells, actions): the values that the greedy policy reads; of two tables the sum; -inf for masked actions.
+        """(*cells, actions): the values that the greedy policy uses; with two tables their sum; -inf if masked.
 
-        With ``time_aware`` the axis of the steps comes first: ``q_table[t]`` are the values after t steps. Of a policy
-        gradient method they are the preferences, of which the policy is the softmax.
+        With ``time_aware`` the axis of the steps comes first: ``q_table[t]`` are the values after t steps. For policy
+        gradient methods, the values are preferences; the policy is their softmax.
 
         Raises:
             ValueError: with tile coding, which has no cells.
@@ -131,9 +130,9 @@ class Run(WithPage):
 
     @property
     def policy(self) -> Any:
-        """(*cells,): the greedy action of each cell, the first of several; (*cells, *shape) if actions are arrays.
+        """(*cells,): the greedy action of each cell, the first in a tie; (*cells, *shape) if actions are arrays.
 
-        Of a Tuple or Dict space it is a tuple or dict of these.
+        For a Tuple or Dict space it is a tuple or dict of such arrays.
 
         Raises:
             ValueError: with tile coding, which has no cells; :meth:`predict` works.
@@ -143,7 +142,7 @@ class Run(WithPage):
 
     @property
     def axes(self) -> tuple[Axis, ...]:
-        """For each component of the observation its name, its unit and the edges of its cells."""
+        """The name, the unit and the edges of the cells of each component of the observation."""
         return axes_of(run_quantities(self.config, self.discretizer), self.discretizer)
 
     @property
@@ -159,40 +158,40 @@ class Run(WithPage):
             )
 
     def at_step(self, step: int) -> "Run":
-        """Returns a run with ``time_aware=True`` as it is at one step of the episode, to be looked at like any other.
+        """Returns the part of a run with ``time_aware=True`` for one step of the episode, to inspect like any run.
 
         Its tables, visits, masks and snapshots are those after ``step`` steps; its config has ``time_aware=False``. It
         can neither be repeated nor resumed.
 
         Raises:
             TypeError: if ``step`` is not an integer.
-            ValueError: if it is negative or not before the time limit, or not 0 for a run without ``time_aware``.
+            ValueError: if ``step`` is negative or not below the time limit, or not 0 for a run without ``time_aware``.
         """
         return time_steps.at_step(self, step)
 
     def q_values(self, observation: Any, step: int = 0) -> NDArray[np.float64]:
         """Returns the (actions,) values of an observation, or the (n, actions) values of n observations.
 
-        Of a policy gradient method they are preferences. With ``time_aware`` they are those after ``step`` steps.
+        For policy gradient methods, they are preferences. With ``time_aware``, the values after ``step`` steps.
 
         Raises:
             TypeError: if the observation does not hold numbers (integers for a discrete space).
-            ValueError: if it has another shape than the space, or lies outside the space; or for a ``step`` as in
-                :meth:`at_step`.
+            ValueError: if the observation does not have the shape of the space or lies outside it; or for a ``step`` as
+                in :meth:`at_step`.
         """
         return action_values.of_observations(self, observation, time_steps.checked_step(self.discretizer, step))
 
     def values(self, observation: Any, step: int = 0) -> Any:
         """Returns the value of an observation under the greedy policy, or the (n,) values of n observations.
 
-        It is the largest action value, as a float. Of Double Q-learning, whose :attr:`q_table` is the sum of two
-        tables, it is half of that: the mean of two estimates. Of REINFORCE with baseline and of actor-critic methods it
-        is the state value that they learn. With ``time_aware`` it is that after ``step`` steps.
+        The value is the largest action value, as a float. For Double Q-learning, whose :attr:`q_table` is the sum of
+        two tables, it is half of that: the mean of two estimates. For REINFORCE with baseline and actor-critic methods
+        it is the learned state value. With ``time_aware`` it is the value after ``step`` steps.
 
         Raises:
             TypeError: if the observation does not hold numbers (integers for a discrete space).
-            ValueError: if it has another shape than the space, or lies outside the space, or for an algorithm that
-                learns preferences without values; or for a ``step`` as in :meth:`at_step`.
+            ValueError: if the observation does not have the shape of the space or lies outside it; for an algorithm
+                that learns only preferences; or for a ``step`` as in :meth:`at_step`.
         """
         step = time_steps.checked_step(self.discretizer, step)
         values = action_values.state_values(self, observation, step)
@@ -206,29 +205,29 @@ class Run(WithPage):
         deterministic: bool = True,
         action_masks: ArrayLike | None = None,
     ) -> tuple[Any, Any]:
-        """Returns the action of an observation as ``env.step`` takes it, and the state of the policy, as SB3 does.
+        """Returns the action for an observation, in the form ``env.step`` takes, and the policy's state, as in SB3.
 
         The action has the type of the action space's samples: an integer, an array, or a tuple or a dict of these. For
-        n observations, batched as Gymnasium's vector environments do, it returns an array of n actions. The policy
-        of a run with ``time_aware=True`` has a state, the number of steps taken in the episode, which the next call
-        takes; from the time limit on it acts as in the last step. Any other run returns None as the state.
+        n observations, batched as in Gymnasium's vector environments, it returns an array of n actions. The policy
+        of a run with ``time_aware=True`` has a state, the number of steps taken in the episode; pass it to the next
+        call. From the time limit on, the policy acts as in the last step. Any other run returns None as the state.
 
         Args:
             observation: An observation, or n of them.
-            state: The state that the last call returned, of n observations (n,) of them; None for the start of an
-                episode. Ignored without ``time_aware``.
-            episode_start: Whether an episode starts, of n observations (n,) booleans; None means no. Ignored without
+            state: The state that the last call returned, (n,) for n observations; None for the start of an episode.
+                Ignored without ``time_aware``.
+            episode_start: Whether an episode starts, (n,) booleans for n observations; None means no. Ignored without
                 ``time_aware``.
-            deterministic: True takes the greedy action, which is the most likely one of preferences. False draws an
-                action from the behaviour policy, with the ε or the temperature that the last episode of the training
-                left: an ε that fell to 0 leaves the greedy action, as does exploration "ucb". The draws come from a
-                generator of this run, seeded by the run's seed, with other numbers than those of the training.
-            action_masks: (actions,) or (n, actions): which actions are allowed. None: by the run's ``action_mask``.
+            deterministic: True takes the greedy action; with preferences, the most likely one. False draws an action
+                from the behaviour policy, with the ε or the temperature at the end of the training: an ε that fell to
+                0 gives the greedy action, as does exploration "ucb". The draws come from a separate generator, seeded
+                by the run's seed, whose numbers differ from those of the training.
+            action_masks: (actions,) or (n, actions): the allowed actions. None uses the run's ``action_mask``.
 
         Raises:
             TypeError: if the observation does not hold numbers (integers for a discrete space), or ``deterministic`` is
                 not a boolean.
-            ValueError: if it has another shape than the space, or lies outside the space.
+            ValueError: if the observation does not have the shape of the space or lies outside it.
         """
         deterministic = checks.boolean("deterministic", deterministic)
         steps = time_steps.steps_taken(self.discretizer, state, episode_start)
@@ -244,15 +243,15 @@ class Run(WithPage):
 
     @cached_property
     def _generator(self) -> np.random.Generator:
-        """Draws for :meth:`predict`, from the seed's second child: the agent trains with the first one under PCG64."""
+        """The generator of :meth:`predict`: the seed's second child. With PCG64, the agent trains with the first."""
         return np.random.default_rng(np.random.SeedSequence(self.config.seed).spawn(2)[1])
 
     def mean_returns(self, block: int = 100) -> NDArray[np.float64]:
-        """Returns the average return of each whole block of episodes, as the article plots it; none of a shorter run.
+        """Returns the average return of each whole block of episodes, as plotted in the article; empty for short runs.
 
         Raises:
             TypeError: if ``block`` is not an integer.
-            ValueError: if it is less than one.
+            ValueError: if ``block`` is less than one.
         """
         block = checks.integer("block", block, least=1)
         means: NDArray[np.float64] = block_means(self.episode_returns[np.newaxis], block)[0]
@@ -269,22 +268,22 @@ class Run(WithPage):
     def to_json(self, path: "str | os.PathLike[str]") -> None:
         """Writes the greedy policy as plain data: tables, discretizer, actions. ``docs/how_to/export.md`` has its keys.
 
-        It raises what :meth:`save` does.
+        Raises the exceptions of :meth:`save`.
         """
         plain_data.write(self, checks.file_path("path", path))
 
     def save(self, path: "str | os.PathLike[str]") -> None:
         """Writes the run to one ``.npz`` file: arrays and a JSON header, never a pickle. :func:`qtab.load` reads it.
 
-        A digest of all of it is written as well, by which :func:`qtab.load` notices any change. A symbolic link stays,
-        and its target is replaced.
+        The file includes a digest, with which :func:`qtab.load` detects any change. If ``path`` is a symbolic link, its
+        target is replaced.
 
         Raises:
-            OSError: if the file cannot be written, or something is there that is not a regular file. An older file
-                stays whole, even if the process is killed.
-            TypeError: if the environment's keyword arguments hold what JSON cannot.
-            ValueError: if they hold a number that JSON cannot, or the run is not one that training returns, such as one
-                whose values overflowed.
+            OSError: if the file cannot be written, or ``path`` exists and is not a regular file. An older file stays
+                intact, even if the process is killed.
+            TypeError: if the environment's keyword arguments are not JSON data.
+            ValueError: if they hold a number that JSON cannot represent, or the run is not one that training returns,
+                such as one whose values overflowed.
         """
         try:
             check_consistent(self)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from qtab._utils.files import replacing
 
 RUN, RUNS = "qtab run", "qtab runs"
-"""The formats: of one run, and of many runs of one config."""
+"""The formats of one run, and of many runs of one config."""
 FORMAT_VERSION = 1
 _ADVICE = {RUN: "it holds one run, which qtab.load reads", RUNS: "it holds many runs, which qtab.load_runs reads"}
 
@@ -27,7 +27,7 @@ ARRAYS: Mapping[str, tuple["np.dtype[Any]", int]] = {
     "episode_lengths": (np.dtype(np.int64), 1),
     "terminated": (np.dtype(np.bool_), 1),
 }
-"""The dtype and the number of axes of the arrays that every run has; those of many runs have one axis more."""
+"""The dtype and number of axes of the arrays that every run has; files of many runs have one more axis."""
 
 _HEADER, _DIGEST = "header", "digest"
 _ALGORITHM = "sha256"
@@ -35,27 +35,26 @@ _ALGORITHM = "sha256"
 
 @dataclass(frozen=True)
 class Content:
-    """What a file holds: a header and arrays that belong together, of which nothing else is known."""
+    """The content of a file: a header and arrays that belong together, otherwise unchecked."""
 
     header: Mapping[str, Any]
     arrays: Mapping[str, NDArray[Any]]
     has_digest: bool
-    """Whether the file had a digest, which is then the right one. Those of earlier versions have none."""
+    """Whether the file had a digest, which then matched. Files of earlier versions have none."""
 
 
 def digest(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> str:
     """Returns the digest of a saved run as hexadecimal digits: equal only for the same header and the same arrays.
 
     It is the SHA-256 of a JSON text, with sorted keys and no spaces, of the header and of each array's dtype and shape,
-    followed by the bytes of the arrays in C order, sorted by name. The text determines how many bytes follow.
+    followed by the bytes of the arrays in C order, sorted by name. The text determines the number of bytes that follow.
 
     Args:
-        header: What ``json.loads`` returns for the header, so that a header that was read has the digest of the one
-            that was written.
+        header: The header as ``json.loads`` returns it, so that it has the same digest when written and when read.
         arrays: The arrays by name, without the header.
 
     Raises:
-        ValueError: if the header holds a number that JSON cannot.
+        ValueError: if the header holds a number that JSON cannot represent.
     """
     layouts = {name: [array.dtype.str, list(array.shape)] for name, array in arrays.items()}
     text = json.dumps({"header": header, "arrays": layouts}, sort_keys=True, separators=(",", ":"), allow_nan=False)
@@ -66,18 +65,18 @@ def digest(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> str
 
 
 def encode(header: Mapping[str, Any], kind: str = RUN) -> str:
-    """Returns a header as JSON, with the name and the version of the format, and that there is a digest.
+    """Returns a header as JSON, with the name and version of the format, and a note that the file has a digest.
 
     Raises:
-        TypeError: if it holds what JSON cannot.
-        ValueError: if it holds a number that JSON cannot.
+        TypeError: if the header is not JSON data.
+        ValueError: if the header holds a number that JSON cannot represent.
     """
     content = {"format": kind, "version": FORMAT_VERSION, _DIGEST: _ALGORITHM, **header}
     return json.dumps(content, allow_nan=False)
 
 
 def write(path: Path, header: str, arrays: Mapping[str, NDArray[Any]]) -> None:
-    """Writes a file, whole or not at all.
+    """Writes a file, completely or not at all.
 
     Raises:
         OSError: if the file cannot be written.
@@ -93,11 +92,11 @@ def read(file: BinaryIO, kind: str = RUN) -> Content:
 
     Raises:
         ValueError: if it is not a file of this kind, comes from another version of the format, or was changed after it
-            was saved. A damaged file can raise almost anything else.
+            was saved. A damaged file can raise almost any other exception.
     """
     with zipfile.ZipFile(file) as archive:
         entries = archive.infolist()
-        # An uncompressed array is no larger than its file, so a small file cannot ask for much memory.
+        # An uncompressed array is no larger than its file, so a small file cannot allocate much memory.
         if any(entry.compress_type != zipfile.ZIP_STORED for entry in entries):
             raise ValueError("it is compressed, which qtab's files are not")
         if sum(entry.file_size for entry in entries) > file.seek(0, os.SEEK_END):
@@ -135,7 +134,7 @@ def _without_duplicates(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 def _read_array(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> NDArray[Any]:
-    """Reads an array whose size is that of its member, so that no more memory is allocated than the file is large."""
+    """Reads an array if its size is that of its member, so that no more memory than the file's size is allocated."""
     with archive.open(entry) as file:
         read_header = npy.read_array_header_1_0 if npy.read_magic(file) == (1, 0) else npy.read_array_header_2_0
         shape, _, dtype = read_header(file)
@@ -148,11 +147,11 @@ def _read_array(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> NDArray[Any
 
 
 def array(arrays: Mapping[str, NDArray[Any]], name: str, more_axes: int = 0) -> NDArray[Any]:
-    """Returns one of ``ARRAYS``, with so many more axes.
+    """Returns one of ``ARRAYS``, with ``more_axes`` additional axes.
 
     Raises:
-        KeyError: if it is missing.
-        ValueError: if it has another dtype or number of axes.
+        KeyError: if the array is missing.
+        ValueError: if the array has a different dtype or number of axes.
     """
     dtype, ndim = ARRAYS[name][0], ARRAYS[name][1] + more_axes
     found = arrays[name]

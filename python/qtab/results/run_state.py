@@ -1,4 +1,4 @@
-"""What a run holds beside its tables and episodes, so that it can be resumed exactly where it stopped."""
+"""The state that a run holds beside its tables and episodes, so that it can be resumed exactly where it stopped."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -11,36 +11,36 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True, repr=False)
 class RunState:
-    """The random generators, the unfinished episode, and what the learner remembers: traces, visits, models."""
+    """The random generators, the unfinished episode, and the learner's state: traces, visits, models."""
 
     checkpoint: bytes
-    """What the extension wrote."""
+    """The extension's serialized state."""
     generator: Mapping[str, Any] | None
-    """The state of the bit generator of an environment that is stepped in Python, as JSON can hold it."""
+    """The state of the bit generator of an environment that is stepped in Python, as JSON data."""
     snapshots: tuple[int, ...] = ()
     """The numbers of episodes at which snapshots are still to be taken, ascending."""
     extensions: tuple[tuple[int, int], ...] = ()
-    """(finished, episodes) for each time that the run was extended while a rate fell over its episodes: how many were
-    finished then, and over how many the rate had fallen until then."""
+    """(finished, episodes) for each extension of the run with a falling rate: the number of episodes finished at the
+    time, and the number over which the rate had been spread until then."""
 
     def __repr__(self) -> str:
         return f"<RunState of {len(self.checkpoint):,} bytes>"
 
     def array(self) -> NDArray[np.uint8]:
-        """Returns the checkpoint as a file holds it."""
+        """Returns the checkpoint as an array for a file."""
         return np.frombuffer(self.checkpoint, np.uint8)
 
     def header(self) -> dict[str, Any]:
-        """Returns the rest of the state as the header of a file holds it."""
+        """Returns the rest of the state for the header of a file."""
         optional = {"snapshots": self.snapshots, "extensions": self.extensions}
         return {"generator": self.generator, **{name: value for name, value in optional.items() if value}}
 
     @classmethod
     def restore(cls, array: NDArray[Any], generator: Any, snapshots: Any, extensions: Any) -> "RunState":
-        """Returns the state in a file, of which nothing is known.
+        """Returns the state from the unchecked content of a file.
 
         Raises:
-            ValueError: if it cannot be one.
+            ValueError: if the content is not a state.
         """
         if array.dtype != np.uint8 or array.ndim != 1:
             raise ValueError(f"its state has dtype {array.dtype} and {array.ndim} axes, not uint8 and 1")

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 BAND = (10.0, 90.0)
-"""The percentiles of the runs that a picture shows beside their mean."""
+"""The percentiles of the runs shown as a band around their mean."""
 
 
 @with_fields
@@ -35,36 +35,36 @@ BAND = (10.0, 90.0)
 class Runs:
     """Many runs of one config, one per row.
 
-    ``runs[i]`` is the run of ``seeds[i]``, where the tables were kept; ``runs[10:20]`` are ten of the runs.
+    ``runs[i]`` is the run of ``seeds[i]``, if the tables were kept; ``runs[10:20]`` are ten of the runs.
     """
 
     config: Config
-    """Everything needed to repeat the runs; its seed is that of the first run that is there."""
+    """Everything needed to repeat the runs; its seed is that of the first finished run."""
     seeds: tuple[int, ...]
-    """(runs,): the seed of each."""
+    """(runs,): the seed of each run."""
     episode_returns: NDArray[np.float64]
     """(runs, episodes): the sum of rewards of each episode."""
     episode_lengths: NDArray[np.int64]
     """(runs, episodes): the number of steps of each episode."""
     terminated: NDArray[np.bool_]
-    """(runs, episodes): whether each ended in a terminal state, not only by its time limit."""
+    """(runs, episodes): whether each episode ended in a terminal state, not only by its time limit."""
     tables: NDArray[np.float64] | None
-    """(runs, k, rows, actions): the Q tables of each run, where ``tables=True`` kept them."""
+    """(runs, k, rows, actions): the Q tables of each run; None without ``tables=True``."""
     discretizer: Discretizer
     """Maps observations to rows of the tables."""
     actions: Actions
     """The environment's actions, in the order of the columns of the tables."""
     completed: bool
-    """False after an interruption; only the runs that were finished are there."""
+    """False after an interruption; then only the finished runs are included."""
     seconds: float
-    """How long all runs took together, in wall-clock time."""
+    """The wall-clock time of the training of all runs together."""
     versions: Mapping[str, str]
     """The versions of qtab, Gymnasium, NumPy and Python, and the platform."""
     action_masks: NDArray[np.bool_] | None = None
-    """(runs, *cells, actions): which actions each cell of each run has; see :attr:`qtab.Run.action_masks`."""
+    """(runs, *cells, actions): the masks of each run; see :attr:`qtab.Run.action_masks`."""
 
     def __post_init__(self) -> None:
-        """Gives the config the seed of the first run, also where the runs of earlier seeds did not finish."""
+        """Sets the config's seed to that of the first run, even if runs of earlier seeds did not finish."""
         if self.seeds and self.config.seed != self.seeds[0]:
             vars(self)["config"] = replace_checked(self.config, seed=self.seeds[0])
 
@@ -78,7 +78,7 @@ class Runs:
         return f"<Runs of {self.config.env}: {self.config.algorithm}, {runs} seeds, {episodes} episodes each{mean}>"
 
     def _repr_html_(self) -> str:
-        """A table and the mean learning curve, for notebooks."""
+        """Returns a table and the mean learning curve, for notebooks."""
         config, (runs, episodes) = self.config, self.episode_returns.shape
         facts: dict[str, object] = {
             "algorithm": config.algorithm,
@@ -101,7 +101,7 @@ class Runs:
 
     @property
     def trained_on(self) -> EnvironmentDescription | None:
-        """The environment in detail, as it was when training began; None where a file does not say it."""
+        """The environment in detail, as it was when training began; None if a file does not store it."""
         return trained_on(self.config)
 
     @property
@@ -117,9 +117,9 @@ class Runs:
     @overload
     def __getitem__(self, index: slice) -> "Runs": ...
     def __getitem__(self, index: int | slice) -> "Run | Runs":
-        """Returns one run, equal to what :func:`qtab.train` returns for its seed, or the runs of a slice.
+        """Returns one run, equal to the result of :func:`qtab.train` for its seed, or the runs of a slice.
 
-        ``seconds`` is their equal share.
+        ``seconds`` is divided equally among all runs.
 
         Raises:
             IndexError: if there is no such run.
@@ -180,11 +180,11 @@ class Runs:
         """Returns (runs,): the average return of the last episodes of each run.
 
         Args:
-            last: How many; None averages the last 100, or all where there are fewer.
+            last: The number of episodes; None averages the last 100, or all if there are fewer.
 
         Raises:
             TypeError: if ``last`` is not an integer.
-            ValueError: if it is less than one, or the runs have fewer episodes.
+            ValueError: if ``last`` is less than one, or the runs have fewer episodes.
         """
         episodes = self.episode_returns.shape[1]
         last = min(episodes, FINAL_EPISODES) if last is None else checks.integer("last", last, 1, episodes)
@@ -192,7 +192,7 @@ class Runs:
         return means
 
     def summaries(self) -> dict[str, NDArray[Any]]:
-        """Returns columns with one number per run: its seed, and those of :func:`qtab.results.summary.summarize`.
+        """Returns columns with one number per run: the seed, and those of :func:`qtab.results.summary.summarize`.
 
         Seeds are int64, uint64 if one needs it, or Python integers in an object array if one is at least 2**64.
         """
@@ -203,10 +203,10 @@ class Runs:
         """Writes all runs to one ``.npz`` file, as :meth:`qtab.Run.save` does. :func:`qtab.load_runs` reads it.
 
         Raises:
-            OSError: if the file cannot be written, or something is there that is not a regular file. An older file
-                stays whole, even if the process is killed.
-            TypeError: if the environment's keyword arguments hold what JSON cannot.
-            ValueError: if they hold a number that JSON cannot, or the runs are not what training returns.
+            OSError: if the file cannot be written, or ``path`` exists and is not a regular file. An older file stays
+                intact, even if the process is killed.
+            TypeError: if the environment's keyword arguments are not JSON data.
+            ValueError: if they hold a number that JSON cannot represent, or training cannot have returned the runs.
         """
         path = checks.file_path("path", path)
         try:

@@ -1,4 +1,4 @@
-"""The actions of a run as a file holds them: arrays, and for composite actions a description in JSON."""
+"""The file format of the actions of a run: arrays, and for composite actions a description in JSON."""
 
 import math
 from typing import Any
@@ -13,7 +13,7 @@ _KINDS = "biu"
 
 
 def describe_parts(actions: Actions) -> Any:
-    """Returns composite actions as JSON can hold them."""
+    """Returns composite actions as JSON data."""
     if actions.composite is not None:
         parts = [describe_parts(part) for part in actions.composite.parts]
         keys = actions.composite.keys
@@ -24,11 +24,11 @@ def describe_parts(actions: Actions) -> Any:
 
 
 def restore_actions(count: int, first: int, values: NDArray[Any] | None, description: Any) -> Actions:
-    """Returns the actions in a file, which are checked first.
+    """Returns the actions in a file, after checking them.
 
     Raises:
-        KeyError: if something is missing.
-        ValueError: if they are not those of an action space.
+        KeyError: if a part is missing.
+        ValueError: if no action space has such actions.
     """
     if description is None:
         return Actions(count, first, values)

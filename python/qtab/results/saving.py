@@ -1,4 +1,4 @@
-"""What the files of one run and of many runs have in common when they are written."""
+"""Writes the parts that the files of one run and of many runs have in common."""
 
 import json
 from collections.abc import Mapping
@@ -22,19 +22,19 @@ if TYPE_CHECKING:
 def write(
     path: Path, kind: str, result: "Run | Runs", header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]
 ) -> None:
-    """Writes a file: the config, the discretizer and the actions of a result, and what the caller adds.
+    """Writes a file: the config, the discretizer and the actions of a result, and the caller's additions.
 
     Args:
         path: The file.
-        kind: Its format.
+        kind: The format.
         result: The run, or the runs.
-        header: What else the header holds.
+        header: Additional entries of the header.
         arrays: The arrays besides those of the discretizer and the actions.
 
     Raises:
         OSError: if the file cannot be written.
-        TypeError: if the environment's keyword arguments hold what JSON cannot.
-        ValueError: if they hold a number that JSON cannot.
+        TypeError: if the environment's keyword arguments are not JSON data.
+        ValueError: if they hold a number that JSON cannot represent.
     """
     stored = dict(arrays) | result.discretizer.arrays()
     if result.actions.values is not None:
@@ -61,7 +61,7 @@ def write(
     try:
         text = run_file.encode(content, kind)
     except (TypeError, ValueError) as error:
-        raise type(error)(f"env_kwargs must hold what JSON can, got {kwargs!r}: {error}") from None
+        raise type(error)(f"env_kwargs must be JSON data, got {kwargs!r}: {error}") from None
     if replace_checked(result.config, env_kwargs=json.loads(text)["config"]["env_kwargs"]) != result.config:
-        raise TypeError(f"env_kwargs must hold what JSON can, got {kwargs!r}: keys must be texts")
+        raise TypeError(f"env_kwargs must be JSON data, got {kwargs!r}: keys must be strings")
     run_file.write(path, text, stored)

@@ -18,9 +18,9 @@ class Snapshots:
     """The tables of a run at several points in time."""
 
     episodes: NDArray[np.int64]
-    """(n,): how many episodes were finished at each snapshot, ascending."""
+    """(n,): the number of finished episodes at each snapshot, ascending."""
     tables: NDArray[np.float64]
-    """(n, k, rows, actions): the Q tables then, in the layout of ``run.tables``."""
+    """(n, k, rows, actions): the Q tables at each snapshot, in the layout of ``run.tables``."""
 
     def __len__(self) -> int:
         return len(self.episodes)
@@ -34,12 +34,12 @@ def snapshot_episodes(wanted: int | Sequence[int] | None, total: int) -> tuple[i
     """Returns the numbers of finished episodes at which to copy the tables, ascending and without duplicates.
 
     Args:
-        wanted: How many, evenly spaced over the run and the last one included, at most one after each episode; or the
-            numbers themselves, from 0, before the run, to ``total``; None and 0 mean none.
-        total: How many episodes the run has.
+        wanted: The number of snapshots, evenly spaced over the run and including its end, at most one per episode; or
+            the numbers of episodes, from 0 (before the run) to ``total``; None and 0 mean none.
+        total: The number of episodes of the run.
 
     Raises:
-        TypeError: if it is neither an integer nor a sequence of integers.
+        TypeError: if ``wanted`` is neither an integer nor a sequence of integers.
         ValueError: if a number is out of range.
     """
     if wanted is None:
@@ -51,26 +51,26 @@ def snapshot_episodes(wanted: int | Sequence[int] | None, total: int) -> tuple[i
         checks.integer(f"snapshots[{index}]", number, least=0, most=total) for index, number in enumerate(wanted)
     }
     if not numbers:
-        raise ValueError("snapshots must be how many, or hold at least one episode number, got an empty sequence")
+        raise ValueError("snapshots must be a number, or hold at least one episode number, got an empty sequence")
     return tuple(sorted(numbers))
 
 
 def resumed_snapshot_episodes(
     wanted: int | Sequence[int] | None, total: int, finished: int, earlier: Snapshots | None, to_take: Sequence[int]
 ) -> tuple[int, ...]:
-    """Returns the numbers of episodes of all snapshots of a run that is resumed, those of its earlier part first.
+    """Returns the numbers of episodes of all snapshots of a resumed run, those of its earlier part first.
 
     Args:
-        wanted: What the call that resumes it asks for, as for :func:`snapshot_episodes`. Of snapshots that are evenly
-            spaced, only those after the finished episodes can be taken.
-        total: How many episodes the whole run has.
-        finished: How many are finished.
+        wanted: The snapshots of the resuming call, as for :func:`snapshot_episodes`. Of evenly spaced ones, only those
+            after the finished episodes can be taken.
+        total: The number of episodes of the whole run.
+        finished: The number of finished episodes.
         earlier: The snapshots of the earlier part.
-        to_take: Those that it had still to take.
+        to_take: The episodes of the snapshots that the earlier part still had to take.
 
     Raises:
         TypeError: if ``wanted`` is neither an integer nor a sequence of integers.
-        ValueError: if a number is out of range, or names an episode that is over.
+        ValueError: if a number is out of range, or names an episode already finished.
     """
     taken = () if earlier is None else tuple(earlier.episodes.tolist())
     planned = {number for number in to_take if finished <= number <= total}
@@ -93,9 +93,9 @@ class SnapshotCollector:
 
     Args:
         trainer: The trainer.
-        episodes: When to copy, as :func:`snapshot_episodes` returns it. Those of ``earlier`` come first.
+        episodes: The episodes at which to copy, from :func:`snapshot_episodes`; those of ``earlier`` come first.
         shape: The shape of the tables, (k, rows, actions).
-        earlier: The copies that an earlier part of the run made.
+        earlier: The snapshots of an earlier part of the run.
 
     Raises:
         ValueError: if the copies do not fit into memory.
@@ -122,7 +122,7 @@ class SnapshotCollector:
             self._tables[: self._taken] = earlier.tables
 
     def stops(self, done: int, target: int) -> Iterator[int]:
-        """Yields the episodes to train up to in turn, from ``done`` to ``target``, and copies the tables there."""
+        """Yields the next episodes to stop at, from ``done`` to ``target``, and copies the tables at each."""
         self._copy(done)
         for episode in self._episodes:
             if done < episode < target:
@@ -137,7 +137,7 @@ class SnapshotCollector:
             self._taken += 1
 
     def snapshots(self) -> Snapshots | None:
-        """Returns the snapshots so far; None if none were asked for."""
+        """Returns the snapshots so far; None if none were requested."""
         if not self._wanted:
             return None
         return Snapshots(np.array(self._episodes[: self._taken], np.int64), self._tables[: self._taken])

@@ -1,4 +1,4 @@
-"""Summaries of runs: a few numbers for each."""
+"""Summaries of runs: a few numbers for each run."""
 
 from typing import Any
 
@@ -12,11 +12,11 @@ SOLVED_EPISODES = 100
 """A task counts as solved once the mean return of this many consecutive episodes reaches its threshold."""
 
 MAX_BLOCKS = 100
-"""More averages than this cannot be read in a terminal or told apart in a figure."""
+"""The maximum number of averages that remain legible in a terminal or a figure."""
 
 
 def default_block(episodes: int) -> int:
-    """Returns the default number of episodes to average over: the article's 100, ten times more in long runs."""
+    """Returns the default number of episodes to average over: the article's 100, or 1000 and so on in long runs."""
     block = 100
     while episodes > MAX_BLOCKS * block:
         block *= 10
@@ -28,8 +28,8 @@ def summarize(
 ) -> dict[str, NDArray[Any]]:
     """Returns columns of (runs,) numbers, from arrays of (runs, episodes).
 
-    ``final_return`` is the mean of the last 100 returns (of all where there are fewer), ``mean_return`` that of all
-    returns: the area under the learning curve, scaled to a width of 1.
+    ``final_return`` is the mean of the last 100 returns (of all if there are fewer). ``mean_return`` is the mean of
+    all returns: the area under the learning curve, scaled to a width of 1.
     """
     runs, episodes = returns.shape
     return {

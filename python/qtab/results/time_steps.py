@@ -1,4 +1,4 @@
-"""Runs with ``time_aware=True`` at one step of the episode, where they have a table as any other run."""
+"""Runs with ``time_aware=True`` at one step of the episode, where they have a table like any other run."""
 
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -20,11 +20,11 @@ AnyRun = TypeVar("AnyRun", "Run", "Runs")
 
 
 def checked_step(discretizer: Any, step: Any) -> int:
-    """Returns a number of steps taken, of a run with this discretizer; 0 is the only one where it is not part of it.
+    """Returns ``step``, after checking it; without ``time_aware`` it must be 0.
 
     Raises:
-        TypeError: if it is not an integer.
-        ValueError: if it is negative or not before the time limit.
+        TypeError: if ``step`` is not an integer.
+        ValueError: if ``step`` is negative or not below the time limit.
     """
     if not isinstance(discretizer, TimeAware):
         if checks.integer("step", step, least=0):
@@ -34,11 +34,11 @@ def checked_step(discretizer: Any, step: Any) -> int:
 
 
 def at_step(run: AnyRun, step: Any = 0) -> AnyRun:
-    """Returns a run, or runs, with the part of the tables for one step; those without ``time_aware`` as they are.
+    """Returns a run, or runs, with the tables for one step; without ``time_aware`` returns them unchanged.
 
     Raises:
         TypeError: if ``step`` is not an integer.
-        ValueError: if it is negative or not before the time limit, or not 0 without ``time_aware``.
+        ValueError: if ``step`` is negative or not below the time limit, or not 0 without ``time_aware``.
     """
     discretizer: Any = run.discretizer
     step = checked_step(discretizer, step)
@@ -57,10 +57,10 @@ def at_step(run: AnyRun, step: Any = 0) -> AnyRun:
         "tables": None if run.tables is None else run.tables[..., part, :],
     }
     if run.action_masks is not None:
-        # Of many runs the axis of the runs comes before that of the steps.
+        # With many runs, the axis of the runs comes before the axis of the steps.
         axis = run.action_masks.ndim - len(discretizer.shape) - 1
         changes["action_masks"] = np.take(run.action_masks, step, axis=axis)
-    own: Any = run  # what one run has, and many have not
+    own: Any = run  # for attributes of a single run only
     if getattr(own, "visits", None) is not None:
         changes["visits"] = own.visits[step]
     if getattr(own, "snapshots", None) is not None:
@@ -73,7 +73,7 @@ def at_step(run: AnyRun, step: Any = 0) -> AnyRun:
 def over_all_steps(run: Any) -> Any:
     """Returns a run with ``time_aware`` as at the start of an episode, but with its visits at all steps.
 
-    Anything else is returned as it is.
+    Any other object is returned unchanged.
     """
     visits = getattr(run, "visits", None)
     if visits is None or not isinstance(run.discretizer, TimeAware):
@@ -83,18 +83,18 @@ def over_all_steps(run: Any) -> Any:
 
 
 def rows_of(run: "Run", observation: Any, steps: Any) -> Any:
-    """Returns the active rows of an observation, or of n, after a number of steps, which counts with ``time_aware``."""
+    """Returns the active rows of one or n observations; with ``time_aware``, after ``steps`` steps."""
     if isinstance(run.discretizer, TimeAware):
         return run.discretizer.rows_after(steps, observation)
     return run.discretizer.active_rows(observation)
 
 
 def steps_taken(discretizer: Any, state: Any, episode_start: Any) -> Any:
-    """Returns the steps taken, () or (n,), from the state of a policy; 0 where they are not part of the state.
+    """Returns the steps taken, () or (n,), from the state of a policy; 0 without ``time_aware``.
 
     Raises:
         TypeError: if ``state`` does not hold integers.
-        ValueError: if one is negative, or ``episode_start`` has another shape.
+        ValueError: if a number is negative, or ``episode_start`` does not have the shape of ``state``.
     """
     if not isinstance(discretizer, TimeAware):
         return 0
@@ -110,7 +110,7 @@ def steps_taken(discretizer: Any, state: Any, episode_start: Any) -> Any:
 
 
 def next_state(discretizer: Any, steps: Any, shape: tuple[int, ...]) -> Any:
-    """Returns the steps taken after one more, an integer or for observations of this shape an array; None without."""
+    """Returns the steps taken after one more step, an integer or array of ``shape``; None without ``time_aware``."""
     if not isinstance(discretizer, TimeAware):
         return None
     following = np.asarray(steps, np.int64) + 1
