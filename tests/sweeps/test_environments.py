@@ -91,7 +91,7 @@ def test_an_environment_whose_rewards_were_changed_is_refused(
 ) -> None:
     swept(tmp_path / "a", by_id)
     monkeypatch.setattr(Chain, "factor", 100.0)
-    with pytest.raises(qtab.StoreError, match="has results of QtabTests/Chain-v0 as it was before"):
+    with pytest.raises(qtab.StoreError, match="has results of an earlier QtabTests/Chain-v0"):
         swept(tmp_path / "a", by_id)
 
 

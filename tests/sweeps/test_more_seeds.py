@@ -68,7 +68,7 @@ def test_fewer_seeds_are_refused_and_other_ones_too(tmp_path):
     path = tmp_path / "study.db"
     qtab.sweep(CAR, GRID, 3, store=path, **SHORT)
     with pytest.raises(
-        qtab.StoreError, match="has runs of 3 seeds, of which this sweep has only 2; give it all of them"
+        qtab.StoreError, match="has runs of 3 seeds, of which this sweep has only 2; give this sweep all of them"
     ):
         qtab.sweep(CAR, GRID, 2, store=path, **SHORT)
     with pytest.raises(qtab.StoreError, match="belongs to another sweep"):

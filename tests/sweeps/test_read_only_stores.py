@@ -105,7 +105,7 @@ def test_a_store_without_any_commit_is_said_to_be_empty(folder: Path, kind: str)
     if kind == "no tables":
         with closing(sqlite3.connect(path)) as connection:
             connection.execute("PRAGMA journal_mode = WAL")
-    with pytest.raises(qtab.StoreError, match="is empty: its sweep ended before it stored anything; start it again"):
+    with pytest.raises(qtab.StoreError, match="is empty: its sweep ended before storing anything; start it again"):
         qtab.load_sweep(path)
     with read_only(folder), pytest.raises(qtab.StoreError, match="is empty"):
         qtab.load_sweep(path)

@@ -57,7 +57,7 @@ def trained_again(sweep: "Sweep", setting: int, seed: int, env: Any) -> Run:
 
 
 def _other_versions(sweep: "Sweep", row: int) -> str:
-    """What differs between the versions that trained a run of a sweep and those here, to follow a message."""
+    """Returns the end of a message: the versions that trained a run of a sweep, where they differ from those here."""
     then, here = sweep.run_versions[row] if sweep.run_versions else None, versions()
     others = [f"{name} {then.get(name)}" for name in here if then.get(name) != here[name]] if then else []
     return f", which was trained with {', '.join(others)}" if others else ""
@@ -74,8 +74,7 @@ def plan_again(sweep: "Sweep", chosen: Sequence[int], numbers: tuple[int, ...], 
 
     Raises:
         TypeError: if ``env`` is an environment, which several runs cannot share.
-        ValueError: if the settings cannot be restored here, or their environment is another one, or cannot be made
-            again.
+        ValueError: if the settings cannot be restored here, or their environment differs or cannot be made again.
     """
     if sweep._source is not None:
         made = sweep._source[0] if env is None else env
@@ -102,7 +101,7 @@ def plan_again(sweep: "Sweep", chosen: Sequence[int], numbers: tuple[int, ...], 
 def _made_again(config: Config) -> Any:
     """Returns the environment of a config from a store: the spec of its id, or a function that makes it as it was.
 
-    A store must not choose a module to import.
+    A store must not select a module to import.
     """
     spec = gym.registry.get(config.env.rpartition(":")[2])
     if spec is None:
@@ -118,7 +117,7 @@ def _made_again(config: Config) -> Any:
 
 
 def _restored(sweep: "Sweep", setting: int) -> Config:
-    """Returns the config of a setting from a store, which knows its environment as far as the store describes it."""
+    """Returns the config of a setting from a store, with its environment as far as the store describes it."""
     stored, environment = sweep.configs[setting], sweep._environments.get(setting)
     if isinstance(stored["initial_q"], dict):
         raise ValueError("a store does not keep an array initial_q; use the table that qtab.sweep returned")
@@ -129,10 +128,10 @@ def _restored(sweep: "Sweep", setting: int) -> Config:
 
 
 def _check_environment(sweep: "Sweep", setting: int, resolved: ResolvedRun) -> None:
-    """Checks that a setting is trained again in its environment, as far as that is known.
+    """Checks that a setting is trained again in its own environment, as far as that is known.
 
     Raises:
-        ValueError: if it is another one; the message says what differs.
+        ValueError: if the environment differs; the message lists the differences.
     """
     environment = sweep._environments.get(setting)
     if environment is not None and (found := differences(environment, environment_of(resolved))):

@@ -27,19 +27,19 @@ class Confirmation:
     """Settings of a sweep, trained again with seeds that the sweep did not use."""
 
     chosen: tuple[int, ...]
-    """The indices of the settings in the sweep, best first unless they were given."""
+    """The indices of the settings in the sweep, best first unless given by the user."""
     swept: "Sweep"
     """The sweep, whose means of the chosen settings are too high on average."""
     confirmed: "Sweep"
     """The results with the other seeds; its setting ``i`` is the setting ``chosen[i]`` of the sweep."""
 
     def mean(self, place: int = 0) -> "Interval":
-        """Returns the mean final return of a chosen setting over the other seeds, without the runs that failed.
+        """Returns the mean final return of a chosen setting over the other seeds, without failed runs.
 
         Raises:
             ModuleNotFoundError: without SciPy; the message names the ``pip install``.
             TypeError: if ``place`` is not an integer.
-            ValueError: if there is no such place, or all of its runs failed.
+            ValueError: if ``place`` is not an index of ``chosen``, or all runs of the setting failed.
         """
         from qtab import stats
 
@@ -53,7 +53,7 @@ class Confirmation:
         return f"<Confirmation of {len(self.chosen)} of {len(self.swept.settings)} settings: {self.confirmed!r}>"
 
     def _repr_html_(self) -> str:
-        """A table of the chosen settings, each with its mean over the other seeds, for notebooks."""
+        """Returns a table of the chosen settings with their means over the other seeds, for notebooks."""
         names = list(self.swept.settings[0]) if self.swept.settings else []
         swept = self.swept.mean_final_returns()
         rows = [
@@ -70,7 +70,7 @@ class Confirmation:
         return html.listing(heading, columns, rows, notes=[note] if note else [])
 
     def _mean(self, place: int) -> str:
-        """The mean with its interval; without SciPy, or with a single run, no interval."""
+        """Returns the mean with its interval, which is left out without SciPy or with a single run."""
         values = self.confirmed.values("final_return", place)
         with suppress(ModuleNotFoundError, ValueError):
             return str(self.mean(place))
@@ -82,7 +82,7 @@ class Confirmation:
         return "\n".join([*lines, note] if note else lines)
 
     def _versions_note(self) -> str:
-        """What differs between the versions that trained the runs of the sweep and those of the confirmation."""
+        """Returns the differences between the versions that trained the sweep and the confirmation."""
         return versions_note([*self.swept.run_versions, *self.confirmed.run_versions])
 
     def _line(self, place: int, setting: int) -> str:
@@ -95,7 +95,7 @@ class Confirmation:
 
 
 def chosen_settings(sweep: "Sweep", top: int, per: str | None, settings: Any) -> list[int]:
-    """Returns the indices of the settings that are to be trained again; see :meth:`Sweep.confirm`.
+    """Returns the indices of the settings to train again; see :meth:`Sweep.confirm`.
 
     Raises:
         TypeError: for an argument of the wrong type.

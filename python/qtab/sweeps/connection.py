@@ -14,13 +14,13 @@ from typing import Any
 HEADER_BYTES = 100
 MAGIC = b"SQLite format 3\0"
 LOCK_TIMEOUT_SECONDS = 2.0
-"""How long SQLite waits for another process that is writing, before this is logged."""
+"""The time that SQLite waits for another process that is writing, before the wait is logged."""
 BUSY_TIMEOUT_SECONDS = 60.0
-"""How long to wait for another process that is writing, in all."""
+"""The total time to wait for another process that is writing."""
 OPERATIONS_PER_BYTE = 100
-"""The instructions of SQLite's virtual machine that reading a file may take for each of its bytes."""
+"""The maximum number of SQLite's virtual machine instructions per byte of a file, for reading it."""
 MIN_OPERATIONS = 20_000_000
-"""The instructions that reading a small file may take: about a second."""
+"""The instructions allowed for reading a small file: about a second."""
 OPERATIONS_BETWEEN_CHECKS = 100_000
 
 _LIMITS = {
@@ -35,7 +35,7 @@ _LIMITS = {
     "SQLITE_LIMIT_VARIABLE_NUMBER": 20,
     "SQLITE_LIMIT_TRIGGER_DEPTH": 1,
 }
-"""What the statements of this package need at most; SQLite's documentation recommends such limits."""
+"""The limits that this package's statements stay within; SQLite's documentation recommends setting them."""
 
 _OPTIONS = {
     "SQLITE_DBCONFIG_DEFENSIVE": True,
@@ -43,7 +43,7 @@ _OPTIONS = {
     "SQLITE_DBCONFIG_ENABLE_VIEW": False,
 }
 _ENVIRONMENT = ("locked", "is full", "readonly", "unable to open", "disk I/O", "out of memory", "access permission")
-"""Parts of the messages of SQLite's errors that are due to the machine and not to the content of the file.
+"""Parts of the messages of SQLite errors that are caused by the machine, not by the content of the file.
 
 Python 3.10 has no error codes.
 """
@@ -52,16 +52,16 @@ _LOGGER = logging.getLogger("qtab")
 
 
 class StoreError(ValueError):
-    """A file that is not a store, or not a store that this sweep can use; the message says why."""
+    """Raised for a file that is not a store, or not a store that this sweep can use; the message gives the reason."""
 
 
 def store_path(path: Any) -> Path:
     """Returns the argument ``store`` as a path.
 
     Raises:
-        OSError: if it names something that is not a regular file.
-        TypeError: if it is not a path.
-        ValueError: if it names no file.
+        OSError: if ``path`` exists and is not a regular file.
+        TypeError: if ``path`` is not a path.
+        ValueError: if ``path`` is empty.
     """
     if not isinstance(path, str | os.PathLike):
         raise TypeError(f"store must be a path or None, got {path!r}")
@@ -79,7 +79,7 @@ def store_path(path: Any) -> Path:
 
 
 def name_of(path: Path | None) -> str:
-    """Returns what messages call a store."""
+    """Returns the name of a store in messages."""
     return "the store in memory" if path is None else f"store {str(path)!r}"
 
 
@@ -90,7 +90,7 @@ def damaged(path: Path | None, reason: object) -> StoreError:
 
 @contextmanager
 def translated_errors(path: Path | None) -> Iterator[None]:
-    """Turns SQLite's errors into an OSError where the machine is the reason, and into a StoreError otherwise."""
+    """Turns SQLite errors into an OSError if the machine is the cause, and into a StoreError otherwise."""
     try:
         yield
     except (sqlite3.Error, sqlite3.Warning, UnicodeError, OverflowError) as error:
@@ -104,8 +104,8 @@ def connect(path: Path | None, mode: str = "rwc", **parameters: str) -> sqlite3.
 
     Args:
         path: The file.
-        mode: ``"rwc"`` creates the file if it does not exist, ``"rw"`` does not, ``"ro"`` does not write.
-        **parameters: More parameters of SQLite's URIs.
+        mode: ``"rwc"`` creates the file if it does not exist, ``"rw"`` does not, ``"ro"`` opens it read-only.
+        **parameters: Additional parameters of SQLite's URIs.
 
     Raises:
         sqlite3.Error: if the file cannot be opened.
@@ -136,7 +136,7 @@ def bounded(connection: sqlite3.Connection, path: Path | None) -> Iterator[None]
     """Bounds the work of the queries inside the context, in proportion to the size of the file.
 
     Raises:
-        sqlite3.OperationalError: if a query takes more.
+        sqlite3.OperationalError: if a query exceeds the bound.
     """
     size = 0 if path is None else path.stat().st_size + _log_size(path)
     left = (MIN_OPERATIONS + OPERATIONS_PER_BYTE * size) // OPERATIONS_BETWEEN_CHECKS
@@ -155,9 +155,9 @@ def bounded(connection: sqlite3.Connection, path: Path | None) -> Iterator[None]
 
 
 def check_header(path: Path) -> None:
-    """Checks the first bytes of a file that is not empty.
+    """Checks the first bytes of a nonempty file.
 
-    SQLite would open a file whose header names a newer format, but for reading only.
+    SQLite would open a file whose header names a newer format, but read-only.
 
     Raises:
         OSError: if the file cannot be read.
@@ -173,7 +173,7 @@ def check_header(path: Path) -> None:
 
 @contextmanager
 def reading(path: Path) -> Iterator[sqlite3.Connection]:
-    """Yields a connection that does not write; the file may lie on a read-only medium.
+    """Yields a read-only connection; the file may be on a read-only medium.
 
     Raises:
         OSError: if the file cannot be opened.
@@ -189,7 +189,7 @@ def reading(path: Path) -> Iterator[sqlite3.Connection]:
 
 
 def is_writable(path: Path) -> bool:
-    """Returns whether this process may write to a file, and create others beside it."""
+    """Returns whether this process may write to a file, and create files beside it."""
     effective = os.access in os.supports_effective_ids
     return all(os.access(place, os.W_OK, effective_ids=effective) for place in (path, path.parent))
 
@@ -220,7 +220,7 @@ def _readable(connection: sqlite3.Connection) -> sqlite3.Connection:
 
 
 def _log(path: Path) -> Path:
-    """Returns the write-ahead log of a file."""
+    """Returns the path of the write-ahead log of a file."""
     return path.with_name(f"{path.name}-wal")
 
 
@@ -230,9 +230,9 @@ def _log_size(path: Path) -> int:
 
 
 def when_unlocked(connection: sqlite3.Connection, statement: str, path: Path | None) -> None:
-    """Executes a statement as soon as no other process is writing to the file, and logs if that takes long.
+    """Executes a statement as soon as no other process is writing to the file; logs a long wait.
 
-    SQLite's timeout does not apply where two processes switch to a write-ahead log at the same time: one of them fails
+    SQLite's timeout does not apply if two processes switch to a write-ahead log at the same time: one of them fails
     at once.
 
     Raises:

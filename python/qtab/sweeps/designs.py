@@ -14,17 +14,17 @@ from qtab._utils.extras import missing
 __all__ = ["grid", "random", "sobol"]
 
 MAX_POINTS = 1_000_000
-"""More settings than this are refused before they fill the memory."""
+"""The maximum number of settings; more could fill the memory."""
 
 Space = Mapping[str, Any]
-"""For each name ``(low, high)``, ``(low, high, "log")``, a range or a list of choices."""
+"""Maps each name to ``(low, high)``, ``(low, high, "log")``, a range or a list of choices."""
 
 
 def grid(values: Mapping[str, Sequence[Any]]) -> list[dict[str, Any]]:
     """Returns every combination of the values; the last name varies fastest.
 
     Args:
-        values: For each name a list of values.
+        values: A list of values for each name.
 
     Raises:
         TypeError: if ``values`` is not a mapping, or the values of a name are not a list.
@@ -38,7 +38,7 @@ def grid(values: Mapping[str, Sequence[Any]]) -> list[dict[str, Any]]:
     for name, choices in values.items():
         if isinstance(choices, (str, bytes)) or not hasattr(choices, "__iter__"):
             raise TypeError(f"grid[{name!r}] must be a list of values, got {choices!r}")
-    # An endless iterator has no list.
+    # An infinite iterator cannot become a list.
     lists = {name: list(itertools.islice(choices, MAX_POINTS + 1)) for name, choices in values.items()}
     combinations = math.prod(map(len, lists.values()))
     if combinations > MAX_POINTS:
@@ -55,10 +55,10 @@ def random(space: Space, points: int, seed: int = 0) -> list[dict[str, Any]]:
     """Returns points drawn independently and uniformly from a space.
 
     Args:
-        space: For each name ``(low, high)``, ``(low, high, "log")`` for a log-uniform distribution, ``range(...)`` or a
-            list of choices.
+        space: Maps each name to ``(low, high)``, ``(low, high, "log")`` for a log-uniform distribution, ``range(...)``
+            or a list of choices.
         points: The number of points, at most a million.
-        seed: Seeds NumPy's ``default_rng``.
+        seed: The seed of NumPy's ``default_rng``.
 
     Raises:
         TypeError: for an argument of the wrong type.
@@ -76,7 +76,7 @@ def sobol(space: Space, points: int, seed: int = 0) -> list[dict[str, Any]]:
     Args:
         space: As for :func:`random`.
         points: The number of points, a power of two, at most a million.
-        seed: Seeds the scrambling.
+        seed: The seed of the scrambling.
 
     Raises:
         ModuleNotFoundError: without scipy; the message names the ``pip install``.

@@ -1,4 +1,4 @@
-"""The environments of a sweep: as its store describes them, whether they are still the same, and their threshold."""
+"""The environments of a sweep: their descriptions in its store, checks that they are unchanged, and thresholds."""
 
 import hashlib
 import json
@@ -27,11 +27,11 @@ if TYPE_CHECKING:
 FINGERPRINT_STEPS = 100
 
 Environment = tuple[str, Mapping[str, Any], int, EnvironmentDescription | None]
-"""The id, the keyword arguments and the time limit of settings, and their environment in detail, if it is known."""
+"""The id, the keyword arguments and the time limit of settings, and the details of their environment, if known."""
 
 
 def describe_environments(env: Any, resolved: Sequence[ResolvedRun]) -> str:
-    """Returns JSON text: each different environment of a study, with a fingerprint of what it does and its settings.
+    """Returns JSON text: each different environment of a study, with a fingerprint of its dynamics and its settings.
 
     Args:
         env: The environment of the study: an id, an EnvSpec, or a function that makes one.
@@ -48,7 +48,7 @@ def describe_environments(env: Any, resolved: Sequence[ResolvedRun]) -> str:
 
 
 def stored_environments(meta: Mapping[str, str], settings: int, path: Path | None) -> dict[int, EnvironmentDescription]:
-    """Returns the environments of the settings of a store by their indices, as far as it describes them.
+    """Returns the environments of a store by the indices of their settings, as far as the store describes them.
 
     Raises:
         StoreError: if the descriptions are damaged.
@@ -71,7 +71,7 @@ def check_environments(stored: str | None, ours: str, path: Path | None) -> None
     """Checks that the environments of a study are those of its store; stores of earlier versions hold none.
 
     Raises:
-        StoreError: if one is another, or does something else now.
+        StoreError: if an environment differs, or now behaves differently.
     """
     if stored is None or stored == ours:
         return
@@ -89,19 +89,19 @@ def check_environments(stored: str | None, ours: str, path: Path | None) -> None
             )
         if None not in (fingerprint, another) and fingerprint != another:
             raise StoreError(
-                f"{name_of(path)} has results of {then.name} as it was before: with the same seed and actions it gives "
-                "other observations or rewards now; choose another file"
+                f"{name_of(path)} has results of an earlier {then.name}: with the same seed and actions it now gives "
+                "other observations or rewards; choose another file"
             )
 
 
 def _fingerprint(env: Any, run: ResolvedRun) -> str | None:
-    """A digest of some steps of a random policy; None where they do not repeat, fail, or are Rust's."""
+    """Returns a digest of some steps of a random policy; None if they do not repeat, fail, or run in Rust."""
     description = environment_of(run)
     if description.code == LIBRARY and description.id is not None and entry_for_id(description.id) is not None:
-        return None  # the versions tell
+        return None  # for Rust, the stored versions identify the code
     try:
         first, second = (_played(env, run.config) for _ in range(2))
-    except Exception:  # what any environment may raise
+    except Exception:  # an environment may raise anything
         return None
     return first if first == second else None
 
@@ -126,18 +126,18 @@ def _made(env: Any, config: Config) -> gym.Env:
 
 
 def sweep_threshold(sweep: "Sweep", setting: int | None = None) -> float | None:
-    """Returns the threshold of a setting; None where none holds; see :func:`qtab.envs.goals.reward_threshold`.
+    """Returns the threshold of a setting, or None; see :func:`qtab.envs.goals.reward_threshold`.
 
     Args:
         sweep: The sweep.
-        setting: The index of the setting; None means all, which must then have the same threshold.
+        setting: The index of the setting; None means all settings, which must then have the same threshold.
     """
     found = {reward_threshold(*environment) for environment in environments_of(sweep, setting)}
     return found.pop() if len(found) == 1 else None
 
 
 def environments_of(sweep: "Sweep", setting: int | None = None) -> list[Environment]:
-    """Returns the different environments of a setting, or of all; none for a sweep without configs."""
+    """Returns the different environments of one or all settings; an empty list for a sweep without configs."""
     found: dict[str, Environment] = {}
     for index, config in enumerate(sweep.configs):
         if setting is None or index == setting:

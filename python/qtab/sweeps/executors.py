@@ -1,4 +1,4 @@
-"""Training of a study with a :class:`concurrent.futures.Executor`, which may lose its workers."""
+"""Trains a study with a :class:`concurrent.futures.Executor`, which may lose its workers."""
 
 import logging
 import time
@@ -17,17 +17,17 @@ from qtab.sweeps.study import Study
 from qtab.sweeps.worker import Pace, claim_size, train_chunk, train_claim
 
 POLL_SECONDS = 0.5
-"""The time between two looks at what the executor has returned."""
+"""The time between two checks for results of the executor."""
 NOTICE_SECONDS = 2.0
-"""How long to wait for the executor before it is logged."""
+"""The time to wait for the executor before the wait is logged."""
 NEXT_NOTICE_SECONDS = 60.0
-"""The time after which it is logged again."""
+"""The time after which the wait is logged again."""
 LATE_SECONDS = 10.0
 """A chunk that takes longer than this may be late."""
 LATE_FACTOR = 10.0
-"""A chunk is late if it takes so many times longer than the slowest chunk that returned."""
+"""A chunk is late if it takes this many times longer than the slowest chunk that returned."""
 MAX_ATTEMPTS = 3
-"""How often the task of a chunk may fail before the sweep gives up."""
+"""The number of failures of a chunk's task after which the sweep gives up."""
 
 _LOGGER = logging.getLogger("qtab")
 
@@ -36,11 +36,11 @@ _LOGGER = logging.getLogger("qtab")
 class _Submitted:
     claim: range
     at: float
-    """The time of the submission, on this process's clock."""
+    """The time of the submission, on this process's monotonic clock."""
 
 
 class ExecutorTraining:
-    """Gives an executor chunks, and stores what it returns."""
+    """Submits chunks to an executor, and stores the results."""
 
     def __init__(
         self, study: Study, store: Store, executor: Executor, report: Callable[[], None], is_own: bool = False
@@ -50,19 +50,19 @@ class ExecutorTraining:
         """Whether the executor is a process pool of this package, for messages."""
         self._pace = Pace()
         self._next_notice = time.monotonic() + NOTICE_SECONDS
-        """When to log that the executor is being waited for, on this process's clock."""
+        """The time at which to log the wait for the executor, on this process's monotonic clock."""
         self._pending: dict[Future[Any], _Submitted] = {}
         self._poll_seconds = POLL_SECONDS
         self._failures: Counter[int] = Counter()
-        """How often the task failed that begins with a run."""
+        """The number of failures of each task, by its first run."""
         self._slowest: float | None = None
         """The longest time after which a chunk returned, in seconds."""
 
     def run(self, max_pending: int) -> None:
-        """Trains the runs that the store does not have, of which the executor has so many chunks at a time at most.
+        """Trains the runs missing in the store; the executor has at most ``max_pending`` chunks at a time.
 
         Raises:
-            RuntimeError: if the executor fails; the message tells how to resume.
+            RuntimeError: if the executor fails; the message explains how to resume.
         """
         try:
             while self._store.finished() < self._study.runs:
@@ -76,7 +76,7 @@ class ExecutorTraining:
                 future.cancel()
 
     def _submit(self, max_pending: int) -> bool:
-        """Submits chunks; returns whether the executor has all runs that are not stored."""
+        """Submits chunks; returns whether all runs that are not stored have been submitted."""
         while len(self._pending) < max_pending:
             claim = self._store.claim(partial(claim_size, self._study, self._pace, 1))
             if claim is None:
@@ -95,10 +95,10 @@ class ExecutorTraining:
         return task
 
     def _collect(self) -> bool:
-        """Stores the chunks that return soon; returns whether there is any."""
+        """Stores the chunks that return within the poll time; returns whether there were any."""
         timeout, self._poll_seconds = self._poll_seconds, POLL_SECONDS
         done, _ = wait(self._pending, timeout=timeout, return_when="FIRST_COMPLETED")
-        for future in sorted(done, key=_has_failed):  # stores what there is before an error ends the sweep
+        for future in sorted(done, key=_has_failed):  # store results before an error ends the sweep
             submitted = self._pending[future]
             try:
                 records, seconds, self._pace, versions = future.result()
@@ -115,7 +115,7 @@ class ExecutorTraining:
         return bool(done)
 
     def _try_again(self, claim: range, error: Exception) -> None:
-        """Releases the runs of a task that failed, so that they are submitted again, unless they have failed often.
+        """Releases the runs of a failed task, so that they are submitted again, unless the task has failed too often.
 
         The errors of runs are results. An error of a task comes from the executor: Dask, for example, confuses a result
         with an error if the worker that sent it is killed at that moment.
@@ -129,13 +129,13 @@ class ExecutorTraining:
         self._store.release(claim)
 
     def _train_late_chunk(self) -> bool:
-        """Trains a chunk here that the executor does not return; returns whether there is one.
+        """Trains a late chunk in this process; returns whether there was one.
 
         Dask, for example, tries for 30 seconds to fetch a result from a worker that was killed after it finished, and
         for minutes from one that was stopped.
         """
         if self._slowest is None or not self._pending:
-            return False  # the executor may still wait for its first worker; or another process has stored the rest
+            return False  # the executor may still wait for its first worker, or another process has stored the rest
         limit = max(LATE_SECONDS, LATE_FACTOR * self._slowest)
         future, submitted = min(self._pending.items(), key=lambda pair: pair[1].at)
         late = time.monotonic() - submitted.at
@@ -151,7 +151,7 @@ class ExecutorTraining:
         return True
 
     def _log_wait(self) -> None:
-        """Logs what the sweep is waiting for, if it is time."""
+        """Logs the wait for the executor, if a notice is due."""
         now = time.monotonic()
         if now >= self._next_notice:
             self._next_notice = now + NEXT_NOTICE_SECONDS
@@ -159,7 +159,7 @@ class ExecutorTraining:
             _LOGGER.warning("waiting for %s runs that the executor has in %d tasks", f"{runs:,}", len(self._pending))
 
     def _lost(self, error: BaseException) -> RuntimeError:
-        """Returns the error to raise where the executor fails, which tells how to resume."""
+        """Returns the error to raise if the executor fails; its message explains how to resume."""
         finished = self._store.finished()
         if isinstance(error, CancelledError):
             message = "the executor cancelled its work; was it, its client or its scheduler closed? "
@@ -169,10 +169,10 @@ class ExecutorTraining:
             message = f"{own if self._is_own else 'the executor failed'}: {type(error).__name__}"
             message += f": {reason}; " if reason else "; "
         if self._is_own and not finished:
-            message += "where this is a script, it must keep its call behind if __name__ == '__main__'; "
+            message += "a script must keep its call behind if __name__ == '__main__'; "
         kept = f"{finished:,} of {self._study.runs:,} runs are kept"
         if self._store.path is None:
-            return RuntimeError(f"{message}{kept} as .run of this error; with a store= the same call could resume")
+            return RuntimeError(f"{message}{kept} as .run of this error; with store= the same call could resume")
         return RuntimeError(f"{message}run the same call again: {kept} in {name_of(self._store.path)}")
 
 

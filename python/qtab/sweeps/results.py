@@ -37,16 +37,16 @@ SHOWN_SETTINGS = 6
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Sweep:
-    """The finished runs of all settings. The same sweep gives the same table, whether or not it was interrupted."""
+    """The finished runs of all settings. Interruptions do not change the table."""
 
     env: str
     """The environment's id."""
     settings: Sequence[Mapping[str, Any]]
-    """The values that the grid gives to each setting."""
+    """The values of the grid for each setting."""
     seeds: tuple[int, ...]
     """The seeds of every setting."""
     columns: Mapping[str, NDArray[Any]]
-    """(runs,) each: ``setting`` (its index), the names in the grid, ``seed``, the summary of the run, and ``error``.
+    """(runs,) each: ``setting`` (an index), the names in the grid, ``seed``, the summary of the run, and ``error``.
 
     Seeds are int64, uint64 if one needs it, or Python integers in an object array if one is at least 2**64. Values of a
     setting that have different types are in an object array."""
@@ -56,15 +56,15 @@ class Sweep:
     configs: Sequence[Mapping[str, Any]] = ()
     """The complete config of each setting without the seed, as JSON represents it."""
     seconds: float = 0.0
-    """The time that the training took, in seconds, summed over the processes that took part."""
+    """The training time in seconds, summed over all processes."""
     versions: str = "{}"
-    """The versions of the software that started the sweep, as JSON text; :attr:`run_versions` has those of each run."""
+    """The software versions of the process that started the sweep, as JSON text; see also :attr:`run_versions`."""
     _source: Any = field(default=None)
     """The environment and the overrides of each setting, if the sweep was trained in this process."""
     run_versions: Sequence[Versions] = ()
-    """(runs,): the versions of the software that trained each run; None in stores of earlier versions."""
+    """(runs,): the software versions that trained each run; None in stores of earlier versions."""
     _environments: Mapping[int, "EnvironmentDescription"] = field(default_factory=dict)
-    """The environments of the settings, as far as they are known: a store of an earlier version does not hold them."""
+    """The environments of the settings, as far as they are known; stores of earlier versions do not hold them."""
 
     def __repr__(self) -> str:
         versions = ", different versions" if different_versions(self.run_versions) else ""
@@ -72,7 +72,7 @@ class Sweep:
         return f"<Sweep of {self.env}: {settings}, {len(self):,} runs, {self.failed} failed{versions}>"
 
     def _repr_html_(self) -> str:
-        """A table and the mean learning curves of the settings with the best mean final return, for notebooks."""
+        """Returns a table and the mean learning curves of the best settings, for notebooks."""
         returns = {setting: self.values("final_return", setting) for setting in range(len(self.settings))}
         means = {setting: float(values.mean()) for setting, values in returns.items() if len(values)}
         best = sorted(means, key=means.__getitem__, reverse=True)[:SHOWN_SETTINGS]
@@ -95,11 +95,11 @@ class Sweep:
 
     @property
     def failed(self) -> int:
-        """The number of runs that failed; the column ``error`` has the reasons."""
+        """The number of failed runs; the column ``error`` has the reasons."""
         return int(self._has_failed.sum())
 
     def values(self, column: str, setting: int) -> NDArray[Any]:
-        """Returns a column for the runs of one setting that did not fail, ordered as the seeds.
+        """Returns a column for the successful runs of one setting, in the order of the seeds.
 
         Raises:
             KeyError: for an unknown column.
@@ -114,7 +114,7 @@ class Sweep:
         return values
 
     def curves(self, setting: int) -> NDArray[np.float64]:
-        """Returns (runs, blocks): the learning curves of the runs of one setting that did not fail.
+        """Returns (runs, blocks): the learning curves of the successful runs of one setting.
 
         Raises:
             TypeError: if ``setting`` is not an integer.
@@ -124,7 +124,7 @@ class Sweep:
         return np.array(curves) if curves else np.empty((0, 0))
 
     def rows(self, setting: int) -> NDArray[np.intp]:
-        """Returns the rows of the runs of one setting, those that failed included, ordered as the seeds.
+        """Returns the rows of all runs of one setting, including failed ones, in the order of the seeds.
 
         Raises:
             TypeError: if ``setting`` is not an integer.
@@ -151,8 +151,8 @@ class Sweep:
         """Returns (settings,): the mean final return of each setting, in which a failed run counts as the worst run.
 
         A failed run has no return. Leaving it out would favour a setting that sometimes diverges, so it counts as the
-        lowest final return of the whole sweep. A setting without any finished run has NaN, one of which all runs failed
-        has -inf.
+        lowest final return of the whole sweep. Settings without finished runs have NaN; settings whose runs all failed
+        have -inf.
         """
         returns = self.columns["final_return"]
         has_failed = np.isnan(returns)
@@ -168,8 +168,8 @@ class Sweep:
     def ranking(self) -> list[int]:
         """Returns the indices of the settings, best first, by :meth:`mean_final_returns`.
 
-        The first place is partly luck: of many settings, the best one looks better than it is. :meth:`confirm` trains
-        it again with other seeds. Settings without any finished run are left out.
+        The first place is partly luck: the best of many settings looks better than it is. :meth:`confirm` trains it
+        again with other seeds. Settings without finished runs are left out.
         """
         means = self.mean_final_returns()
         return [int(index) for index in np.argsort(-means, kind="stable") if not np.isnan(means[index])]
@@ -189,20 +189,20 @@ class Sweep:
         callback: SweepCallback | None = None,
         progress: bool | None = None,
     ) -> Confirmation:
-        """Trains settings again with seeds that the sweep did not use, by default the best, which gives unbiased means.
+        """Trains the best settings, or given ones, again with seeds that the sweep did not use, for unbiased means.
 
-        The mean by which a setting was chosen is too high on average, because the choice prefers lucky seeds.
+        The mean by which a setting was chosen is too high on average, because the choice favours lucky seeds.
 
         Args:
-            seeds: Seeds that the sweep did not use; an integer N means the N after its largest seed.
-            top: The number of settings to train again, from the first of :meth:`ranking`.
-            per: The name of a setting in the grid, such as ``"algorithm"``: trains the ``top`` best for each of its
-                values again. None takes the best of all.
+            seeds: Seeds that the sweep did not use; an integer N means the N seeds after its largest one.
+            top: The number of settings to train again, the first ones of :meth:`ranking`.
+            per: The name of a setting in the grid, such as ``"algorithm"``: trains the ``top`` best settings for each
+                of its values. None takes the best of all settings.
             settings: The indices of the settings to train again, whatever their rank.
-            env: The environment, as for :func:`qtab.sweep`, which must be that of the sweep. None takes that one; in a
-                sweep that was loaded from a store its id must be registered already, and its wrappers and changed
-                attributes are made again where the store describes them well enough.
-            store: As for :func:`qtab.sweep`; it must be another file than that of this sweep.
+            env: The environment, as for :func:`qtab.sweep`, which must be that of the sweep. None takes the sweep's. If
+                the sweep was loaded from a store, the id must already be registered, and wrappers and changed
+                attributes are made again if the store describes them well enough.
+            store: As for :func:`qtab.sweep`; it must not be the file of this sweep.
             executor: As for :func:`qtab.sweep`.
             threads: As for :func:`qtab.sweep`.
             memory_limit: As for :func:`qtab.sweep`.
@@ -214,7 +214,7 @@ class Sweep:
             StoreError: if the store is damaged, or belongs to another sweep.
             TypeError: for an argument of the wrong type.
             ValueError: for seeds that the sweep used, an argument out of range, settings that cannot be restored, or an
-                environment that cannot be made again or is another one; the message says what differs.
+                environment that cannot be made again or differs; the message gives the reason.
             KeyboardInterrupt: on Ctrl-C; its attribute ``run`` is the table of the finished runs.
         """
         chosen = chosen_settings(self, top, per, settings)
@@ -225,25 +225,25 @@ class Sweep:
         return Confirmation(tuple(chosen), self, again)
 
     def run(self, setting: int, seed: int, *, env: Any = None) -> "Run":
-        """Trains a run of the table again, which has its tables and episodes then, and can be verified and plotted.
+        """Trains a run of the table again, to get its Q tables and episodes, for example to verify or plot it.
 
         Args:
-            setting: The index of its setting.
-            seed: Its seed.
+            setting: The index of the setting.
+            seed: The seed of the run.
             env: The environment, as for :meth:`confirm`.
 
         Raises:
             TypeError: for an argument of the wrong type.
-            ValueError: for an argument out of range, a run that failed, an environment that cannot be made again or is
-                another one, or a run that gives other results here than those of the table.
+            ValueError: for an argument out of range, a failed run, an environment that cannot be made again or differs,
+                or results that differ from those of the table.
         """
         return trained_again(self, setting, seed, env)
 
     def to_pandas(self) -> "pd.DataFrame":
         """Returns the table as a pandas data frame.
 
-        Columns of integers are int64; where runs failed, pandas' Int64, which has missing values. Seeds have the dtype
-        that they have in :attr:`columns`.
+        Columns of integers are int64, or pandas' Int64 with missing values if runs failed. Seeds have the same dtype as
+        in :attr:`columns`.
 
         Raises:
             ModuleNotFoundError: without pandas; the message names the ``pip install``.
@@ -251,7 +251,7 @@ class Sweep:
         return data_frame(self.columns, INTEGER_COLUMNS)
 
     def to_arrow(self) -> "pa.Table":
-        """Returns the table as an Arrow table, which polars (``polars.from_arrow``) and Parquet files take.
+        """Returns the table as an Arrow table, for polars (``polars.from_arrow``) or Parquet files.
 
         Seeds from 2**64 on, and settings with values of different types, become text.
 
@@ -267,9 +267,9 @@ def build_sweep(
     """Returns the table of the stored runs of a study.
 
     Args:
-        contents: What the store holds.
+        contents: The contents of the store.
         study: The study, if it was planned in this process.
-        environments: The environments of the settings, as far as the store describes them, without a study.
+        environments: Without a study, the environments of the settings, as far as the store describes them.
     """
     stored, runs = contents.study, contents.runs
     settings = stored.settings if study is None else study.settings

@@ -1,4 +1,4 @@
-"""A run as a store holds it: its row, the check of the row, and the SHA-256 digests over chunks of rows."""
+"""A run in a store: its row, the check of the row, and the SHA-256 digests of chunks of rows."""
 
 import hashlib
 import json
@@ -45,7 +45,7 @@ def check_run(stored: StoredRun, config: Mapping[str, Any], expected_seed: int, 
         block: The number of episodes that each point of its learning curve averages.
 
     Raises:
-        ValueError: if they are not; the message says which.
+        ValueError: if a value is impossible; the message names it.
     """
     _, seed, *summary, curve, error = stored
     if seed != str(expected_seed):
@@ -64,7 +64,7 @@ def check_run(stored: StoredRun, config: Mapping[str, Any], expected_seed: int, 
         raise ValueError(f"it has {config['episodes']} episodes, not {episodes:g}")
     if not (episodes <= steps <= episodes * limit and steps.is_integer()):
         raise ValueError(f"{episodes:g} episodes of at most {limit} steps cannot have {steps:g} steps")
-    # A mean of equal numbers can lie a few units in the last place above them.
+    # A mean of equal numbers can exceed them by a few units in the last place.
     rounding = 1e-9 * abs(best)
     if max(mean, final) > best + rounding or (episodes <= FINAL_EPISODES and final != mean):
         raise ValueError(f"its mean, final and best return contradict each other: {mean:g}, {final:g}, {best:g}")
@@ -80,20 +80,20 @@ def _shown(value: object) -> str:
 
 
 def study_digest(meta: Mapping[str, str]) -> int:
-    """Returns the digest of a study: of everything that a store says about itself except for the digest."""
+    """Returns the digest of a study: of all metadata of its store except for the digest."""
     text = json.dumps({name: value for name, value in meta.items() if name != "digest"}, sort_keys=True)
     return int.from_bytes(hashlib.sha256(text.encode()).digest(), "big")
 
 
 def chunk_digest(start: int, stop: int, seconds: float, runs: Iterable[StoredRun], place: int | None) -> int:
-    """Returns the digest of a chunk, ``start`` to ``stop`` - 1, and of its runs as they are stored.
+    """Returns the digest of a chunk, runs ``start`` to ``stop`` - 1, and of its stored rows.
 
     Args:
         start: The index of the first run.
         stop: The index after the last run.
         seconds: The time that the runs took.
         runs: The runs.
-        place: The place of their versions; None in stores of version 2, which do not hold it.
+        place: The place of the runs' versions; None in stores of version 2, which do not hold it.
     """
     digest = hashlib.sha256(struct.pack("<qqd", start, stop, seconds))
     if place is not None:
@@ -108,9 +108,9 @@ def chunk_digest(start: int, stop: int, seconds: float, runs: Iterable[StoredRun
 
 
 def combined(study: int, chunks: Sequence[int]) -> int:
-    """Returns the digest of a store, from that of its study and those of its chunks in any order.
+    """Returns the digest of a store, from the digests of its study and, in any order, its chunks.
 
-    A commit updates it without reading the other chunks.
+    A commit can update it without reading the other chunks.
     """
     for chunk in chunks:
         study ^= chunk

@@ -1,4 +1,4 @@
-"""The versions of the software that trained the runs of a store, and what messages and reports show of them."""
+"""The versions of the software that trained the runs of a store, and their texts in messages and reports."""
 
 import json
 from collections import Counter
@@ -10,15 +10,15 @@ from qtab._utils.shown import counted
 from qtab._utils.versions import versions
 
 Versions = Mapping[str, str] | None
-"""The versions by name, as :func:`qtab._utils.versions.versions` returns them; None where they are not known."""
+"""The versions by name, as :func:`qtab._utils.versions.versions` returns them; None if unknown."""
 UNKNOWN = -1
-"""The place of versions that an earlier version of this package did not store."""
+"""The place for runs whose versions an earlier version of this package did not store."""
 SHOWN_VALUES = 5
-"""How many versions of the same software messages show."""
+"""The maximum number of versions of the same software to show in messages."""
 
 
 def named_versions(meta: Mapping[str, str]) -> list[Any]:
-    """Returns the versions that a store names: of the process that created it, and of others that trained its runs.
+    """Returns the versions named in a store: those of the process that created it, and of others that trained runs.
 
     Raises:
         ValueError: if they are not JSON.
@@ -30,10 +30,10 @@ def named_versions(meta: Mapping[str, str]) -> list[Any]:
 
 
 def check_places(meta: Mapping[str, str], places: Set[Any]) -> None:
-    """Checks that runs have versions that their store names.
+    """Checks that the versions of runs are named in their store.
 
     Raises:
-        ValueError: if they do not.
+        ValueError: if they are not.
     """
     named = [None, *named_versions(meta)] if places - {UNKNOWN} else [None]
     for place in places:
@@ -45,7 +45,7 @@ def check_places(meta: Mapping[str, str], places: Set[Any]) -> None:
 
 
 def versions_of_runs(meta: Mapping[str, str], places: Sequence[int]) -> list[Versions]:
-    """Returns the versions of each run of a store that was checked."""
+    """Returns the versions of each run of a checked store."""
     if all(place == UNKNOWN for place in places):
         return [None] * len(places)
     named = [*named_versions(meta), None]  # the last one is at the place UNKNOWN
@@ -53,7 +53,7 @@ def versions_of_runs(meta: Mapping[str, str], places: Sequence[int]) -> list[Ver
 
 
 def other_versions(meta: Mapping[str, str], places: Sequence[int]) -> list[str]:
-    """Returns the versions that trained runs of a store and are not those here; where unknown, those that it names."""
+    """Returns the versions that trained a store's runs and differ from those here; if unknown, all that it names."""
     here, trained = versions(), []
     if UNKNOWN not in places:
         trained = versions_of_runs(meta, sorted(set(places)))
@@ -71,7 +71,7 @@ def other_versions(meta: Mapping[str, str], places: Sequence[int]) -> list[str]:
 
 
 def runs_by_versions(of_runs: Sequence[Versions]) -> list[tuple[Versions, int]]:
-    """Returns the different versions of runs with the number of their runs, the most frequent first."""
+    """Returns the different versions with the number of their runs, the most frequent first."""
     distinct = {id(one): one for one in of_runs}
     found: dict[str, tuple[Versions, int]] = {}
     for key, runs in Counter(map(id, of_runs)).items():
@@ -81,7 +81,7 @@ def runs_by_versions(of_runs: Sequence[Versions]) -> list[tuple[Versions, int]]:
 
 
 def by_name(of_runs: Sequence[Versions]) -> dict[str, list[tuple[str, int]]]:
-    """Returns the values of each version by its name, with the number of their runs, the most frequent first."""
+    """Returns the versions of each software by name, with the number of their runs, the most frequent first."""
     values: dict[str, Counter[str]] = {}
     for one, runs in runs_by_versions(of_runs):
         for name, value in (one or {}).items():
@@ -90,12 +90,12 @@ def by_name(of_runs: Sequence[Versions]) -> dict[str, list[tuple[str, int]]]:
 
 
 def different_versions(of_runs: Sequence[Versions]) -> dict[str, list[tuple[str, int]]]:
-    """Returns those of :func:`by_name` of which runs have different ones."""
+    """Returns the entries of :func:`by_name` with more than one version."""
     return {name: values for name, values in by_name(of_runs).items() if len(values) > 1}
 
 
 def versions_note(of_runs: Sequence[Versions]) -> str:
-    """Returns sentences that say in which versions runs differ, and of how many these are unknown; "" if in none."""
+    """Returns sentences about different versions of runs and the number of runs without any; "" if there are none."""
     notes = []
     if differ := different_versions(of_runs):
         parts = [f"{name} {in_words(values)}" for name, values in differ.items()]
@@ -108,7 +108,7 @@ def versions_note(of_runs: Sequence[Versions]) -> str:
 
 
 def in_words(values: Sequence[tuple[str, int]]) -> str:
-    """Returns the values of a version with the numbers of their runs."""
+    """Returns text with the versions of one software and the numbers of their runs."""
     shown = [f"{value} ({counted(runs, 'run')})" for value, runs in values[:SHOWN_VALUES]]
     left = len(values) - SHOWN_VALUES
     return ", ".join([*shown, f"and {left} more"] if left > 0 else shown)

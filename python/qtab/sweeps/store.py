@@ -1,8 +1,8 @@
-"""The store of a sweep: processes choose runs in it and store the results, each run once.
+"""The store of a sweep: processes claim runs in it and store the results, each run once.
 
-A run has the same results in every process. So it does not matter which of them trains it, and nobody has to find out
-whether another process still lives: a process that finds no other runs also trains those that others have claimed, and
-the first result is stored.
+A run has the same results in every process. So it does not matter which process trains it, and none has to find out
+whether another is still alive: a process that finds no other runs also trains runs that others have claimed, and the
+first result is stored.
 """
 
 import logging
@@ -53,22 +53,22 @@ class Store:
     """The connection of one process to the store of a study."""
 
     def __init__(self, path: "str | os.PathLike[str] | None", study: StoredStudy) -> None:
-        """Opens a store, or creates it; None keeps it in memory.
+        """Opens or creates a store; None keeps it in memory.
 
         Raises:
             OSError: if the file cannot be opened or written.
             StoreError: if it is damaged, has another format version, or belongs to another study.
             TypeError: if ``path`` is not a path.
-            ValueError: if ``path`` names no file.
+            ValueError: if ``path`` is empty.
         """
         self.path = None if path is None else store_path(path)
         """The file; None if the store is in memory."""
         self._study = study
         self._owner = uuid.uuid4().hex
         self._claims: list[range] = []
-        """What this process has claimed, and neither committed nor released."""
+        """The claims of this process that are neither committed nor released."""
         self._done_until = 0
-        """The runs before this one are stored. Looking through the chunks of a day takes a fifth of a second."""
+        """All runs before this one are stored. Searching the chunks of a day would take a fifth of a second."""
         self._file: tuple[int, int] | None = None
         self._numbering: int | None = None
         with translated_errors(self.path):
@@ -83,17 +83,17 @@ class Store:
 
     def close(self) -> None:
         """Withdraws the claims of this process and closes the file."""
-        # A claim that cannot be withdrawn only makes other processes train its runs last.
+        # If a claim cannot be withdrawn, other processes only train its runs last.
         with closing(self._connection), suppress(OSError, StoreError), self._transaction():
             self._connection.execute("DELETE FROM chunks WHERE owner = ? AND digest IS NULL", (self._owner,))
 
     def claim(self, size: Callable[[int], int]) -> range | None:
-        """Chooses runs for this process to train; None if it has claimed all that are not stored.
+        """Claims runs for this process to train; returns None if it has claimed all that are not stored.
 
-        Runs that no process has claimed come first, then those that another one claimed the longest ago.
+        Unclaimed runs come first, then the oldest claims of other processes.
 
         Args:
-            size: Returns how many runs to claim, from the index of the first one.
+            size: Returns the number of runs to claim, given the index of the first one.
         """
         with self._transaction():
             free = self._first_unclaimed() or self._first_of_others()
@@ -112,13 +112,13 @@ class Store:
     ) -> None:
         """Stores the results of the first runs of a claim in one transaction, and releases the others.
 
-        Runs that another process has stored meanwhile are left as they are. If their results differ, this is logged.
+        Runs that another process has stored in the meantime are not replaced. If their results differ, this is logged.
 
         Args:
-            claim: What :meth:`claim` returned.
+            claim: The result of :meth:`claim`.
             records: The results of its first runs, or of all of them.
-            seconds: The time that they took.
-            versions: The versions of the process that trained them; None means those of this one.
+            seconds: The time that the runs took.
+            versions: The versions of the process that trained them; None means those of this process.
         """
         trained = range(claim.start, claim.start + len(records))
         rows = [record.as_row(run) for run, record in zip(trained, records, strict=True)]
@@ -156,7 +156,7 @@ class Store:
             return int(self._connection.execute(query).fetchone()[0])
 
     def contents(self) -> Contents:
-        """Returns all that is stored, after checking it."""
+        """Returns the contents of the store, after checking them."""
         with self._transaction(writes=False):
             return read_contents(self._connection, self.path)
 
@@ -166,7 +166,7 @@ class Store:
             check_header(path)
             with bounded(self._connection, path):
                 if not is_empty(self._connection):
-                    read_meta(self._connection, path)  # finds out whether it is a store before writing to it
+                    read_meta(self._connection, path)  # check that it is a store before writing to it
             # With these settings a committed transaction survives the end of the process. A power failure can undo the
             # last transactions, but does not damage the file.
             when_unlocked(self._connection, "PRAGMA journal_mode = WAL", path)
@@ -174,7 +174,7 @@ class Store:
         with self._transaction(), bounded(self._connection, path):
             if is_empty(self._connection):
                 create_tables(self._connection, study, versions_here())
-        # Reads everything to find damage now instead of after the training.
+        # Read everything, to find damage now instead of after the training.
         with self._transaction(writes=False), bounded(self._connection, path):
             number, contents = numbering(self._connection), read_contents(self._connection, path)
         check_study(contents, study, path)
@@ -182,7 +182,7 @@ class Store:
             _warn_of_differences(contents, path)
         if is_outdated(contents, study):
             with self._transaction(), bounded(self._connection, path):
-                contents = read_contents(self._connection, path)  # another process may have changed it meanwhile
+                contents = read_contents(self._connection, path)  # another process may have changed it since
                 check_study(contents, study, path)
                 if is_outdated(contents, study):
                     rewrite(self._connection, contents, study)
@@ -202,7 +202,7 @@ class Store:
         return next(_gaps(range(self._done_until, self._study.runs), taken), None)
 
     def _first_of_others(self) -> range | None:
-        """Returns runs that another process has claimed, and withdraws that claim; None if there are none."""
+        """Withdraws the oldest claim of another process, and returns its runs; None if there are none."""
         for claim in self._ranges("digest IS NULL AND owner IS NOT ? ORDER BY heartbeat, start", self._owner):
             free = next(_gaps(claim, self._claims), None)
             if free is not None:
@@ -217,13 +217,13 @@ class Store:
         )
 
     def _ranges(self, condition: str, *values: object) -> list[range]:
-        """Returns the runs of the chunks that fulfil a condition."""
+        """Returns the runs of the chunks that satisfy a condition."""
         rows = self._connection.execute(f"SELECT start, stop FROM chunks WHERE {condition}", values)  # noqa: S608 - ours
         return [range(start, stop) for start, stop in rows.fetchall()]
 
     @contextmanager
     def _transaction(self, writes: bool = True) -> Iterator[None]:
-        """A transaction, which sees one state of the file."""
+        """Runs the context in a transaction, which sees a single state of the file."""
         with translated_errors(self.path):
             if writes:
                 self._check_file()
@@ -238,20 +238,20 @@ class Store:
             self._connection.execute("COMMIT")
 
     def _check_numbering(self) -> None:
-        """Raises an error if another process has given the store more seeds: its runs have other numbers now."""
+        """Raises an error if another process has added seeds to the store, which renumbers its runs."""
         if self._numbering is not None and numbering(self._connection) != self._numbering:
             raise StoreError(
                 f"{name_of(self.path)} was given more seeds by another process; give this sweep the same seeds"
             )
 
     def _check_file(self) -> None:
-        """Raises an error if the file is no longer at its path: what is written to it would be lost."""
+        """Raises an error if the file is no longer at its path: further results would be lost."""
         if self.path is not None and self._file is not None and _identity(self.path) != self._file:
             raise FileNotFoundError(f"{name_of(self.path)} was deleted or replaced during the sweep")
 
 
 def finished_contents(path: Path, study: StoredStudy) -> Contents | None:
-    """Returns what a finished store on a read-only medium holds; None if it can be written, or does not exist.
+    """Returns the contents of a finished read-only store; None if the store is writable or does not exist.
 
     Raises:
         OSError: if the store is not finished.
@@ -270,19 +270,19 @@ def finished_contents(path: Path, study: StoredStudy) -> Contents | None:
 
 
 def _warn_of_differences(contents: Contents, path: Path | None) -> None:
-    """Logs which information a store lacks, and that its results come from other versions than these."""
+    """Logs the information that a store lacks, and the versions of its results if they differ from these."""
     if "environments" not in contents.meta:
         _LOGGER.warning(
             "%s stores only the id and the arguments of its environment, like all stores of earlier versions: the "
-            "rest of it is not compared",
+            "rest of the environment is not compared",
             name_of(path),
         )
     if contents.runs and (others := other_versions(contents.meta, contents.places)):
-        _LOGGER.warning("%s has results made with %s, which these may differ from", name_of(path), ", ".join(others))
+        _LOGGER.warning("%s has results made with %s; new results may differ", name_of(path), ", ".join(others))
 
 
 def _gaps(runs: range, taken: Iterable[range]) -> Iterator[range]:
-    """Yields the parts of a range that lie in none of the others."""
+    """Yields the parts of ``runs`` that are in none of the ranges ``taken``."""
     free = runs.start
     for other in sorted(taken, key=lambda one: one.start):
         if free < min(other.start, runs.stop):
@@ -293,7 +293,7 @@ def _gaps(runs: range, taken: Iterable[range]) -> Iterator[range]:
 
 
 def _identity(path: Path) -> tuple[int, int] | None:
-    """Returns what tells a file from every other; None if it does not exist."""
+    """Returns numbers that identify a file; None if it does not exist."""
     with suppress(OSError):
         status = path.stat()
         return (status.st_dev, status.st_ino) if stat.S_ISREG(status.st_mode) else None

@@ -1,4 +1,4 @@
-"""The SQLite file format of a store: its tables, the check of its version and content, and how runs are written."""
+"""The SQLite file format of a store: its tables, reading with checks of version and content, and writing."""
 
 import json
 import logging
@@ -25,8 +25,8 @@ from qtab.sweeps.study import StoredStudy, study_from_json
 
 FORMAT = "qtab sweep"
 FORMAT_VERSION = 3
-"""The version that is written. Version 2, which lacks the versions of single runs, is also read, and upgraded when its
-sweep resumes."""
+"""The version that is written. Version 2, which lacks the software versions of single runs, can also be read, and is
+upgraded when its sweep resumes."""
 
 _META = "CREATE TABLE meta (name TEXT PRIMARY KEY, value TEXT NOT NULL)"
 _RUNS = (
@@ -37,11 +37,11 @@ _CHUNKS = (
     "CREATE TABLE chunks (start INTEGER PRIMARY KEY, stop INTEGER NOT NULL, owner TEXT, heartbeat REAL, seconds REAL, "
     "digest TEXT, versions INTEGER, CONSTRAINT needs_newer_qtab CHECK (digest IS NULL OR versions IS NOT NULL))"
 )
-"""The runs ``start`` to ``stop`` - 1. With a digest they are stored; without, ``owner`` has claimed them, at the time
-``heartbeat``. ``versions`` is the place of the software that trained them among those that the store names.
+"""The runs ``start`` to ``stop`` - 1. With a digest they are stored; without, ``owner`` claimed them at the time
+``heartbeat``. ``versions`` is the place of their software versions among those that the store names.
 
-The constraint refuses what an earlier qtab would store that opened the file before another process upgraded it: such a
-process does not notice that the runs have other numbers after more seeds were added."""
+The constraint rejects results of an earlier qtab that opened the file before another process upgraded it: that process
+does not notice that added seeds have renumbered the runs."""
 _CHUNKS_2 = (
     "CREATE TABLE chunks (start INTEGER PRIMARY KEY, stop INTEGER NOT NULL, owner TEXT, heartbeat REAL, seconds REAL, "
     "digest TEXT)"
@@ -54,16 +54,16 @@ _LOGGER = logging.getLogger("qtab")
 
 @dataclass(frozen=True)
 class Contents:
-    """What a store holds, after it was checked."""
+    """The checked contents of a store."""
 
     meta: dict[str, str]
     study: StoredStudy
     runs: list[StoredRun]
     seconds: float
-    """The time that the chunks took, in seconds of their workers."""
+    """The total time of the chunks, in seconds, summed over the workers."""
     places: Sequence[int]
-    """For each run, the place of the versions that trained it in :func:`qtab.sweeps.run_versions.named_versions`;
-    ``UNKNOWN`` where an earlier version did not store it."""
+    """For each run, the place of its software versions in :func:`qtab.sweeps.run_versions.named_versions`;
+    ``UNKNOWN`` if an earlier version did not store them."""
 
 
 def is_empty(connection: sqlite3.Connection) -> bool:
@@ -82,7 +82,7 @@ def create_tables(connection: sqlite3.Connection, study: StoredStudy, versions: 
 
 
 def write_meta(connection: sqlite3.Connection, content: dict[str, str], chunks: Sequence[int]) -> None:
-    """Writes what a store says about itself, with the digest over it and the digests of its chunks."""
+    """Writes the metadata of a store, with the digest of the metadata and of the chunks."""
     meta = {**content, "format": FORMAT, "version": str(FORMAT_VERSION)}
     meta["digest"] = to_text(combined(study_digest(meta), chunks))
     connection.execute("DELETE FROM meta")
@@ -90,13 +90,13 @@ def write_meta(connection: sqlite3.Connection, content: dict[str, str], chunks: 
 
 
 def read_meta(connection: sqlite3.Connection, path: Path | None) -> dict[str, str]:
-    """Returns what a store says about itself, after checking its format, its version and its tables.
+    """Returns the metadata of a store, after checking its format, its version and its tables.
 
     Raises:
         StoreError: if the file is not a store, has another format version, or has other tables, views or triggers.
     """
     schema = connection.execute("SELECT type, sql FROM sqlite_master").fetchall()
-    # SQLite creates the index of a primary key; it has no text.
+    # The index that SQLite creates for a primary key has no SQL text.
     statements = [" ".join(sql.split()) if isinstance(sql, str) else kind for kind, sql in schema]
     if _META not in statements:
         raise StoreError(f"{name_of(path)} is not a sweep store")
@@ -113,7 +113,7 @@ def read_meta(connection: sqlite3.Connection, path: Path | None) -> dict[str, st
 
 
 def read_contents(connection: sqlite3.Connection, path: Path | None) -> Contents:
-    """Returns what a store holds, after checking all of it.
+    """Returns the contents of a store, after checking all of them.
 
     Raises:
         sqlite3.Error: if SQLite cannot read the file.
@@ -141,7 +141,7 @@ def read_contents(connection: sqlite3.Connection, path: Path | None) -> Contents
 
 
 def read_store(path: Path) -> Contents:
-    """Returns what a store holds, which may belong to a sweep that is still running, without writing to it.
+    """Returns the contents of a store without writing to it; its sweep may still be running.
 
     Raises:
         OSError: if the file cannot be read.
@@ -150,7 +150,7 @@ def read_store(path: Path) -> Contents:
     with reading(path) as connection:
         connection.execute("BEGIN")
         if is_empty(connection):
-            raise StoreError(f"{name_of(path)} is empty: its sweep ended before it stored anything; start it again")
+            raise StoreError(f"{name_of(path)} is empty: its sweep ended before storing anything; start it again")
         contents = read_contents(connection, path)
     if note := versions_note(versions_of_runs(contents.meta, contents.places)):
         _LOGGER.warning("%s: %s", name_of(path), note)
@@ -172,14 +172,14 @@ def _check_chunks(
     query = f"SELECT start, stop, seconds, digest, {place} FROM chunks ORDER BY start"  # noqa: S608 - fixed names
     for start, stop, seconds, digest, versions in connection.execute(query):
         if not (type(start) is int and type(stop) is int and after <= start < stop <= study.runs):
-            raise ValueError(f"its chunk of runs {start!r} to {stop!r} overlaps another or is none of its study")
+            raise ValueError(f"its chunk of runs {start!r} to {stop!r} overlaps another or is not in its study")
         after = stop
         if digest is None:
             continue
         chunk = runs[position : position + stop - start]
         position += len(chunk)
         if [run[0] for run in chunk] != list(range(start, stop)):
-            raise ValueError(f"runs are missing among {start} to {stop - 1}, which it says are finished")
+            raise ValueError(f"runs are missing among {start} to {stop - 1}, which are marked as finished")
         if not (isinstance(seconds, float) and math.isfinite(seconds)):
             raise ValueError(f"its chunk of runs {start} to {stop - 1} has no time")
         if not (type(versions) is int and -(2**63) <= versions < 2**63):
@@ -199,13 +199,13 @@ def _check_chunks(
 
 
 def read_runs(connection: sqlite3.Connection, runs: range) -> list[StoredRun]:
-    """Returns those of consecutive runs that are stored, without checking them."""
+    """Returns the stored ones of consecutive runs, without checking them."""
     query = f"SELECT {_RUN_COLUMNS} FROM runs WHERE run >= ? AND run < ?"  # noqa: S608 - fixed names
     return connection.execute(query, (runs.start, runs.stop)).fetchall()
 
 
 def insert_chunk(connection: sqlite3.Connection, rows: Sequence[StoredRun], seconds: float, place: int) -> int:
-    """Stores consecutive runs, which took so many seconds, with the place of their versions; returns their digest."""
+    """Stores consecutive runs with their time and the place of their versions; returns their digest."""
     placeholders = ", ".join("?" * (len(SUMMARY_COLUMNS) + 4))
     connection.executemany(f"INSERT INTO runs VALUES ({placeholders})", rows)  # noqa: S608 - placeholders only
     start, stop = rows[0][0], rows[-1][0] + 1
@@ -218,14 +218,14 @@ def insert_chunk(connection: sqlite3.Connection, rows: Sequence[StoredRun], seco
 
 
 def is_outdated(contents: Contents, study: StoredStudy) -> bool:
-    """Returns whether a store has an earlier format, or fewer seeds than the study that it belongs to."""
+    """Returns whether a store has an earlier format, or fewer seeds than its study."""
     return contents.meta["version"] != str(FORMAT_VERSION) or contents.study.seeds != study.seeds
 
 
 def rewrite(connection: sqlite3.Connection, contents: Contents, study: StoredStudy) -> None:
-    """Writes all that a store holds anew, in a transaction: in the present format, with the seeds of a study.
+    """Rewrites the contents of a store in a transaction: in the current format, with the seeds of a study.
 
-    The runs are numbered by setting and seed, so that more seeds give all of them new numbers. Claims are withdrawn.
+    Runs are numbered by setting and seed, so additional seeds renumber them. Claims are withdrawn.
     """
     old, new = contents.study.seeds, study.seeds
     positions = {seed: position for position, seed in enumerate(new)}
@@ -247,12 +247,12 @@ def rewrite(connection: sqlite3.Connection, contents: Contents, study: StoredStu
 
 
 def numbering(connection: sqlite3.Connection) -> int:
-    """Returns how often the runs of a store were numbered."""
+    """Returns the number of times that the runs of a store were numbered."""
     return int(connection.execute("PRAGMA user_version").fetchone()[0])
 
 
 def place_of(connection: sqlite3.Connection, versions: Mapping[str, str]) -> int:
-    """Returns the place of versions among those that a store names, after adding them if they are new."""
+    """Returns the place of versions among those named in a store, after adding them if they are new."""
     query = "SELECT name, value FROM meta"
     named = named_versions(dict(connection.execute(f"{query} WHERE name IN ('versions', 'other_versions')").fetchall()))
     if versions in named:
@@ -265,7 +265,7 @@ def place_of(connection: sqlite3.Connection, versions: Mapping[str, str]) -> int
 
 
 def add_digests(connection: sqlite3.Connection, chunks: Sequence[int]) -> None:
-    """Adds the digests of new chunks to that of the store."""
+    """Adds the digests of new chunks to the digest of the store."""
     before = connection.execute("SELECT value FROM meta WHERE name = 'digest'").fetchone()[0]
     after = to_text(combined(int(before, 16), chunks))
     connection.execute("UPDATE meta SET value = ? WHERE name = 'digest'", (after,))
@@ -284,7 +284,7 @@ def check_study(contents: Contents, study: StoredStudy, path: Path | None) -> No
     if contents.study.has_more_seeds(study):
         raise StoreError(
             f"{name_of(path)} has runs of {len(contents.study.seeds)} seeds, of which this sweep has only "
-            f"{len(study.seeds)}; give it all of them, or choose another file"
+            f"{len(study.seeds)}; give this sweep all of them, or choose another file"
         )
     raise StoreError(
         f"{name_of(path)} belongs to another sweep (other settings, seeds or environment); choose another file"

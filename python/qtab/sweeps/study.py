@@ -1,4 +1,4 @@
-"""The study of a sweep, complete before it starts: its settings and its seeds, also as a store holds them in JSON."""
+"""The study of a sweep, complete before it starts: its settings and seeds, and their JSON form in a store."""
 
 import hashlib
 import json
@@ -27,7 +27,7 @@ from qtab.training.run_memory import bytes_of_run
 from qtab.training.train_many import resolve_template, seed_numbers
 
 BYTES_PER_STORED_RUN = 1000
-"""The approximate size of the results and the seed of a run that is stored, in memory."""
+"""The approximate size in memory of the results and the seed of a stored run."""
 BYTES_PER_SETTING = 4000
 """The approximate size of a setting and its config in memory."""
 
@@ -36,10 +36,10 @@ _STUDY_TYPES = {"configs": list, "settings": list, "seeds": list, "block": int}
 
 @dataclass(frozen=True)
 class StoredStudy:
-    """A study as a store holds it. Run ``i`` has setting ``i // len(seeds)`` and seed ``seeds[i % len(seeds)]``."""
+    """A study in a store. Run ``i`` has setting ``i // len(seeds)`` and seed ``seeds[i % len(seeds)]``."""
 
     configs: Sequence[Mapping[str, Any]]
-    """The config of each setting, without the seed, as JSON represents it; a text chooses no module to import."""
+    """The config of each setting, without the seed, as JSON represents it; no text in it selects a module to import."""
     settings: Sequence[Mapping[str, Any]]
     """The values that the grid gives to each setting."""
     seeds: tuple[int, ...]
@@ -47,7 +47,7 @@ class StoredStudy:
     block: int
     """The number of episodes that each point of a learning curve averages."""
     environments: str | None = None
-    """JSON text: the environments in detail; None where a store does not say it."""
+    """The environments in detail, as JSON text; None if a store does not hold them."""
 
     @property
     def runs(self) -> int:
@@ -56,24 +56,24 @@ class StoredStudy:
 
     @property
     def text(self) -> str:
-        """JSON text that is equal for equal studies only. It is part of the store format."""
+        """The study as JSON text, which is equal only for equal studies. It is part of the store format."""
         return json.dumps({name: getattr(self, name) for name in _STUDY_TYPES}, sort_keys=True)
 
     def has_more_seeds(self, other: "StoredStudy") -> bool:
-        """Returns whether this is another study with further seeds."""
+        """Returns whether this study is ``other`` with additional seeds."""
         is_same = replace(self, seeds=()).text == replace(other, seeds=()).text
         return is_same and set(self.seeds) > set(other.seeds)
 
 
 @dataclass(frozen=True)
 class Study:
-    """All runs of a sweep that is planned in this process, numbered as in :class:`StoredStudy`."""
+    """All runs of a sweep planned in this process, numbered as in :class:`StoredStudy`."""
 
     env: Any
     settings: Sequence[Mapping[str, Any]]
     """The points of the grid: the config fields in which the settings differ."""
     overrides: Sequence[Mapping[str, Any]]
-    """The config fields given for each setting, including those that all settings share."""
+    """The config fields given for each setting, including those shared by all settings."""
     seeds: tuple[int, ...]
     """The seeds of every setting."""
     resolved: Sequence[ResolvedRun]
@@ -81,7 +81,7 @@ class Study:
     block: int
     """The number of episodes that each point of a learning curve averages."""
     memory_limit: int | None = None
-    """The most memory that a single run may take, in bytes; None means half of the memory of the machine it is on."""
+    """The most memory that a single run may take, in bytes; None means half of the memory of its machine."""
 
     @property
     def runs(self) -> int:
@@ -90,14 +90,14 @@ class Study:
 
     @property
     def environments(self) -> dict[int, EnvironmentDescription]:
-        """The environment of each setting by its index."""
+        """The environment of each setting, by the index of the setting."""
         return {setting: environment_of(resolved) for setting, resolved in enumerate(self.resolved)}
 
     def check_memory(self) -> None:
         """Checks that a single run of each setting fits into the memory limit.
 
         Raises:
-            MemoryError: if it does not; the message says how much it needs.
+            MemoryError: if it does not; the message states the memory needed.
         """
         limit = memory_limit_in_bytes(self.memory_limit)
         for resolved in self.resolved:
@@ -105,7 +105,7 @@ class Study:
 
     @cached_property
     def stored(self) -> StoredStudy:
-        """The study as a store holds it."""
+        """The study in the form of a store."""
         configs = [
             {name: value for name, value in stored_settings(resolved.config).items() if name != "seed"}
             for resolved in self.resolved
@@ -115,7 +115,7 @@ class Study:
         return study_from_json(json.dumps(content, default=_jsonable))
 
     def split(self, chunk: range) -> list[tuple[int, list[int]]]:
-        """Returns the settings of consecutive runs by their index, each with its seeds."""
+        """Returns the indices of the settings of consecutive runs, each with its seeds."""
         count = len(self.seeds)
         parts = []
         for setting in range(chunk.start // count, (chunk.stop - 1) // count + 1):
@@ -128,7 +128,7 @@ def study_from_json(text: str) -> StoredStudy:
     """Returns the study that JSON text describes.
 
     Raises:
-        ValueError: if it does not describe a study; the message says why.
+        ValueError: if ``text`` does not describe a study; the message gives the reason.
     """
     try:
         content = json.loads(text)
@@ -194,11 +194,11 @@ def plan_study(
 
 
 def _check_runs(settings: int, seeds: Any, limit: int) -> None:
-    """Checks that the results fit into memory, before a list of the seeds is made."""
+    """Checks that the results fit into memory, before making a list of the seeds."""
     is_number = hasattr(seeds, "__index__") and not np.ndim(seeds)
     if is_number:
         count = checks.integer("seeds", seeds, least=1)
-    elif isinstance(seeds, range):  # it can be longer than len() can tell
+    elif isinstance(seeds, range):  # it can be longer than len() supports
         count = (seeds.stop - seeds.start) // seeds.step
     else:
         count = len(seeds) if hasattr(seeds, "__len__") else 1
@@ -210,9 +210,9 @@ def settings_of(grid: Any, limit: int = 2**63) -> list[dict[str, Any]]:
     """Returns the settings of a grid, all of which have the same names in the same order.
 
     Raises:
-        MemoryError: if they need more than ``limit`` bytes.
-        TypeError: if it is neither a mapping nor a list of mappings.
-        ValueError: if it has no settings, the same one twice, or settings with other names.
+        MemoryError: if the settings need more than ``limit`` bytes.
+        TypeError: if ``grid`` is neither a mapping nor a list of mappings.
+        ValueError: if ``grid`` has no settings, the same one twice, or settings with different names.
     """
     if isinstance(grid, Mapping):
         count = math.prod(len(values) for values in grid.values() if hasattr(values, "__len__"))
@@ -244,7 +244,7 @@ def _quoted(names: Sequence[Any]) -> str:
 
 
 def _jsonable(value: Any) -> Any:
-    """Returns a value that JSON cannot represent as one that it can. It is part of the store format."""
+    """Converts a value that JSON cannot represent into one that it can. This is part of the store format."""
     if isinstance(value, np.ndarray):
         return {"shape": value.shape, "sha256": hashlib.sha256(np.ascontiguousarray(value).tobytes()).hexdigest()}
     if isinstance(value, np.generic):
@@ -255,7 +255,7 @@ def _jsonable(value: Any) -> Any:
 
 
 def to_cell(value: Any) -> Any:
-    """Returns the value of a setting as a number, string, boolean or None, which a column of a table can hold."""
+    """Returns the value of a setting as a number, string, boolean or None, for a column of a table."""
     if isinstance(value, np.generic):
         value = value.item()
     if value is None or isinstance(value, bool | int | str):

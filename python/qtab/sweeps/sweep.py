@@ -1,4 +1,4 @@
-"""``qtab.sweep``: the training of many settings with many seeds each; ``qtab.load_sweep``: the table of a store."""
+"""``qtab.sweep``: trains many settings with many seeds each; ``qtab.load_sweep``: reads the table of a store."""
 
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -51,39 +51,39 @@ def sweep(
 ) -> Sweep:
     """Trains every setting of a grid with the same seeds.
 
-    With a ``store`` an interrupted sweep resumes when it is called again. If it is called with more seeds than before,
-    it trains only the new ones.
+    With a ``store``, an interrupted sweep resumes when it is called again. Called with more seeds than before, it
+    trains only the new ones.
 
     Args:
         env: An environment's id, its EnvSpec, or a function that creates one. None takes that of ``config``.
-        grid: Lists of values by name, to train every combination of them; or a list of settings, such as
-            :func:`qtab.designs.sobol` returns. The names are those of settings.
+        grid: Lists of values by the names of settings, to train every combination; or a list of settings, such as the
+            result of :func:`qtab.designs.sobol`.
         seeds: The seeds of every setting; an integer N means 0 to N - 1.
         config: The settings to start from, as for :func:`qtab.train`, without the seed.
-        store: An SQLite file for the results, which several processes may share. None keeps the results in memory. It
-            can be given more seeds later, but no other settings.
+        store: An SQLite file for the results, which several processes may share. None keeps the results in memory.
+            Later calls can add seeds, but not settings.
         executor: Trains the runs: any :class:`concurrent.futures.Executor`, such as Dask's ``client.get_executor()``.
             None trains on threads of this process, or in worker processes if Python steps the environment.
         threads: The number of threads or processes without an executor; None means one per core.
-        memory_limit: The most memory that each single run may take, and the table of all runs, in bytes. It holds for
-            each run by itself, however many are trained at the same time and in whichever process. None means half of
-            the memory of the machine that trains the run.
+        memory_limit: The most memory that each single run may take, and the table of all runs, in bytes. It applies to
+            each run separately, however many are trained at the same time, in any process. None means half of the
+            memory of the machine that trains the run.
         block: The number of episodes that each point of a stored learning curve averages.
-        callback: Called with a :class:`SweepProgress` about every second, after each chunk of runs that was stored.
+        callback: Called with a :class:`SweepProgress` about every second, after each stored chunk of runs.
         progress: Whether to show a progress bar. None shows one on a terminal or in a notebook if the runs take more
             than a second.
         **settings: The settings that all runs share, explained below.
 
     Returns:
-        A table with one row per run. A run that failed has its error in the column ``error``. Of many settings, the
-        best one looks better than it is: :meth:`Sweep.confirm` trains it again with other seeds.
+        A table with one row per run. The column ``error`` has the errors of failed runs. The best of many settings
+        looks better than it is: :meth:`Sweep.confirm` trains it again with other seeds.
 
     Raises:
         gymnasium.error.Error: from Gymnasium, for an unknown id.
-        MemoryError: if a run or the table would need more than ``memory_limit``, before any training. A run in which
-            what its algorithm stores of episodes or of its model exceeds it fails.
+        MemoryError: if a run or the table would need more than ``memory_limit``, before any training. A run fails if
+            the episodes or the model that its algorithm stores exceed the limit.
         OSError: if the store cannot be written, or is deleted during the sweep.
-        RuntimeError: if the executor fails; the message tells how many runs are kept.
+        RuntimeError: if the executor fails; the message states the number of runs that are kept.
         StoreError: if the store is damaged, has another format version, or belongs to another sweep.
         TypeError: for an argument of the wrong type, or an unknown setting.
         ValueError: for an argument out of range.
@@ -107,13 +107,13 @@ def sweep(
             study, partial(build_sweep, study=study), store, executor, threads, memory_limit, callback, progress
         )
     except KeyboardInterrupt as error:
-        if not hasattr(error, "run"):  # it was interrupted before it trained
+        if not hasattr(error, "run"):  # interrupted before training
             attach(error, run=_stored(store, env, block))
         raise
 
 
 def _stored(store: Any, env: Any, block: int) -> Sweep:
-    """Returns what earlier calls have stored; an empty table for a sweep that was interrupted before it was planned."""
+    """Returns the results of earlier calls; an empty table if the sweep was interrupted before it was planned."""
     if store is not None:
         with suppress(Exception):
             return load_sweep(store)
@@ -126,12 +126,12 @@ def _stored(store: Any, env: Any, block: int) -> Sweep:
 def load_sweep(path: "str | os.PathLike[str]") -> Sweep:
     """Returns the finished runs of a store, which may belong to a sweep that is still running.
 
-    The digests of the store are checked. It is logged if the runs were trained with different versions, or if the store
-    is from an earlier version of this package and does not hold the versions that trained each run.
+    The digests of the store are checked. A message is logged if the runs were trained with different versions, or if
+    the store is from an earlier version of this package and does not hold the versions of each run.
 
     Raises:
         OSError: if the file does not exist or cannot be read.
-        StoreError: if it is not a store, is damaged or empty, or has another format version.
+        StoreError: if the file is not a store, is damaged or empty, or has another format version.
         TypeError: if ``path`` is not a path.
     """
     found = store_path(path)

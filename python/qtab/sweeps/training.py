@@ -1,4 +1,4 @@
-"""The training of all runs of a study that its store does not have yet, and its progress."""
+"""Trains all runs of a study that are missing in its store, and reports the progress."""
 
 import os
 import time
@@ -22,21 +22,21 @@ from qtab.training.process_pool import process_pool
 from qtab.training.train_many import thread_count
 
 MAX_PENDING_CHUNKS = 64
-"""The maximum number of chunks that an executor is given at a time."""
+"""The maximum number of chunks that an executor has at a time."""
 
 T = TypeVar("T")
 
 
 @dataclass(frozen=True)
 class SweepProgress:
-    """The progress of a sweep, as a callback receives it."""
+    """The progress of a sweep, passed to callbacks."""
 
     runs: int
     """The number of finished runs, including those found in the store."""
     total: int
     """The number of runs of the sweep."""
     new: int
-    """The number of runs finished since this call began, by any process."""
+    """The number of runs that any process has finished since this call began."""
     seconds: float
     """The wall-clock time since this call began."""
 
@@ -45,7 +45,7 @@ SweepCallback = Callable[[SweepProgress], Any]
 
 
 class SweepReporter:
-    """Moves the progress bar, and calls the callback with the progress since the reporter was created."""
+    """Moves the progress bar and calls the callback with the progress since the reporter was created."""
 
     def __init__(
         self, total: int, finished: Callable[[], int], callback: SweepCallback | None, bar: ProgressBar
@@ -74,11 +74,11 @@ def run_study(
     callback: SweepCallback | None,
     progress: bool | None,
 ) -> T:
-    """Trains the runs of a study that its store does not have, and returns the table of all.
+    """Trains the runs of a study that are missing in its store, and returns the table of all runs.
 
     Args:
         study: The study.
-        build: Returns the table of what a store holds.
+        build: Returns the table for the contents of a store.
         store: The file, or None for a store in memory.
         executor: Trains the runs; None trains them here, or in worker processes if Python steps the environment.
         threads: The number of threads or processes without an executor; None means one per core.
@@ -87,7 +87,7 @@ def run_study(
         progress: Whether to show a progress bar; None shows one on a terminal or in a notebook after a second.
 
     Raises:
-        Exception: the errors of :func:`qtab.sweep`. Its attribute ``run`` is the table of the finished runs.
+        Exception: the errors of :func:`qtab.sweep`, with the table of the finished runs as the attribute ``run``.
     """
     workers = thread_count(threads)
     if executor is not None and not hasattr(executor, "submit"):

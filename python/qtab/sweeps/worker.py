@@ -1,4 +1,4 @@
-"""Training of the chunks of a sweep, in this process or in a worker: how many runs take a second, and their results."""
+"""Trains the chunks of a sweep, in this process or a worker, and predicts the number of runs that take a second."""
 
 import math
 import pickle
@@ -24,13 +24,13 @@ if TYPE_CHECKING:
     from qtab.sweeps.study import Study
 
 CHUNK_SECONDS = 1.0
-"""The time between two commits: what an interruption loses at most, unless single runs take longer."""
+"""The time between two commits. An interruption loses no more than this, unless single runs take longer."""
 MAX_CHUNK_RUNS = 4096
 """The maximum number of runs in a chunk."""
 TYPICAL_MAX_STEPS = 1000
-"""Episodes with a longer time limit are expected to end before this many steps."""
+"""The expected maximum number of steps of an episode whose time limit is longer."""
 CAUTION = 4.0
-"""The factor by which another setting may take longer than predicted from the last one."""
+"""The factor by which a new setting may take longer than predicted from the previous one."""
 
 Part = tuple[int, Mapping[str, Any], ResolvedRun | None, Sequence[int]]
 """The index of a setting, its overrides, its resolved config (None to resolve it here), and seeds."""
@@ -38,23 +38,23 @@ Part = tuple[int, Mapping[str, Any], ResolvedRun | None, Sequence[int]]
 
 @dataclass
 class Pace:
-    """Predicts the time of runs from those before.
+    """Predicts the time of runs from earlier runs.
 
-    The estimated steps of a run make the times of different settings comparable. Predictions never change results: they
-    only decide when results are stored.
+    Estimates of the steps of a run make the times of different settings comparable. Predictions never change results;
+    they only decide when results are stored.
     """
 
     seconds_per_step: float | None = None
-    """The time of an estimated step in the last runs; None before the first."""
+    """The time per estimated step in the last runs; None before the first run."""
     setting: int | None = None
     """The setting of the last runs."""
 
     def record(self, setting: int, resolved: ResolvedRun, runs: int, seconds: float) -> None:
-        """Records the time that runs of a setting took together."""
+        """Records the total time of runs of a setting."""
         self.setting, self.seconds_per_step = setting, max(seconds, 1e-9) / (runs * _steps(resolved))
 
     def runs(self, setting: int, resolved: ResolvedRun, seconds: float, at_least: int = 1) -> int:
-        """Returns how many runs of a setting are expected to take so many seconds."""
+        """Returns the number of runs of a setting that are expected to take ``seconds`` seconds."""
         if self.seconds_per_step is None:
             return min(at_least, MAX_CHUNK_RUNS)
         predicted = self.seconds_per_step * _steps(resolved) * (1.0 if setting == self.setting else CAUTION)
@@ -67,9 +67,9 @@ def _steps(resolved: ResolvedRun) -> int:
 
 
 def claim_size(study: "Study", pace: Pace, at_least: int, start: int) -> int:
-    """Returns how many runs of a study from an index are expected to take about a second.
+    """Returns the number of runs of a study, from index ``start``, that are expected to take about a second.
 
-    A few more do not matter: the training stops after a second, and releases the rest of a claim.
+    A few runs too many do no harm: the training stops after a second, and releases the rest of a claim.
     """
     count = len(study.seeds)
     size, left = 0, CHUNK_SECONDS
@@ -91,7 +91,7 @@ def train_chunk(task: bytes) -> tuple[list[RunRecord], float, Pace, dict[str, st
         task: ``(env, [(setting, overrides, seeds), ...], block, memory_limit, pace)``, pickled by cloudpickle.
 
     Returns:
-        The records, the time that they took in seconds, the pace, and the versions of this process.
+        The records, the training time in seconds, the pace, and the versions of this process.
     """
     env, parts, block, limit, pace = pickle.loads(task)  # noqa: S301 - from the process that submitted it
     began = time.perf_counter()
@@ -113,7 +113,7 @@ def train_claim(study: "Study", store: "Store", claim: range, threads: int, pace
 def train_parts(
     env: Any, parts: Sequence[Part], block: int, threads: int, memory_limit: int | None, pace: Pace
 ) -> list[RunRecord]:
-    """Trains runs in their order for about a second, and at least one; returns the records of those that it trained."""
+    """Trains runs in order for about a second, and at least one; returns the records of the trained runs."""
     records: list[RunRecord] = []
     began = time.perf_counter()
     for setting, overrides, given, seeds in parts:
@@ -146,7 +146,7 @@ def train_setting(
 ) -> list[RunRecord]:
     """Trains one setting with each seed. The error of a run that fails is recorded, and the other runs continue.
 
-    A run fails if it alone needs more than ``memory_limit``, so that the results do not depend on ``threads``.
+    A run fails only if it needs more than ``memory_limit`` alone, so that results do not depend on ``threads``.
     """
     memory = memory_left(bytes_of_run(resolved), bytes_limit(memory_limit))
     if not resolved.is_native:
@@ -156,7 +156,7 @@ def train_setting(
     records = _records(seeds, block, results["returns"], results["lengths"], results["terminated"])
     for index, error in failed.items():
         records[index] = _failure(seeds[index], error)
-        if isinstance(error, MemoryError) and len(seeds) > 1:  # the runs shared the memory that one may take
+        if isinstance(error, MemoryError) and len(seeds) > 1:  # the runs shared the memory limit of one
             (records[index],) = train_setting(env, overrides, resolved, [seeds[index]], block, 1, memory_limit)
     return records
 
