@@ -1,4 +1,4 @@
-"""From an observation to the active rows of the Q table: one discretizer per file, found here by its name."""
+"""Discretizers map observations to the active rows of the Q table; one per file."""
 
 from collections.abc import Mapping
 from typing import Any

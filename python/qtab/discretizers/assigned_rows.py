@@ -1,4 +1,4 @@
-"""Rows that are assigned as observations are first seen, for spaces of more cells than a table can have."""
+"""Rows assigned when observations are first seen, for spaces with more cells than a table can have."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
@@ -15,14 +15,14 @@ from qtab.discretizers.composite import Composite
 from qtab.discretizers.function import Function
 
 _STORED = "met"
-"""The name in files of the cells that were seen."""
+"""The name of the array of seen cells in files."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class AssignedRows(Discretizer):
     """A table of ``max_rows`` rows, which are assigned to cells in the order in which training first sees them.
 
-    One row more is never assigned: it keeps the initial values, and stands for every cell that was not seen.
+    One additional row is never assigned: it keeps the initial values, and serves all cells that were not seen.
     """
 
     reads_space = True
@@ -32,14 +32,14 @@ class AssignedRows(Discretizer):
     """Finds the cell of an observation."""
     max_rows: int
     seen: dict[bytes, int] = field(repr=False)
-    """The row of each cell that was seen, by the bytes of its int64 indices. Training adds to it; :meth:`as_learned`
-    returns a copy."""
+    """The row of each seen cell, by the bytes of its int64 indices. Training adds cells; :meth:`as_learned` makes a
+    copy."""
     assigns_rows: bool = True
     """Whether :meth:`observe` assigns a row to a cell that was not seen before."""
 
     @classmethod
     def build(cls, space: Any, config: Config, n_actions: int) -> "AssignedRows":
-        """Returns a table in which nothing was seen.
+        """Returns a table without assigned rows.
 
         Raises:
             ValueError: if the space or an option does not fit, or the table would be too large.
@@ -77,51 +77,51 @@ class AssignedRows(Discretizer):
         return {**self.cells.arrays(), _STORED: seen}
 
     def settings(self) -> dict[str, Any]:
-        """Returns the settings that followed from the space, for the config of the run."""
+        """Returns the settings derived from the space, for the config of the run."""
         return self.cells.settings()
 
     def as_learned(self) -> "AssignedRows":
-        """Returns the table with what was seen until now."""
+        """Returns a copy with the rows assigned so far."""
         return replace(self, seen=dict(self.seen), assigns_rows=True)
 
     def with_function(self, function: Callable[[Any], Any]) -> "AssignedRows":
-        """Returns the table with another function, if it has one."""
+        """Returns the table with ``function``, if its discretizer is a function."""
         cells = self.cells
         return replace(self, cells=cells.with_function(function) if isinstance(cells, Function) else cells)
 
     def as_played(self) -> "AssignedRows":
-        """Returns the table for a policy that only plays: what was not seen shares the last row."""
+        """Returns the table for a policy that only plays: all unseen cells share the last row."""
         return replace(self, assigns_rows=False)
 
     @property
     def n_seen(self) -> int:
-        """How many rows were assigned."""
+        """The number of assigned rows."""
         return len(self.seen)
 
     @property
     def shape(self) -> tuple[int]:
-        """The number of rows, and one more for what was not seen."""
+        """The number of rows, plus one for unseen cells."""
         return (self.max_rows + 1,)
 
     @property
     def component_names(self) -> tuple[str, ...]:
-        """The name of its only axis."""
+        """The name of the only axis."""
         return ("row",)
 
     def cell_edges(self) -> tuple[NDArray[np.float64], ...]:
-        """Returns the numbers halfway between the rows."""
+        """Returns the midpoints between the row numbers."""
         return (np.arange(self.n_rows + 1.0) - 0.5,)
 
     def spec(self) -> IdentitySpec:
-        """Returns the discretizer as the extension takes it: of the number of a row."""
+        """Returns the spec for the extension, whose observations are row numbers."""
         return {"type": "identity", "first": [0], "counts": [self.n_rows], "scalar": True}
 
     def observe(self, observation: Any) -> int:
         """Returns the row of an observation, a new one if its cell was not seen before.
 
         Raises:
-            TypeError: if it does not hold numbers (integers for what is discrete).
-            ValueError: if it lies outside the space, or all rows are assigned.
+            TypeError: if the observation does not hold numbers (integers for discrete spaces).
+            ValueError: if the observation lies outside the space, or all rows are assigned.
         """
         cell = _key(self.cells.cells(observation))
         row = self.seen.get(cell)
@@ -143,15 +143,15 @@ class AssignedRows(Discretizer):
         return row
 
     def along_axes(self, observation: Any) -> NDArray[Any]:
-        """Returns (1,): the row of an observation; the last for what was not seen."""
+        """Returns (1,): the row of an observation; the last row for an unseen cell."""
         return self.active_rows(observation)
 
     def active_rows(self, observation: Any) -> NDArray[np.int64]:
-        """Returns the (1,) row of an observation, or the (n, 1) rows of n observations; the last for what was not seen.
+        """Returns the (1,) row of an observation, or the (n, 1) rows of n observations; the last row for unseen cells.
 
         Raises:
-            TypeError: if the observation does not hold numbers (integers for what is discrete).
-            ValueError: if it has another shape than the space, or lies outside the space.
+            TypeError: if the observation does not hold numbers (integers for discrete spaces).
+            ValueError: if the observation does not have the shape of the space or lies outside it.
         """
         if isinstance(self.cells, Function):
             return self.cells.rows_by(self._known_row, observation)
@@ -160,14 +160,14 @@ class AssignedRows(Discretizer):
         return np.array(rows, np.int64).reshape(*cells.shape[:-1], 1)
 
     def split(self, observation: Any, count: int | None) -> list[Any]:
-        """Returns each of so many observations; None means a single one."""
+        """Returns a list of ``count`` observations; None means a single one."""
         return self.cells.split(observation, count)
 
     def _known_row(self, observation: Any) -> int:
         return self.seen.get(_key(self.cells.cells(observation)), self.max_rows)
 
     def same_space(self, other: Discretizer) -> bool:
-        """Whether another discretizer has as many rows, for observations with the same components."""
+        """Returns whether another discretizer has as many rows, for observations with the same components."""
         return isinstance(other, AssignedRows) and self.shape == other.shape and self.cells.same_space(other.cells)
 
 

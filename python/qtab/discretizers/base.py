@@ -1,4 +1,4 @@
-"""What every discretizer has: it maps an observation to the active rows of the Q table."""
+"""The base class of discretizers, which map observations to the active rows of the Q table."""
 
 import math
 from abc import ABC, abstractmethod
@@ -18,10 +18,10 @@ from qtab._utils.shown import shown
 from qtab.config import Config
 
 MAX_SHOWN = 20
-"""A notebook shows this many components of an observation at most."""
+"""The maximum number of components of an observation to show in a notebook."""
 
 MAX_TABLE_SIZE = 2**32
-"""Rows are numbered in 32 bits."""
+"""The limit of the number of values in a table: rows are numbered in 32 bits."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -29,26 +29,26 @@ class Discretizer(ABC):
     """Maps the observations of a space to rows of the Q table. Rust computes the rows, here as in training."""
 
     low: NDArray[Any]
-    """(d,): the lower bounds of the observation space, in its dtype; of shape () for a Discrete space."""
+    """(d,): the lower bounds of the observation space, in its dtype; () for a Discrete space."""
     high: NDArray[Any]
-    """(d,) or (): the upper bounds."""
+    """(d,) or (): the upper bounds of the observation space."""
 
     reads_space: ClassVar[bool] = False
-    """Whether :meth:`observe` has to read the observations of the environment before the extension does."""
+    """Whether :meth:`observe` must convert the observations of the environment for the extension."""
     has_cells: ClassVar[bool] = True
-    """Whether exactly one row is active, the cell of an observation, so that the table has an axis per component."""
+    """Whether exactly one row, the cell of an observation, is active, so that the table has an axis per component."""
     has_component_axes: ClassVar[bool] = True
-    """Whether what it divides are the components of the observation: not what a function returns, or assigned rows."""
+    """Whether the axes are the components of the observation, not the indices of a function or assigned rows."""
 
     def __repr__(self) -> str:
-        """One line: the number of cells along each component, or the number of rows."""
+        """Returns one line: the number of cells along each component, or the number of rows."""
         if self.has_cells:
             cells = "1 cell" if self.n_rows == 1 else f"{' × '.join(f'{count:,}' for count in self.shape)} cells"
             return f"<{type(self).__name__}: {cells}>"
         return f"<{type(self).__name__}: {self.n_rows:,} rows, {self.n_active} of them active>"
 
     def _repr_html_(self) -> str:
-        """A table of the components of the observation, for notebooks."""
+        """Returns a table of the components of the observation, for notebooks."""
         edges = self.cell_edges()
         rows = [
             (index, f"{one[0]:.6g}", f"{one[-1]:.6g}", f"{len(one) - 1:,}") if len(one) else (index, "", "", "0")
@@ -65,8 +65,8 @@ class Discretizer(ABC):
         Args:
             space: The space.
             config: The config, with the defaults of its options filled in.
-            n_actions: How many values a row of the table has; 0 where the discretizer only finds the cells of a table
-                with other rows.
+            n_actions: The number of values in a row of the table; 0 if the discretizer only finds cells, to which
+                rows are then assigned.
 
         Raises:
             ValueError: if the space or an option does not fit, or the table would be too large.
@@ -75,12 +75,12 @@ class Discretizer(ABC):
     @classmethod
     @abstractmethod
     def restore(cls, config: Config, arrays: Mapping[str, NDArray[Any]], n_rows: int) -> "Discretizer":
-        """Returns the discretizer of a saved run, from what :meth:`arrays` returned.
+        """Returns the discretizer of a saved run, from the result of :meth:`arrays`.
 
         Args:
-            config: The config in the file: complete, each of its values valid by itself.
-            arrays: The arrays in the file, of which nothing is known.
-            n_rows: How many rows the table in the file has. No more memory than such a table needs is allocated.
+            config: The config in the file: complete, with each value valid by itself.
+            arrays: The arrays in the file, unchecked.
+            n_rows: The number of rows of the table in the file. No more memory than for such a table is allocated.
 
         Raises:
             KeyError: if an array is missing.
@@ -90,11 +90,11 @@ class Discretizer(ABC):
     @property
     @abstractmethod
     def shape(self) -> tuple[int, ...]:
-        """The cells along each component of the observation; ``(n_rows,)`` where there are no cells."""
+        """The number of cells along each component of the observation; ``(n_rows,)`` without cells."""
 
     @abstractmethod
     def cell_edges(self) -> tuple[NDArray[np.float64], ...]:
-        """Returns for each component of the observation the ascending edges of its cells; see :class:`qtab.Axis`."""
+        """Returns the ascending edges of the cells of each component of the observation; see :class:`qtab.Axis`."""
 
     @abstractmethod
     def spec(self) -> DiscretizerSpec:
@@ -111,7 +111,7 @@ class Discretizer(ABC):
         return 1
 
     def settings(self) -> dict[str, Any]:
-        """Returns the settings that followed from the space, for the config of the run."""
+        """Returns the settings derived from the space, for the config of the run."""
         return {}
 
     def arrays(self) -> dict[str, NDArray[Any]]:
@@ -120,7 +120,7 @@ class Discretizer(ABC):
 
     @property
     def component_names(self) -> tuple[str, ...]:
-        """A name for each component of the observation; none where the environment's own names are used."""
+        """A name for each component of the observation; empty to use the environment's own names."""
         return ()
 
     def observe(self, observation: Any) -> Any:
@@ -128,23 +128,23 @@ class Discretizer(ABC):
         return observation
 
     def along_axes(self, observation: Any) -> NDArray[Any]:
-        """Returns (d,): where an observation lies along each axis of :meth:`cell_edges`."""
+        """Returns (d,): the position of an observation along each axis of :meth:`cell_edges`."""
         return np.ravel(observation)
 
     def in_terms_of_space(self, message: str) -> str:
-        """Returns a message of the extension about an observation, with the names of the observation space."""
+        """Translates a message of the extension about an observation to the names of the observation space."""
         return message
 
     def with_function(self, function: Callable[[Any], Any]) -> "Discretizer":  # noqa: ARG002
-        """Returns the discretizer with another function, where it has one."""
+        """Returns the discretizer with ``function``, if it uses one."""
         return self
 
     def as_learned(self) -> "Discretizer":
-        """Returns the discretizer as it is now, for a run that is made before the training is over."""
+        """Returns the discretizer in its current state, for a run that is made before the training is over."""
         return self
 
     def same_space(self, other: "Discretizer") -> bool:
-        """Whether another discretizer has the same rows for observations between the same limits."""
+        """Returns whether another discretizer has the same rows for observations between the same limits."""
         return (
             self.shape == other.shape and np.array_equal(self.low, other.low) and np.array_equal(self.high, other.high)
         )
@@ -156,12 +156,12 @@ class Discretizer(ABC):
 
         Raises:
             TypeError: if the observation does not hold numbers (integers for a discrete space).
-            ValueError: if it has another shape than the space, or has no row.
+            ValueError: if the observation does not have the shape of the space, or has no row.
         """
         return self._compiled.active_rows(observation)
 
     def split(self, observation: Any, count: int | None) -> list[Any]:
-        """Returns each of so many observations, which :meth:`active_rows` takes together; None means a single one."""
+        """Splits a batch for :meth:`active_rows` into a list of ``count`` observations; None means a single one."""
         return [observation] if count is None else list(observation)
 
     def row(self, observation: Any) -> int:
@@ -169,7 +169,7 @@ class Discretizer(ABC):
 
         Raises:
             TypeError: if the observation does not hold numbers (integers for a discrete space).
-            ValueError: if it has another shape than the space, or has no cell.
+            ValueError: if the observation does not have the shape of the space, or has no cell.
         """
         if not self.has_cells:
             raise ValueError(
@@ -189,21 +189,21 @@ class Discretizer(ABC):
         return _core.Discretizer(self.spec())
 
     def __getstate__(self) -> dict[str, Any]:
-        """The fields alone: what the extension holds is built anew."""
+        """Returns only the fields: the extension's object is rebuilt."""
         return {field.name: getattr(self, field.name) for field in fields(self)}
 
 
 def check_table_size(name: str, given: Any, values: float, instead: str = "") -> None:
-    """Refuses a table that is too large, before it is allocated.
+    """Raises an error for a table that is too large, before it is allocated.
 
     Args:
-        name: The setting that decides the size.
-        given: Its value, or a text that describes it.
-        values: How many values the table would have.
-        instead: Which other setting would help, to be added to the message.
+        name: The setting that determines the size.
+        given: The value of the setting, or a text that describes it.
+        values: The number of values that the table would have.
+        instead: Another setting that would help, to be added to the message.
 
     Raises:
-        ValueError: if rows could not be numbered, or the table does not fit into memory.
+        ValueError: if the table has 2**32 values or more, or does not fit into memory.
     """
     text = given if isinstance(given, str) else shown(given)
     if not values < MAX_TABLE_SIZE:
@@ -216,7 +216,7 @@ def check_table_size(name: str, given: Any, values: float, instead: str = "") ->
         return
     free = free_memory()
     try:
-        # Some systems refuse at once; Linux gives out what it does not have, and kills the process that uses it.
+        # Some systems refuse at once; Linux overcommits memory, and kills the process that uses it.
         np.empty(needed, np.uint8)
     except MemoryError:
         free = min(free, needed - 1)

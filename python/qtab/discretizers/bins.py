@@ -17,10 +17,10 @@ from qtab.discretizers.edges import Edges
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Bins(Edges):
-    """A grid of bins of equal width. What lies outside the span belongs to the outermost bins."""
+    """A grid of bins of equal width. Values outside the span belong to the outermost bins."""
 
     span: Span
-    """What the bins cover."""
+    """The limits that the bins cover."""
 
     @classmethod
     def build(cls, space: Any, config: Config, n_actions: int) -> "Bins":
@@ -51,7 +51,7 @@ class Bins(Edges):
         return bins
 
     def cell_edges(self) -> tuple[NDArray[np.float64], ...]:
-        """Returns the edges between the bins, and the limits that they cover."""
+        """Returns the edges between the bins, and their outer limits."""
         return self._with_outermost(*self.span)
 
     def settings(self) -> dict[str, Any]:
@@ -61,7 +61,7 @@ class Bins(Edges):
 
 
 def _edges(dtype: "np.dtype[Any]", span: Span, counts: tuple[int, ...]) -> tuple[NDArray[np.floating], ...]:
-    """The inner edges, computed in the dtype of the space."""
+    """Returns the inner edges, computed in the dtype of the space."""
     with np.errstate(over="ignore", invalid="ignore"):
         low, high = (limit.astype(dtype) for limit in span)
         return tuple(

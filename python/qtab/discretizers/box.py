@@ -1,4 +1,4 @@
-"""What the discretizers of Box observations share."""
+"""The parts shared by the discretizers of Box observations."""
 
 from collections.abc import Sequence
 from typing import Any, Literal
@@ -12,7 +12,7 @@ from qtab.discretizers.base import Discretizer
 from qtab.envs.actions import FLOATS
 
 Span = tuple[NDArray[np.float64], NDArray[np.float64]]
-"""The lower and the upper limit of each component, two arrays of (d,)."""
+"""The lower and the upper limits of the components, two arrays of (d,)."""
 
 
 class BoxDiscretizer(Discretizer):
@@ -28,7 +28,7 @@ def box_of(space: Any) -> spaces.Box:
     """Returns the observation space, a Box with one axis of floats.
 
     Raises:
-        ValueError: if it is discrete, so that its observations index the table.
+        ValueError: if the space is discrete, so that observations index the table directly.
     """
     if not isinstance(space, spaces.Box) or len(space.shape) != 1 or space.dtype not in FLOATS:
         raise ValueError(
@@ -39,10 +39,10 @@ def box_of(space: Any) -> spaces.Box:
 
 
 def span(space: spaces.Box, low: Sequence[float] | None, high: Sequence[float] | None) -> Span:
-    """Returns what tilings or bins cover: the given limits of all components, or else the bounds of the space.
+    """Returns the limits that tilings or bins cover: those given for all components, or else the bounds of the space.
 
     Raises:
-        ValueError: if there is not a finite limit for each component, or a lower limit is not below the upper one.
+        ValueError: if a component has no finite limit, or its lower limit is not below the upper one.
     """
     limits = []
     for name, given, bound in zip(("low", "high"), (low, high), (space.low, space.high), strict=True):
@@ -62,10 +62,10 @@ def span(space: spaces.Box, low: Sequence[float] | None, high: Sequence[float] |
 
 
 def per_dimension(name: str, given: tuple[int, ...], space: spaces.Box) -> tuple[int, ...]:
-    """Returns a number for each component of the observation, where one may have been given for all.
+    """Returns a number for each component of the observation, repeating a single number for all.
 
     Raises:
-        ValueError: if there are too few or too many.
+        ValueError: if there are too few or too many numbers.
     """
     dimensions = space.shape[0]
     numbers = given * dimensions if len(given) == 1 else given
@@ -76,10 +76,10 @@ def per_dimension(name: str, given: tuple[int, ...], space: spaces.Box) -> tuple
 
 
 def check_stored_bounds(low: NDArray[Any], high: NDArray[Any]) -> None:
-    """Refuses bounds from a file that no supported Box has.
+    """Raises an error for bounds from a file that no supported Box has.
 
     Raises:
-        ValueError: if their dtypes differ, or are not float32 or float64.
+        ValueError: if the dtypes of the bounds differ, or are not float32 or float64.
     """
     if low.dtype not in FLOATS or high.dtype != low.dtype:
         raise ValueError("its bounds are not those of a space")

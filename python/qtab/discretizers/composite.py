@@ -19,18 +19,18 @@ from qtab.discretizers.layout import Layout
 from qtab.discretizers.refusals import too_large
 
 _NUMBERED = re.compile(r"^(observation|observations\[\d+\])\[(\d+)\] is ([^,]+),")
-"""How the extension, which is given one row of numbers, names a component."""
+"""The extension's name for a component: it receives one row of numbers."""
 
 MAX_RESTORED_BINS = 10**7
-"""A file with more bins than this along all components would take much more memory than its size."""
+"""The maximum number of bins of a file along all components: more would take much more memory than its size."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Composite(Discretizer):
     """The components of a :class:`Layout`: each is an index, or belongs to a :class:`Group`.
 
-    A grid has an axis for each component, in the order of the layout. With tile coding each combination of the other
-    components has tilings of its own.
+    A grid has an axis for each component, in the order of the layout. With tile coding, each combination of the other
+    components has separate tilings.
     """
 
     reads_space = True
@@ -38,11 +38,11 @@ class Composite(Discretizer):
     layout: Layout
     groups: tuple[Group, ...]
     by_key: Mapping[str, Mapping[str, Any]] | None
-    """The setting ``discretizer`` where it chooses one for each key."""
+    """The setting ``discretizer`` if it maps keys to discretizers; otherwise None."""
 
     @classmethod
     def build(cls, space: Any, config: Config, n_actions: int) -> "Composite":
-        """Returns the discretizer of an observation space of any kind that consists of numbers.
+        """Returns the discretizer of any observation space that consists of numbers.
 
         Raises:
             ValueError: if the space or an option does not fit, or the table would be too large.
@@ -86,7 +86,7 @@ class Composite(Discretizer):
         return {"layout": np.array(self.layout.to_json())}
 
     def settings(self) -> dict[str, Any]:
-        """Returns the options of its discretizers that followed from the space, by key if they were chosen so."""
+        """Returns the options of the discretizers that were derived from the space, by key if chosen by key."""
         if not self.groups:
             return {}
         if self.groups[0].key is None:
@@ -113,7 +113,7 @@ class Composite(Discretizer):
 
     @cached_property
     def counts(self) -> tuple[int, ...]:
-        """How many rows each component has: 0 for those that are tiled, and for integers without bounds."""
+        """The number of rows of each component: 0 for tiled components and integers without bounds."""
         spans = (last - first for first, last in self._bounds)
         counts = [int(span) + 1 if math.isfinite(span) else 0 for span in spans]
         for group in self.groups:
@@ -124,7 +124,7 @@ class Composite(Discretizer):
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """The cells along each component; ``(n_rows,)`` with tile coding."""
+        """The number of cells along each component; ``(n_rows,)`` with tile coding."""
         if self._tiles is None:
             return self.counts
         return (math.prod(count or 1 for count in self.counts) * self._tiles.discretizer.n_rows,)
@@ -135,7 +135,7 @@ class Composite(Discretizer):
         return 1 if self._tiles is None else self._tiles.discretizer.n_active
 
     def cell_edges(self) -> tuple[NDArray[np.float64], ...]:
-        """Returns the edges of the cells: for an index the numbers halfway between the integers."""
+        """Returns the edges of the cells; for an index, the midpoints between the integers."""
         grouped = {
             component: edges
             for group in self.groups
@@ -180,7 +180,7 @@ class Composite(Discretizer):
 
     @cached_property
     def _first(self) -> list[NDArray[np.int64] | None]:
-        """For each part whose components are indices, their first integers."""
+        """The first integers of each part whose components are indices; None for other parts."""
         owned = {component for group in self.groups for component in group.components}
         first: list[NDArray[np.int64] | None] = []
         component = 0
@@ -197,15 +197,15 @@ class Composite(Discretizer):
         return np.dtype(self.groups[0].discretizer.dtype if self._is_whole else np.float64)
 
     def flat(self, observation: Any) -> NDArray[Any]:
-        """Returns (d,), or (n, d) of n observations: their components as the extension reads them."""
+        """Returns (d,), or (n, d) for n observations: the components as the extension reads them."""
         return self.layout.flat(observation, self._dtype, self._first, self.layout.batch_size(observation))
 
     def observe(self, observation: Any) -> NDArray[Any]:
-        """Returns (d,): the components of an observation as the extension reads them, indices from 0 on.
+        """Returns (d,): the components of an observation as the extension reads them, with indices from 0.
 
         Raises:
-            TypeError: if it does not hold numbers (integers for what is discrete).
-            ValueError: if it has another shape than the space.
+            TypeError: if the observation does not hold numbers (integers for discrete spaces).
+            ValueError: if the observation does not have the shape of the space.
         """
         return self.layout.flat(observation, self._dtype, self._first)
 
@@ -216,12 +216,12 @@ class Composite(Discretizer):
     def active_rows(self, observation: Any) -> NDArray[np.int64]:
         """Returns the (n_active,) rows of an observation, or the (n, n_active) rows of n observations.
 
-        Observations have the structure of the space; n of them are batched as Gymnasium's vector environments do. Those
-        of a nested space may also be given as one array of all components, (d,) or (n, d).
+        Observations have the structure of the space; n of them are batched as in Gymnasium's vector environments.
+        Observations of a nested space may also be one array of all components, (d,) or (n, d).
 
         Raises:
-            TypeError: if the observation does not hold numbers (integers for what is discrete).
-            ValueError: if it has another shape than the space, or has no row.
+            TypeError: if the observation does not hold numbers (integers for discrete spaces).
+            ValueError: if the observation does not have the shape of the space, or has no row.
         """
         try:
             return self._compiled.active_rows(self.flat(observation))
@@ -229,7 +229,7 @@ class Composite(Discretizer):
             raise ValueError(self.in_terms_of_space(str(error))) from None
 
     def in_terms_of_space(self, message: str) -> str:
-        """Returns a message of the extension with the keys of a component, and with the number that was given."""
+        """Translates a message of the extension to the keys of a component and the number given by the user."""
 
         def as_given(found: re.Match[str]) -> str:
             which, component, number = found[1], int(found[2]), found[3]
@@ -240,33 +240,33 @@ class Composite(Discretizer):
         return _NUMBERED.sub(as_given, message)
 
     def split(self, observation: Any, count: int | None) -> list[Any]:
-        """Returns each of so many observations, in the structure of the space; None means a single one."""
+        """Returns a list of ``count`` observations in the structure of the space; None means a single one."""
         return self.layout.split(observation, count)
 
     def cells(self, observation: Any) -> NDArray[np.int64]:
-        """Returns (d,): the index of one observation along each component, however many cells there are.
+        """Returns (d,): the index of one observation along each component, for any number of cells.
 
         Raises:
-            TypeError: if it does not hold numbers (integers for what is discrete).
-            ValueError: if it has another shape than the space, or lies outside the space.
+            TypeError: if the observation does not hold numbers (integers for discrete spaces).
+            ValueError: if the observation does not have the shape of the space or lies outside it.
         """
         return self._cells(observation, ())
 
     def cells_of(self, observation: Any) -> NDArray[np.int64]:
-        """Returns (d,) as :meth:`cells` does, or (n, d) of n observations."""
+        """Returns (d,) like :meth:`cells`, or (n, d) for n observations."""
         count = self.layout.batch_size(observation)
         return self._cells(observation, () if count is None else (count,))
 
     @cached_property
     def _indices(self) -> tuple[NDArray[np.bool_], NDArray[np.int64]]:
-        """Which components are indices, and how many each takes: a huge number for integers without bounds."""
+        """A mask of the components that are indices, and the number of their values, huge for unbounded integers."""
         owned = {component for group in self.groups for component in group.components}
         indices = np.array([component not in owned for component in range(self.layout.size)])
         return indices, np.array([count or 2**62 for count in self.counts])
 
     @cached_property
     def _of_components(self) -> dict[int, tuple[_core.Discretizer, str]]:
-        """The discretizer of each component that is no index, and its dtype."""
+        """The discretizer and the dtype of each component that is not an index."""
         return {
             component: (_core.Discretizer(group.spec_of(component)), group.discretizer.dtype)
             for group in self.groups
@@ -278,7 +278,7 @@ class Composite(Discretizer):
         cells = np.empty((*shape, self.layout.size), np.int64)
         for components, numbers in self.layout.numbers(observation, self._first, shape):
             if indices[components].any():
-                cells[..., components] = numbers  # never as floats, which do not hold every integer
+                cells[..., components] = numbers  # never as floats, which cannot represent every integer
                 continue
             for component, column in zip(range(components.start, components.stop), numbers.T, strict=True):
                 discretizer, dtype = self._of_components[component]
@@ -293,5 +293,5 @@ class Composite(Discretizer):
         return cells
 
     def same_space(self, other: Discretizer) -> bool:
-        """Whether another discretizer is one of observations with the same components."""
+        """Returns whether another discretizer takes observations with the same components."""
         return super().same_space(other) and self.component_names == other.component_names

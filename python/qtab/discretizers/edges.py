@@ -18,10 +18,10 @@ from qtab.discretizers.box import BoxDiscretizer, box_of, check_stored_bounds
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Edges(BoxDiscretizer):
-    """A grid of bins. An edge belongs to the bin above it; the outermost bins have no outer edge."""
+    """A grid of bins. An edge belongs to the bin above it; the outermost bins are unbounded."""
 
     edges: tuple[NDArray[np.floating], ...]
-    """For each component the ascending edges between its bins, one fewer than there are bins."""
+    """The ascending edges between the bins of each component, one fewer than there are bins."""
 
     @classmethod
     def build(cls, space: Any, config: Config, n_actions: int) -> "Edges":
@@ -46,10 +46,10 @@ class Edges(BoxDiscretizer):
         return bins
 
     def check_stored(self) -> None:
-        """Refuses bounds from a file that do not fit the edges.
+        """Checks that bounds from a file fit the edges.
 
         Raises:
-            ValueError: if their dtypes or shapes differ, or an edge is not finite.
+            ValueError: if dtypes or shapes differ, or an edge is not finite.
         """
         check_stored_bounds(self.low, self.high)
         finite = all(np.isfinite(edges).all() for edges in self.edges)
@@ -58,7 +58,7 @@ class Edges(BoxDiscretizer):
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """The bins along each component."""
+        """The number of bins along each component."""
         return tuple(len(edges) + 1 for edges in self.edges)
 
     def cell_edges(self) -> tuple[NDArray[np.float64], ...]:

@@ -1,4 +1,4 @@
-"""A function as the discretizer: from an observation to the indices of its cell."""
+"""A function as the discretizer, which maps an observation to the indices of its cell."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -20,19 +20,19 @@ from qtab.discretizers.layout import Layout
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Function(Discretizer):
-    """The user's function: every observation is given to it, whatever its space."""
+    """The user's function, which receives every observation, whatever the space."""
 
     reads_space = True
     has_component_axes = False
 
     function: Callable[[Any], Any]
-    """From an observation to its indices within the shape, or to one integer, the number of its row."""
+    """Maps an observation to its indices within the shape, or to one integer, the number of its row."""
     cell_shape: tuple[int, ...] | None
-    """The shape of the table without its actions; None where rows are assigned for any integers."""
+    """The shape of the table without the axis of actions; None if rows are assigned to any integers."""
     observation_shape: tuple[int, ...] | None
-    """The shape of an observation, by which a batch of them is recognized; None where the space has none."""
+    """The shape of an observation, used to recognize a batch; None if the space has no shape."""
     layout: Layout | None = None
-    """The layout of a Dict or Tuple of numbers, by which a batch is recognized there; None for any other space."""
+    """The layout of a Dict or Tuple of numbers, used to recognize a batch; None for any other space."""
 
     @classmethod
     def build(cls, space: Any, config: Config, n_actions: int) -> "Function":
@@ -50,7 +50,7 @@ class Function(Discretizer):
             check_table_size("shape", config.shape, math.prod(map(float, config.shape)) * n_actions)
         layout = None
         if isinstance(space, spaces.Dict | spaces.Tuple):
-            with suppress(ValueError):  # it holds what are no numbers
+            with suppress(ValueError):  # the space holds other things than numbers
                 layout = Layout.of_space(space)
         return cls._of(config, space.shape, layout)
 
@@ -83,7 +83,7 @@ class Function(Discretizer):
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """The shape of the table without its actions."""
+        """The shape of the table without the axis of actions."""
         return self.cell_shape or ()
 
     @property
@@ -93,19 +93,19 @@ class Function(Discretizer):
         return tuple(f"{name}[{index}]" for index in range(len(self.shape)))
 
     def cell_edges(self) -> tuple[NDArray[np.float64], ...]:
-        """Returns the numbers halfway between the indices."""
+        """Returns the midpoints between the indices."""
         return tuple(np.arange(count + 1.0) - 0.5 for count in self.shape)
 
     def spec(self) -> IdentitySpec:
-        """Returns the discretizer as the extension takes it: of the number of a row."""
+        """Returns the spec for the extension, whose observations are row numbers."""
         return {"type": "identity", "first": [0], "counts": [self.n_rows], "scalar": True}
 
     def cells(self, observation: Any) -> tuple[int, ...]:
-        """Returns what the function gives for one observation, checked: its indices within the shape.
+        """Calls the function for one observation; returns its indices within the shape, after checking them.
 
         Raises:
             TypeError: if the function does not return integers.
-            ValueError: if they do not lie within the shape.
+            ValueError: if the integers do not lie within the shape.
         """
         returned = self.function(observation)
         indices = _integers(returned)
@@ -136,7 +136,7 @@ class Function(Discretizer):
         return f"{len(self.cell_shape)} indices within the shape {self.cell_shape}, or the number of a row"
 
     def with_function(self, function: Callable[[Any], Any]) -> "Function":
-        """Returns the discretizer with another function."""
+        """Returns the discretizer with ``function``."""
         return replace(self, function=function)
 
     def observe(self, observation: Any) -> int:
@@ -147,23 +147,23 @@ class Function(Discretizer):
         return row
 
     def along_axes(self, observation: Any) -> NDArray[Any]:
-        """Returns (d,): the indices that the function gives."""
+        """Returns (d,): the indices that the function returns."""
         return np.array(self.cells(observation))
 
     def active_rows(self, observation: Any) -> NDArray[np.int64]:
         """Returns the (1,) row of an observation, or the (n, 1) rows of n observations.
 
-        Observations are batched as Gymnasium's vector environments do. A space that holds other things than numbers has
+        Observations are batched as in Gymnasium's vector environments. A space that holds other things than numbers has
         no batches.
 
         Raises:
             TypeError: if the function does not return integers.
-            ValueError: if they do not lie within the shape.
+            ValueError: if the integers do not lie within the shape.
         """
         return self.rows_by(self.observe, observation)
 
     def rows_by(self, row: Callable[[Any], int], observation: Any) -> NDArray[np.int64]:
-        """Returns (1,) or (n, 1): what a function of an observation returns for one, or for each of n."""
+        """Returns (1,) or (n, 1): the results of ``row`` for one or n observations."""
         count = self._batch_size(observation)
         if count is None:
             return np.array([row(observation)], np.int64)
@@ -173,7 +173,7 @@ class Function(Discretizer):
         if self.layout is not None:
             try:
                 return self.layout.batch_size(observation)
-            except ValueError:  # the function may read what the space does not describe
+            except ValueError:  # the function may accept observations that the space does not describe
                 return None
         if self.observation_shape is None:
             return None
@@ -181,15 +181,15 @@ class Function(Discretizer):
         return shape[0] if shape and shape[1:] == self.observation_shape else None
 
     def split(self, observation: Any, count: int | None) -> list[Any]:
-        """Returns each of so many observations, in the structure of the space; None means a single one."""
+        """Returns a list of ``count`` observations in the structure of the space; None means a single one."""
         return super().split(observation, count) if self.layout is None else self.layout.split(observation, count)
 
 
 def _integers(returned: Any) -> NDArray[Any] | None:
-    """Returns what a function returned as an array of up to one axis; None unless it holds integers, of any size."""
+    """Returns the result of a function as an array of at most one axis; None unless it holds integers, of any size."""
     try:
         indices = np.asarray(returned)
-        if indices.dtype.kind not in "iub":  # integers beyond 64 bits come as objects or floats
+        if indices.dtype.kind not in "iub":  # integers beyond 64 bits become objects or floats
             indices = np.asarray(returned, object)
     except ValueError:  # parts of different lengths
         return None

@@ -1,4 +1,4 @@
-"""Which components of an observation are discretized, and by what; the others are indices."""
+"""Groups the components of an observation that are discretized, each with its discretizer; the others are indices."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -28,15 +28,15 @@ _OPTIONS = [name for name, option in OPTIONS.items() if option.choice == "discre
 
 @dataclass(frozen=True, eq=False)
 class Group:
-    """Components that a discretizer of a Box divides together."""
+    """Components that one Box discretizer divides together."""
 
     components: tuple[int, ...]
     discretizer: BoxDiscretizer
     key: str | None = None
-    """The key for which the user chose it; None where one discretizer serves all components that are not indices."""
+    """The key that the user chose the discretizer for; None if one discretizer serves all non-index components."""
 
     def spec_of(self, component: int) -> Any:
-        """Returns the spec of one of its components, of a grid."""
+        """Returns the spec of one component of a grid."""
         index = self.components.index(component)
         spec: Mapping[str, Any] = self.discretizer.spec()
         return {name: [value[index]] if isinstance(value, list) else value for name, value in spec.items()}
@@ -48,7 +48,7 @@ def choose_groups(layout: Layout, config: Config, n_actions: int) -> tuple[Group
     Args:
         layout: The layout.
         config: The config, with the defaults of its options filled in.
-        n_actions: How many values a row of the table has; 0 if rows are made only for what is seen.
+        n_actions: The number of values in a row of the table; 0 if rows are assigned when observations are seen.
 
     Raises:
         ValueError: if the discretizer does not fit the layout.
@@ -67,12 +67,12 @@ def choose_groups(layout: Layout, config: Config, n_actions: int) -> tuple[Group
 
 
 def discretized_parts(layout: Layout, config: Config) -> list[Part]:
-    """Returns the parts that one discretizer for all of them divides.
+    """Returns the parts that a single discretizer divides.
 
-    These are the floats and the integers of many values; where there are none, all integers, for which it was asked.
+    These are the floats and the integers with many values, or, if there are none, all integers.
 
     Raises:
-        ValueError: if they must be indices and cannot.
+        ValueError: if parts must be indices and cannot.
     """
     indexed = config.discretizer == "identity"
     if indexed:
@@ -83,7 +83,7 @@ def discretized_parts(layout: Layout, config: Config) -> list[Part]:
 
 
 def is_discrete(layout: Layout, config: Config) -> bool:
-    """Returns whether the observations index the table unless another discretizer is asked for."""
+    """Returns whether observations index the table unless another discretizer is given."""
     if config.max_rows is not None:
         return all(part.kind != "float" for part in layout.parts)
     return all(part.is_small for part in layout.parts)

@@ -23,8 +23,8 @@ class Identity(Discretizer):
     """Integers from ``low`` to ``high``, both int64; each combination is a cell, numbered in C order."""
 
     is_tuple: bool | None = False
-    """Whether the space is a Tuple, of which Gymnasium batches n observations as a tuple of (n,) arrays. None: unknown,
-    from a file of an earlier version."""
+    """Whether the space is a Tuple, for which Gymnasium batches n observations as a tuple of (n,) arrays; None if
+    unknown, from a file of an earlier version."""
 
     @classmethod
     def build(cls, space: Any, config: Config, n_actions: int) -> "Identity":  # noqa: ARG003 - it has no options
@@ -72,27 +72,27 @@ class Identity(Discretizer):
     def active_rows(self, observation: Any) -> NDArray[np.int64]:
         """Returns the (1,) row of an observation, or the (n, 1) rows of n observations.
 
-        Those of a Tuple space are batched as Gymnasium's vector environments do, as a tuple of (n,) arrays, or as any
-        other space's, (n, d).
+        Observations of a Tuple space are batched as in Gymnasium's vector environments, as a tuple of (n,) arrays, or
+        like those of any other space, (n, d).
 
         Raises:
             TypeError: if the observation does not hold integers.
-            ValueError: if it has another shape than the space, or has no row.
+            ValueError: if the observation does not have the shape of the space, or has no row.
         """
         return super().active_rows(self.in_rows(observation))
 
     def split(self, observation: Any, count: int | None) -> list[Any]:
-        """Returns each of so many observations; None means a single one."""
+        """Returns a list of ``count`` observations; None means a single one."""
         rows = super().split(observation if count is None else self.in_rows(observation), count)
         return rows if count is None or not self.is_tuple else [tuple(np.asarray(row).tolist()) for row in rows]
 
     def in_rows(self, observation: Any) -> Any:
-        """Returns n observations of a Tuple space that are batched as a tuple of (n,) arrays as one (n, d) array.
+        """Converts a batch of a Tuple space, a tuple of (n,) arrays, into one (n, d) array.
 
-        Any other observation is returned as it is.
+        Any other observation is returned unchanged.
 
         Raises:
-            ValueError: if the arrays have different lengths, or a file does not tell whether the space is a Tuple.
+            ValueError: if the arrays have different lengths, or it is unknown whether the space is a Tuple.
         """
         is_tuple = self.is_tuple is not False and isinstance(observation, tuple) and len(observation) == self.low.size
         if not is_tuple or not all(isinstance(part, np.ndarray) and part.ndim == 1 for part in observation):
@@ -109,13 +109,13 @@ class Identity(Discretizer):
             )
         return np.stack(observation, axis=-1)
 
-    @cached_property  # a call of train() asks seven times
+    @cached_property  # a call of train() reads it seven times
     def shape(self) -> tuple[int, ...]:
-        """How many integers each component takes."""
+        """The number of integers of each component."""
         return tuple(np.ravel(self.high - self.low + 1).tolist())
 
     def cell_edges(self) -> tuple[NDArray[np.float64], ...]:
-        """Returns the numbers halfway between the integers."""
+        """Returns the midpoints between the integers."""
         first = np.ravel(self.low).tolist()
         return tuple(low - 0.5 + np.arange(count + 1.0) for low, count in zip(first, self.shape, strict=True))
 

@@ -23,7 +23,7 @@ class Layout:
         """Returns the layout of an observation space.
 
         Raises:
-            ValueError: if a table cannot serve it; the message says what would help.
+            ValueError: if a table cannot represent the space; the message suggests a remedy.
         """
         layout = cls(tuple(parts_of(space, space)))
         if not layout.size:
@@ -59,7 +59,7 @@ class Layout:
         return indices
 
     def name_of(self, component: int) -> str:
-        """Returns how messages name a component: ``observation['agent'][0]``."""
+        """Returns the name of a component in messages: ``observation['agent'][0]``."""
         for part in self.parts:
             if component < part.size:
                 index = [str(number) for number in np.unravel_index(component, part.shape)] if part.shape else []
@@ -68,10 +68,10 @@ class Layout:
         raise IndexError(component)
 
     def batch_size(self, observation: Any) -> int | None:
-        """Returns how many observations there are, batched as in Gymnasium's vector environments; None for one.
+        """Returns the number of observations, batched as in Gymnasium's vector environments; None for a single one.
 
         Raises:
-            ValueError: if an observation has another shape than the space.
+            ValueError: if an observation does not have the shape of the space.
         """
         if self._is_flat(observation):
             shape = np.shape(observation)
@@ -98,17 +98,17 @@ class Layout:
         first: Sequence[NDArray[np.int64] | None],
         batch: int | None = None,
     ) -> NDArray[Any]:
-        """Returns the components of an observation, (size,), or those of a batch, (n, size).
+        """Returns the components of an observation, (size,), or of a batch, (n, size).
 
         Args:
-            observation: An observation, or several that are batched.
+            observation: An observation, or a batch.
             dtype: The dtype of the result.
-            first: For each part whose components are indices, what to subtract from them; None for the others.
-            batch: How many observations there are; None for one.
+            first: The numbers to subtract from each part whose components are indices; None for other parts.
+            batch: The number of observations; None for a single one.
 
         Raises:
-            TypeError: if they are not numbers of the kinds that the space has.
-            ValueError: if an observation has another shape than the space.
+            TypeError: if components are not numbers of the kinds that the space has.
+            ValueError: if an observation does not have the shape of the space.
         """
         shape = () if batch is None else (batch,)
         flat = np.empty((*shape, self.size), dtype=dtype)
@@ -122,13 +122,13 @@ class Layout:
         """Yields for each part its components and their numbers, (*shape, components): int64 where they are indices.
 
         Args:
-            observation: An observation, or several that are batched.
+            observation: An observation, or a batch.
             first: As for :meth:`flat`.
             shape: The shape of the batch, () or (n,).
 
         Raises:
-            TypeError: if they are not numbers of the kinds that the space has.
-            ValueError: if an observation has another shape than the space.
+            TypeError: if components are not numbers of the kinds that the space has.
+            ValueError: if an observation does not have the shape of the space.
         """
         is_flat = self._is_flat(observation)
         start = 0
@@ -140,13 +140,13 @@ class Layout:
                     raise ValueError(f"{part.name} must have shape {part.shape}, the space's, got {values.shape}")
                 values = values.reshape(*shape, part.size)
             elif offset is not None and values.dtype.kind == "f":
-                values = np.rint(values)  # coordinates, of which an index has the cell from -0.5 to 0.5 around it
+                values = np.rint(values)  # the cell of an index extends 0.5 to either side
             values = part.numbers(values)
             yield components, values if offset is None else values.astype(np.int64) - offset
             start = components.stop
 
     def split(self, observation: Any, count: int | None) -> list[Any]:
-        """Returns each of so many batched observations in the structure of the space; None means a single one."""
+        """Returns a list of ``count`` batched observations in the structure of the space; None means a single one."""
         is_flat = self._is_flat(observation)
         if count is None and not is_flat:
             return [observation]
@@ -164,7 +164,7 @@ class Layout:
         ]
 
     def _is_flat(self, observation: Any) -> bool:
-        """Whether it is one array of the components of a nested space or of a Box of several axes."""
+        """Returns whether it is one array of the components of a nested space or of a Box with several axes."""
         if not isinstance(observation, np.ndarray) or observation.dtype.kind not in "iubf":
             return False
         shape = observation.shape
@@ -173,16 +173,16 @@ class Layout:
         return (nested or of_box) and shape[-1:] == (self.size,) and len(shape) <= 2
 
     def to_json(self) -> str:
-        """Returns the layout as a text, for a file."""
+        """Returns the layout as JSON text, for a file."""
         return json.dumps([vars(part) for part in self.parts])
 
     @classmethod
     def from_json(cls, text: str) -> "Layout":
-        """Returns the layout in a file, of which nothing is known.
+        """Returns the layout in a file, after checking it.
 
         Raises:
-            KeyError: if something is missing.
-            ValueError: if it is not a layout.
+            KeyError: if a key is missing.
+            ValueError: if ``text`` is not a layout.
         """
         parts = tuple(restored_part(part) for part in json.loads(text))
         if not parts or not sum(part.size for part in parts):
@@ -191,7 +191,7 @@ class Layout:
 
 
 def _nested(parts: list[tuple[tuple[str | int, ...], Any]]) -> Any:
-    """Returns an observation of its parts: a dict where their keys are texts, a tuple where they are indices."""
+    """Builds an observation from its parts: a dict if their keys are strings, a tuple if they are indices."""
     if not parts[0][0]:
         return parts[0][1]
     groups: dict[str | int, list[tuple[tuple[str | int, ...], Any]]] = {}

@@ -1,4 +1,4 @@
-"""The discretizer that a config names, over a space or from a file."""
+"""Makes the discretizer that a config names, for a space or from a file."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -27,11 +27,11 @@ DISCRETIZERS: Mapping[DiscretizerName, type[Discretizer]] = {
     "tiles": TileCoding,
     "identity": Identity,
 }
-"""The class of each value of the setting ``discretizer``, for the spaces that the extension reads by itself."""
+"""The class for each value of the setting ``discretizer``, for spaces that the extension reads directly."""
 
 
 MAX_AXES = 62
-"""A table of many runs also has an axis for the runs and one for the actions, and an array of NumPy at most 64."""
+"""The maximum number of axes: NumPy arrays have at most 64, of which many runs use one for runs and one for actions."""
 
 
 def build(space: Any, config: Config, n_actions: int) -> Discretizer:
@@ -40,7 +40,7 @@ def build(space: Any, config: Config, n_actions: int) -> Discretizer:
     if n_actions and len(built.shape) > MAX_AXES:
         owner = "shape" if isinstance(built, Function) else "the observation space"
         raise ValueError(
-            f"{owner} must give the table at most {MAX_AXES} axes, as many as NumPy's arrays have beside those of runs "
+            f"{owner} must give the table at most {MAX_AXES} axes, the limit of NumPy's arrays without those of runs "
             f"and actions; max_rows= assigns rows only to the observations that are seen, got {len(built.shape)}"
         )
     return built
@@ -52,7 +52,7 @@ def restore(config: Config, arrays: Mapping[str, NDArray[Any]], n_rows: int) -> 
 
 
 def is_plain(space: Any) -> bool:
-    """Returns whether the extension reads the observations of a space by itself."""
+    """Returns whether the extension reads the observations of a space directly."""
     is_box = isinstance(space, spaces.Box) and len(space.shape) == 1 and space.dtype in FLOATS
     return is_box or integer_bounds(space) is not None
 

@@ -1,4 +1,4 @@
-"""A part of an observation space: a space without spaces in it, and where it is found."""
+"""A part of an observation space: a space without subspaces, and its path."""
 
 import math
 from collections.abc import Iterator
@@ -13,27 +13,27 @@ from numpy.typing import NDArray
 from qtab.discretizers.refusals import refusal
 
 SMALL = 1024
-"""An integer Box of at most this many values a component indexes the table; a larger one is discretized."""
+"""An integer Box with at most this many values per component indexes the table; a larger one is discretized."""
 
 
 @dataclass(frozen=True)
 class Part:
-    """A space without spaces in it, whose components follow each other in C order."""
+    """A space without subspaces, whose components are in C order."""
 
     path: tuple[str | int, ...]
-    """The keys and indices under which it is found in an observation."""
+    """The keys and indices of the part in an observation."""
     shape: tuple[int, ...]
     low: tuple[float, ...]
-    """The lower bound of each component: integers where ``kind`` is not ``"float"``; it can be infinite."""
+    """The lower bound of each component, which can be infinite; integers unless ``kind`` is ``"float"``."""
     high: tuple[float, ...]
     kind: str
-    """``"index"`` for a space that is discrete, ``"integer"`` for a Box of integers, ``"float"`` for one of floats."""
+    """``"index"`` for a discrete space, ``"integer"`` for a Box of integers, ``"float"`` for a Box of floats."""
     single: bool = False
     """Whether the floats have at most the precision of float32."""
 
     @property
     def size(self) -> int:
-        """The number of its components."""
+        """The number of components."""
         return len(self.low)
 
     @property
@@ -43,7 +43,7 @@ class Part:
 
     @property
     def is_small(self) -> bool:
-        """Whether it takes few integers, so that it indexes the table unless another discretizer is asked for."""
+        """Whether it has few integers, so that it indexes the table unless another discretizer is given."""
         if self.kind == "index":
             return True
         if self.kind == "float" or not self.is_bounded:
@@ -52,11 +52,11 @@ class Part:
 
     @property
     def name(self) -> str:
-        """How messages name it: ``observation['agent']``."""
+        """The name in messages: ``observation['agent']``."""
         return "observation" + "".join(f"[{key!r}]" for key in self.path)
 
     def names(self) -> Iterator[str]:
-        """Yields a name for each of its components, such as ``agent[0]``."""
+        """Yields a name for each component, such as ``agent[0]``."""
         first, *others = self.path or ("observation",)
         stem = first if isinstance(first, str) else f"observation[{first}]"
         stem += "".join(f".{key}" if isinstance(key, str) else f"[{key}]" for key in others)
@@ -64,7 +64,7 @@ class Part:
             yield stem + (f"[{', '.join(map(str, index))}]" if index else "")
 
     def find(self, observation: Any) -> NDArray[Any]:
-        """Returns its part of an observation.
+        """Returns this part of an observation.
 
         Raises:
             ValueError: if the observation has no such part.
@@ -77,7 +77,7 @@ class Part:
         return np.asarray(observation)
 
     def numbers(self, values: NDArray[Any]) -> NDArray[Any]:
-        """Checks that values are numbers of its kind.
+        """Checks that values are numbers of this part's kind, and returns them.
 
         Raises:
             TypeError: if they are not.
@@ -91,11 +91,11 @@ class Part:
 
 
 def restored_part(stored: Any) -> Part:
-    """Returns a part in a file, of which nothing is known.
+    """Returns a part in a file, after checking it.
 
     Raises:
-        KeyError: if something is missing.
-        ValueError: if it is not a part of a space.
+        KeyError: if a key is missing.
+        ValueError: if ``stored`` is not a part of a space.
     """
     path, shape, low, high = (tuple(stored[name]) for name in ("path", "shape", "low", "high"))
     kind, single = stored["kind"], stored["single"]
@@ -118,10 +118,10 @@ def restored_part(stored: Any) -> Part:
 
 
 def parts_of(space: Any, whole: Any, path: tuple[str | int, ...] = ()) -> Iterator[Part]:
-    """Yields the parts of a space, which is found under ``path`` in the whole one.
+    """Yields the parts of a space, which is at ``path`` in the whole space.
 
     Raises:
-        ValueError: if a table cannot serve it; the message says what would help.
+        ValueError: if a table cannot represent the space; the message suggests a remedy.
     """
     if isinstance(space, spaces.Dict):
         for key, part in space.spaces.items():
@@ -135,7 +135,7 @@ def parts_of(space: Any, whole: Any, path: tuple[str | int, ...] = ()) -> Iterat
 
 def _part(space: Any, whole: Any, path: tuple[str | int, ...]) -> Part:
     if not all(isinstance(key, str | int) for key in path):
-        raise ValueError(f"the observation space must have texts as the keys of its Dict, got {path[-1]!r}")
+        raise ValueError(f"the observation space must have strings as the keys of its Dict, got {path[-1]!r}")
     if isinstance(space, spaces.Discrete):
         first = int(space.start)
         return Part(path, (), (first,), (first + int(space.n) - 1,), "index")

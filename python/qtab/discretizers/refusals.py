@@ -1,4 +1,4 @@
-"""What to do with an observation space that a table cannot serve."""
+"""Error messages for observation spaces that a table cannot represent."""
 
 from typing import Any
 
@@ -10,12 +10,12 @@ FUNCTION = "a function as discretizer= with shape= or max_rows="
 
 
 def refusal(space: Any, whole: Any, path: tuple[str | int, ...]) -> str:
-    """Returns why a table cannot serve a space, and what would help.
+    """Returns the reason why a table cannot represent a space, and a remedy.
 
     Args:
         space: The space.
-        whole: The observation space of which it is a part, or itself.
-        path: The keys under which it is found there.
+        whole: The observation space that contains it, or ``space`` itself.
+        path: The keys of the space in ``whole``.
     """
     where = f"under {path[0]!r}" if path else "as it is"
     text = (
@@ -30,14 +30,14 @@ def refusal(space: Any, whole: Any, path: tuple[str | int, ...]) -> str:
 
 
 def too_large(parts: Any) -> str:
-    """Returns what would help with discrete observations that are too many for a table, to be added to a message."""
+    """Returns a remedy for discrete spaces that are too large for a table, to be added to a message."""
     image = any(part.kind == "integer" and len(part.shape) in (2, 3) and part.size >= 64 for part in parts)
     if image:
         return (
             " (it holds an image: max_rows= assigns rows only to the images that are seen; "
-            "gymnasium.wrappers.TransformObservation or a function as discretizer= with shape= makes less of it)"
+            "gymnasium.wrappers.TransformObservation or a function as discretizer= with shape= reduces it)"
         )
     return (
         " (max_rows= assigns rows only to the observations that are seen; "
-        "a function as discretizer= with shape= makes fewer of them)"
+        "a function as discretizer= with shape= reduces their number)"
     )

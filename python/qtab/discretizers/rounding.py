@@ -1,4 +1,4 @@
-"""A grid of cells around the multiples of a step: ``round((observation - low) * scale)``, as the article has it."""
+"""A grid of cells around the multiples of a step: ``round((observation - low) * scale)``, as in the article."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -16,10 +16,10 @@ from qtab.discretizers.box import BoxDiscretizer, box_of, check_stored_bounds
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Rounding(BoxDiscretizer):
-    """Rounds each component of the observation to the nearest cell. Observations outside the space are refused."""
+    """Rounds each component of the observation to the nearest cell. Observations outside the space raise an error."""
 
     scale: NDArray[np.float64]
-    """(d,): cells per unit."""
+    """(d,): the number of cells per unit of each component."""
 
     @classmethod
     def build(cls, space: Any, config: Config, n_actions: int) -> "Rounding":
@@ -42,7 +42,7 @@ class Rounding(BoxDiscretizer):
             if not scale:
                 raise ValueError(f"scale must be given and {held}, or discretizer='bins' or 'tiles' without it")
             raise ValueError(
-                f"scale must {held}, got {shown(scale)}. Without them choose discretizer 'bins' or 'tiles'"
+                f"scale must {held}, got {shown(scale)}; without a scale, choose discretizer 'bins' or 'tiles'"
             )
         grid = cls(box.low, box.high, np.array(scale, dtype=np.float64))
         with np.errstate(over="ignore"):
@@ -68,7 +68,7 @@ class Rounding(BoxDiscretizer):
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """The cells along each component."""
+        """The number of cells along each component."""
         cells = np.round((self.high - self.low) * self.scale, 0).astype(int) + 1
         return tuple(int(count) for count in cells)
 

@@ -15,7 +15,7 @@ from qtab.discretizers.base import check_table_size
 from qtab.discretizers.box import BoxDiscretizer, Span, box_of, check_stored_bounds, per_dimension, span
 
 MAX_OFFSETS = 2**32 - 1
-"""Each tile is divided into as many parts as there are tilings, and positions are counted in such parts."""
+"""The limit of tiles times tilings along a component: positions are counted in parts of a tile, one per tiling."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -25,15 +25,15 @@ class TileCoding(BoxDiscretizer):
     has_cells: ClassVar[bool] = False
 
     span: Span
-    """What the tilings cover. Observations are clipped to it."""
+    """The limits that the tilings cover. Observations are clipped to them."""
     tiles: tuple[int, ...]
-    """Tiles along each component."""
+    """The number of tiles along each component."""
     tilings: int
     hashed_rows: int | None
-    """How many rows the tilings share; None gives each tile a row of its own."""
+    """The number of rows that the tilings share; None gives each tile its own row."""
 
     def __post_init__(self) -> None:
-        """Checks that tiles can be told apart, and numbered.
+        """Checks that tiles can be distinguished and numbered.
 
         Raises:
             ValueError: if a tile is too narrow or too wide for floats, or 32 bits cannot count the parts of the tiles.
@@ -48,7 +48,7 @@ class TileCoding(BoxDiscretizer):
             tiles_per_unit = np.array(self.tiles) / (high - low)
         if not (np.isfinite(tiles_per_unit) & (tiles_per_unit > 0)).all():
             raise ValueError(
-                f"high must lie neither so close above low nor so far, got {low.tolist()} and {high.tolist()}"
+                f"high must be neither so close to low nor so far above it, got {low.tolist()} and {high.tolist()}"
             )
 
     @classmethod
@@ -96,7 +96,7 @@ class TileCoding(BoxDiscretizer):
         return self.tilings
 
     def cell_edges(self) -> tuple[NDArray[np.float64], ...]:
-        """Returns the edges of the tiles of a tiling that is not shifted."""
+        """Returns the edges of the tiles of an unshifted tiling."""
         low, high = self.span
         return tuple(np.linspace(*limits) for limits in zip(low, high, np.array(self.tiles) + 1, strict=True))
 

@@ -1,4 +1,4 @@
-"""The number of steps taken beside the cell of an observation, as Gymnasium's ``TimeAwareObservation`` adds it."""
+"""Adds the number of steps taken to the cell of an observation, like Gymnasium's ``TimeAwareObservation``."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -16,10 +16,10 @@ from qtab.discretizers.base import Discretizer, check_table_size
 
 @dataclass(frozen=True, eq=False, repr=False)
 class TimeAware(Discretizer):
-    """The cells of another discretizer, once for each step before the time limit: the axis of the steps comes first.
+    """The cells of another discretizer, repeated for each step before the time limit. The axis of steps comes first.
 
-    An observation does not hold the number of steps: :meth:`active_rows`, :meth:`row` and :meth:`cell` take it at the
-    start of an episode, and :meth:`rows_after` after any number of steps.
+    An observation does not hold the number of steps: :meth:`active_rows`, :meth:`row` and :meth:`cell` assume the
+    start of an episode; :meth:`rows_after` takes any number of steps.
     """
 
     has_component_axes = False
@@ -47,13 +47,13 @@ class TimeAware(Discretizer):
         """Returns the cells of a saved run; see :meth:`Discretizer.restore`."""
         limit = required("max_episode_steps", config.max_episode_steps)
         if n_rows % limit:
-            raise ValueError("its table has another number of rows than cells for each step")
+            raise ValueError("its table must have one row for each cell and step")
         cells = named.restore(config, arrays, n_rows // limit)
         return cls(cells.low, cells.high, cells, limit)
 
     @property
     def reads_space(self) -> bool:  # type: ignore[override]
-        """Whether the cells have to read the observations of the environment."""
+        """Whether the cells must convert the observations of the environment for the extension."""
         return self.cells.reads_space
 
     @property
@@ -62,20 +62,20 @@ class TimeAware(Discretizer):
         return (self.max_episode_steps, *self.cells.shape)
 
     def cell_edges(self) -> tuple[NDArray[np.float64], ...]:
-        """Returns the numbers halfway between the steps, and the edges of the cells."""
+        """Returns the midpoints between the steps, and the edges of the cells."""
         return (np.arange(self.max_episode_steps + 1.0) - 0.5, *self.cells.cell_edges())
 
     @property
     def component_names(self) -> tuple[str, ...]:
-        """The names of the components of the observation, where the cells have some."""
+        """The names of the components of the observation, if the cells have any."""
         return self.cells.component_names
 
     def spec(self) -> DiscretizerSpec:
-        """Returns the discretizer of the cells, as the extension takes it; the steps are its own."""
+        """Returns the spec of the cells, as the extension takes it; the extension counts the steps."""
         return self.cells.spec()
 
     def settings(self) -> dict[str, Any]:
-        """Returns the settings that followed from the space, for the config of the run."""
+        """Returns the settings derived from the space, for the config of the run."""
         return self.cells.settings()
 
     def arrays(self) -> dict[str, NDArray[Any]]:
@@ -87,19 +87,19 @@ class TimeAware(Discretizer):
         return self.cells.observe(observation)
 
     def along_axes(self, observation: Any) -> NDArray[Any]:
-        """Returns (1 + d,): step 0, and where an observation lies along each axis of its components."""
+        """Returns (1 + d,): step 0, and the position of an observation along each axis of its components."""
         return np.concatenate([[0], self.cells.along_axes(observation)])
 
     def in_terms_of_space(self, message: str) -> str:
-        """Returns a message of the extension about an observation, with the names of the observation space."""
+        """Translates a message of the extension about an observation to the names of the observation space."""
         return self.cells.in_terms_of_space(message)
 
     def with_function(self, function: Callable[[Any], Any]) -> "TimeAware":
-        """Returns the discretizer with another function, where it has one."""
+        """Returns the discretizer with ``function``, if it uses one."""
         return replace(self, cells=self.cells.with_function(function))
 
     def same_space(self, other: Discretizer) -> bool:
-        """Whether another discretizer has the same rows for observations of the same shape."""
+        """Returns whether another discretizer has the same rows for observations of the same shape."""
         return isinstance(other, TimeAware) and self.shape == other.shape and self.cells.same_space(other.cells)
 
     def active_rows(self, observation: Any) -> NDArray[np.int64]:
@@ -107,25 +107,26 @@ class TimeAware(Discretizer):
 
         Raises:
             TypeError: if the observation does not hold numbers (integers for a discrete space).
-            ValueError: if it has another shape than the space, or has no row.
+            ValueError: if the observation does not have the shape of the space, or has no row.
         """
         return self.cells.active_rows(observation)
 
     def split(self, observation: Any, count: int | None) -> list[Any]:
-        """Returns each of so many observations; None means a single one."""
+        """Returns a list of ``count`` observations; None means a single one."""
         return self.cells.split(observation, count)
 
     def rows_after(self, steps: Any, observation: Any) -> NDArray[np.int64]:
         """Returns the (1,) row of an observation after a number of steps, or the (n, 1) rows of n observations.
 
         Args:
-            steps: The number of steps taken in the episode, or (n,) of them. From the time limit on, where no action
-                is taken, the rows are those of the last step.
+            steps: The number of steps taken in the episode, or (n,) numbers. From the time limit on, when no action is
+                taken, the rows are those of the last step.
             observation: An observation, or n of them.
 
         Raises:
             TypeError: if the observation does not hold numbers (integers for a discrete space).
-            ValueError: if it has another shape than the space, or has no row; or for another number of steps.
+            ValueError: if the observation does not have the shape of the space, or has no row; or if ``steps`` does not
+                fit the observations.
         """
         rows = self.cells.active_rows(observation)
         taken = np.minimum(np.asarray(steps, np.int64), self.max_episode_steps - 1)
