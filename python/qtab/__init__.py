@@ -1,11 +1,11 @@
-"""Tabular reinforcement learning on Gymnasium environments, from Rust, with Gymnasium's and NumPy's numbers to the bit.
+"""Tabular reinforcement learning on Gymnasium environments in Rust, bit for bit equal to Gymnasium and NumPy.
 
     import qtab
 
     run = qtab.train("MountainCar-v0", seed=0)
     run.mean_returns(100)
 
-Importing it registers the environments ``qtab/…`` with Gymnasium. The public names load when they are first used.
+Importing qtab registers the environments ``qtab/…`` with Gymnasium. The public names load when first used.
 """
 
 import importlib as _importlib
@@ -67,10 +67,10 @@ _MODULES = {
     "train_many": "qtab.training.train_many",
     "verify": "qtab.training.verify",
 }
-"""The module of each public name: the one that defines it, or that it is."""
+"""The module that defines each public name, or, for modules, the module itself."""
 
 if TYPE_CHECKING:
-    # The table again, in the only form that editors and type checkers read. A test compares the two.
+    # The same table, in the only form that editors and type checkers read. A test compares the two.
     from qtab import book as book
     from qtab import callbacks as callbacks
     from qtab import planning as planning
@@ -125,7 +125,7 @@ if TYPE_CHECKING:
 
     __version__: str
 else:
-    # Hidden from type checkers, which accept any name from a module that has a __getattr__.
+    # Hidden from type checkers, which accept any name from a module with a __getattr__.
     __all__ = list(_MODULES)
 
     def __getattr__(name):

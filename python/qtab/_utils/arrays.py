@@ -1,4 +1,4 @@
-"""Checks of arrays of numbers. Each error names the argument, and counts what does not fit."""
+"""Checks of arrays of numbers. Each error names the argument and counts the values that do not fit."""
 
 import reprlib
 from typing import Any
@@ -7,14 +7,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 LARGEST = 1e150
-"""The largest magnitude of a number: its square, and sums of such squares, are finite."""
+"""The largest magnitude allowed for a number, so that sums of squares are finite."""
 
 _SHORT = reprlib.Repr()
 _SHORT.maxother = _SHORT.maxstring = 80
 
 
 def shortened(value: Any) -> str:
-    """Returns what a value looks like in an error message: one line of at most 100 characters."""
+    """Returns a value as text for an error message: one line of at most 100 characters."""
     line = " ".join(_SHORT.repr(value).split())
     return line if len(line) <= 100 else f"{line[:97]}..."
 
@@ -50,13 +50,13 @@ def sample(name: str, values: ArrayLike, least: int = 1, purpose: str = "") -> N
 
     Args:
         name: The name of the argument.
-        values: Its value.
-        least: The smallest number of values.
-        purpose: What needs so many, such as ``" for an interval"``.
+        values: The value of the argument.
+        least: The minimum number of values.
+        purpose: The reason for the minimum, such as ``" for an interval"``.
 
     Raises:
-        TypeError: if they are not real numbers.
-        ValueError: if they have another shape, are fewer than ``least``, or not finite.
+        TypeError: if the values are not real numbers.
+        ValueError: if the values have another shape, are fewer than ``least``, or are not finite.
     """
     array = numbers(name, values)
     if array.ndim != 1:
@@ -72,7 +72,7 @@ def curves(name: str, values: ArrayLike) -> NDArray[np.float64]:
 
     Raises:
         TypeError: if they are not real numbers.
-        ValueError: if they have another shape, are empty, or not finite.
+        ValueError: if they have another shape, are empty, or are not finite.
     """
     array = np.atleast_2d(numbers(name, values))
     if array.ndim != 2 or array.size == 0:
@@ -89,5 +89,5 @@ def is_table(values: Any) -> bool:
 
 
 def same_bytes(one: NDArray[np.float64], other: NDArray[np.float64]) -> bool:
-    """Returns whether two arrays hold the same numbers in the same order, bit for bit, whatever their shapes."""
+    """Returns whether two arrays of any shapes hold the same numbers in the same order, bit for bit."""
     return np.array_equal(one.ravel().view(np.uint64), other.ravel().view(np.uint64))

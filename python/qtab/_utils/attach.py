@@ -1,4 +1,4 @@
-"""The results so far, carried by the exception that ends the work."""
+"""Attaches the results so far to the exception that ends the work."""
 
 from collections.abc import Callable
 from contextlib import suppress
@@ -6,16 +6,16 @@ from typing import Any
 
 
 def attach(error: BaseException, **results: Any) -> None:
-    """Makes results attributes of an exception, unless it is of a kind that takes none."""
+    """Sets results as attributes of an exception, unless its class does not allow attributes."""
     with suppress(AttributeError):
         for name, result in results.items():
             setattr(error, name, result)
 
 
 def is_raised_in(error: BaseException, function: Callable[..., Any]) -> bool:
-    """Returns whether a function raised an exception itself, or the extension did that it called.
+    """Returns whether an exception was raised by a function itself or by the extension that it called.
 
-    Neither adds a frame to the traceback, as everything in Python does that it calls.
+    Neither adds a frame to the traceback, unlike Python functions that it calls.
     """
     traceback = error.__traceback__
     while traceback is not None and traceback.tb_next is not None:

@@ -15,7 +15,7 @@ from qtab._utils.suggestions import did_you_mean
 T = TypeVar("T")
 
 LARGEST_COUNT = 2**63 - 1
-"""The largest number of episodes or steps: they are counted in 64 bits."""
+"""The largest number of episodes or steps, which are counted in 64 bits."""
 MAX_THREADS = 1024
 """The maximum number of threads of a call, above any core count. Running out of threads would abort the process."""
 
@@ -51,8 +51,8 @@ def finite(name: str, value: Any) -> float:
 
 
 def _number(value: Any) -> float | None:
-    """Returns a real number as a float, or infinity if it is too large for one; None for anything else."""
-    if type(value) is float:  # as most are: the checks below take a microsecond
+    """Returns a real number as a float, or infinity if it is too large for a float; None for anything else."""
+    if type(value) is float:  # the usual case; the checks below take a microsecond
         return value
     if isinstance(value, (bool, np.bool_, str, bytes)) or not hasattr(value, "__float__") or np.ndim(value):
         return None
@@ -105,7 +105,7 @@ def threads(value: Any) -> int:
 
 
 def is_sequence(value: Any) -> bool:
-    """Returns whether a value holds others in an order: not a text, a mapping or a set."""
+    """Returns whether a value is an ordered collection, not a string, a mapping or a set."""
     return hasattr(value, "__iter__") and not isinstance(value, str | bytes | Mapping | Set)
 
 
@@ -113,7 +113,7 @@ def boolean(name: str, value: Any) -> bool:
     """Returns ``value``, which must be True or False; NumPy's booleans become Python's.
 
     Raises:
-        TypeError: if it is anything else: "no" would count as true.
+        TypeError: if it is anything else, such as "no", which would count as true.
     """
     if not isinstance(value, bool | np.bool_):
         raise TypeError(f"{name} must be True or False, got {shown(value)}")
@@ -140,7 +140,7 @@ def instance(name: str, value: Any, kind: type) -> None:
     """Checks that ``value`` is an instance of a class of this package.
 
     Raises:
-        TypeError: if it is not; for a path the message suggests :func:`qtab.load`.
+        TypeError: if ``value`` is not an instance; for a path the message suggests :func:`qtab.load`.
     """
     if not isinstance(value, kind):
         article = "an" if kind.__name__[0] in "AEIO" else "a"
@@ -152,7 +152,7 @@ def path(name: str, value: Any) -> Path:
 
     Raises:
         TypeError: if ``value`` is neither a string nor a path.
-        ValueError: if it has a null character, which no path can have.
+        ValueError: if ``value`` has a null character, which no path can have.
     """
     if not isinstance(value, str | PathLike) or not isinstance(fspath(value), str):
         raise TypeError(f"{name} must be a path, got {shown(value)}")
@@ -166,7 +166,7 @@ def file_path(name: str, value: Any) -> Path:
 
     Raises:
         TypeError: if ``value`` is neither a string nor a path.
-        ValueError: if it is empty, which would be the current folder, or has a null character.
+        ValueError: if ``value`` is empty, which would be the current folder, or has a null character.
     """
     found = path(name, value)
     if not fspath(value):
@@ -175,15 +175,15 @@ def file_path(name: str, value: Any) -> Path:
 
 
 def load_hint(value: Any) -> str:
-    """Returns what helps where a path was given instead of what is in the file; nothing for other values."""
+    """Returns a hint for a path that was given instead of the content of its file; "" for other values."""
     return "; qtab.load reads one from a file" if isinstance(value, str | PathLike) else ""
 
 
 def required(name: str, value: T | None) -> T:
-    """Returns a setting that a complete config has.
+    """Returns a setting that a complete config must have.
 
     Raises:
-        ValueError: if it is None.
+        ValueError: if ``value`` is None.
     """
     if value is None:
         raise ValueError(f"{name} must be given, got None")

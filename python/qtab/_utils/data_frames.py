@@ -1,4 +1,4 @@
-"""Tables of results: NumPy columns that keep every value as it is, pandas data frames and Arrow tables."""
+"""Tables of results: NumPy columns that preserve every value, pandas data frames and Arrow tables."""
 
 from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 _EXACT_IN_FLOATS = 2**53
-"""Up to this size every integer is a float."""
+"""The size up to which every integer can be represented exactly as a float."""
 
 
 def integer_column(values: Sequence[int]) -> NDArray[Any]:
@@ -29,8 +29,8 @@ def integer_column(values: Sequence[int]) -> NDArray[Any]:
 def cell_column(values: Sequence[Any]) -> NDArray[Any]:
     """Returns (n,) numbers, strings, booleans and None, in an object array if their types differ.
 
-    Integers are as :func:`integer_column` returns them. Integers and floats together are float64, unless that rounds an
-    integer.
+    Integers have the dtype of :func:`integer_column`. Integers and floats together become float64, unless that would
+    round an integer.
     """
     types = {type(value) for value in values}
     if types == {int}:
@@ -75,7 +75,7 @@ def arrow_table(
 ) -> "pa.Table":
     """Returns an Arrow table of columns of the same length.
 
-    A column of which Arrow has no type becomes text: integers beyond 64 bits, or values of different types.
+    A column for which Arrow has no type becomes text: integers beyond 64 bits, or values of different types.
 
     Args:
         columns: The columns by name.

@@ -1,16 +1,16 @@
-"""Optional libraries: the error where one is not installed, with the command that installs it."""
+"""Optional libraries: the error if one is not installed, with the command that installs it."""
 
 import re
 import sys
 
 _PYTHON_BELOW = re.compile(r"python(?:_full)?_version < '(\d+)\.(\d+)'")
-"""The only condition that requirements of extras have besides the name of the extra."""
+"""The only condition of requirements of extras, apart from the name of the extra."""
 
 
 def missing(error: ModuleNotFoundError, extra: str | None = None) -> ModuleNotFoundError:
-    """Returns the error to raise in place of one for an optional library.
+    """Returns the error to raise instead of the import error of an optional library.
 
-    Its message names a ``pip install`` of the libraries themselves, which helps wherever qtab was installed from.
+    Its message names a ``pip install`` of the libraries themselves, which works wherever qtab was installed from.
 
     Args:
         error: The error of the import.

@@ -1,4 +1,4 @@
-"""The docstrings of a dataclass's fields, where ``help()`` shows them."""
+"""Adds the docstrings of a dataclass's fields to its docstring, for ``help()``."""
 
 import ast
 import inspect
@@ -12,11 +12,10 @@ C = TypeVar("C", bound=type)
 
 
 def with_fields(cls: C) -> C:
-    """Ends the docstring of a dataclass with its fields, and gives its constructor short annotations.
+    """Adds a dataclass's fields to its docstring, and gives its constructor short annotations.
 
-    The docstrings below fields are no part of a class at run time, and ``help()`` would spell an array's type in 70
-    characters. The source is read when either is first looked at, because that takes milliseconds. Without the source,
-    nothing changes.
+    The docstrings below fields are not part of a class at run time, and ``help()`` would spell an array's type in 70
+    characters. The source is read on first use, because that takes milliseconds. Without the source, nothing changes.
     """
     init: Any = cls.__init__  # type: ignore[misc]
     annotations = init.__annotations__
@@ -27,7 +26,7 @@ def with_fields(cls: C) -> C:
 
 
 class _Annotation:
-    """An annotation, shown as it is written in the source."""
+    """An annotation, shown as written in the source."""
 
     def __init__(self, owner: type, name: str, type_: Any) -> None:
         self._owner, self._name, self._type = owner, name, type_
@@ -58,7 +57,7 @@ class _Docstring:
 
 @cache
 def source_fields(cls: type) -> tuple[tuple[str, str, str], ...]:
-    """Returns the name, the annotation and the docstring of each field, as the source has them."""
+    """Returns the name, the annotation and the docstring of each field, as in the source."""
     try:
         (tree,) = ast.parse(textwrap.dedent(inspect.getsource(cls))).body
     except (OSError, TypeError, SyntaxError):

@@ -1,4 +1,4 @@
-"""Writing of files, completely or not at all: also if the process is killed or the machine loses power."""
+"""Writes files completely or not at all, even if the process is killed or the machine loses power."""
 
 import errno
 import os
@@ -17,24 +17,24 @@ except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]
 
 _LOCKS_BY_OPENING = os.name == "nt"
-"""Whether an open file can be neither removed nor renamed, as on Windows: then that takes the place of a lock."""
+"""Whether an open file can be neither removed nor renamed, as on Windows, so that opening it serves as a lock."""
 _KINDS = {stat.S_IFIFO: "FIFO", stat.S_IFSOCK: "socket", stat.S_IFCHR: "device", stat.S_IFBLK: "device"}
 _MAX_STEM, _MAX_SUFFIX = 30, 20
-"""The characters of a name that its temporary name repeats at most: file systems allow 255 bytes."""
+"""The maximum number of characters of a name to repeat in its temporary name: file systems allow 255 bytes."""
 
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
     """Yields a temporary path with the same suffix in the same folder, which replaces ``path`` if no error occurs.
 
-    A symbolic link stays, and its target is replaced. The new file has the permissions of the old one, or else those
-    that the umask gives. Temporary files that killed processes left for the same path are removed.
+    If ``path`` is a symbolic link, its target is replaced. The new file has the permissions of the old one, or else
+    those of the umask. Temporary files that killed processes left for the same path are removed.
 
     Args:
         path: The file to write.
 
     Raises:
-        OSError: if the file cannot be written, or if something is there that is not a regular file.
+        OSError: if the file cannot be written, or if ``path`` exists and is not a regular file.
     """
     target = check_writable("path", path)
     with _temporary_file(target) as (temporary, lock):
@@ -57,7 +57,7 @@ def check_writable(name: str, path: Path) -> Path:
         path: The path.
 
     Raises:
-        OSError: if it cannot, or if something is there that is not a regular file; the message says why.
+        OSError: if it cannot, or if ``path`` exists and is not a regular file; the message gives the reason.
     """
     try:
         _check_regular(name, path)
@@ -86,9 +86,10 @@ def _check_regular(name: str, path: Path) -> None:
 
 @contextmanager
 def _temporary_file(target: Path) -> Iterator[tuple[Path, BinaryIO]]:
-    """Yields the path of a new file beside the target, and its lock. It is removed afterwards if it is still there.
+    """Yields the path of a new file beside the target, and its lock; removes the file afterwards if it still exists.
 
-    The file is locked while it is in use. A killed process leaves it, but not its lock: so the next one can tell.
+    The file is locked while it is in use. A killed process leaves the file but not its lock, so that the next process
+    can detect an abandoned file.
     """
     suffix = target.suffix if len(target.suffix) <= _MAX_SUFFIX else ""
     before, after = f".{target.stem[:_MAX_STEM]}-", f".tmp{suffix}"
@@ -110,7 +111,7 @@ def _create_locked(temporary: Path) -> BinaryIO | None:
     """Creates and locks a file; returns it open, or None if it was removed before it was locked."""
     file = temporary.open("xb+")
     if not _LOCKS_BY_OPENING:
-        with suppress(OSError):  # a file system without locks, on which nothing is taken for abandoned
+        with suppress(OSError):  # a file system without locks, where no file counts as abandoned
             if not _lock(file.fileno()) or not temporary.exists():
                 file.close()
                 return None
@@ -118,11 +119,11 @@ def _create_locked(temporary: Path) -> BinaryIO | None:
 
 
 def _remove_abandoned(folder: Path, name: "re.Pattern[str]") -> None:
-    """Removes the temporary files with a name like this that no process has locked."""
+    """Removes the temporary files whose name matches and that no process has locked."""
     with suppress(OSError), os.scandir(folder) as entries:
         found = [Path(entry.path) for entry in entries if name.fullmatch(entry.name)]
         for temporary in found:
-            with suppress(OSError):  # another process may have removed it, or on Windows have it open
+            with suppress(OSError):  # another process may have removed it or, on Windows, may have it open
                 if _LOCKS_BY_OPENING:
                     temporary.unlink()
                     continue
@@ -150,9 +151,9 @@ def _lock(handle: int) -> bool:
 
 
 def _sync_folder(folder: Path) -> None:
-    """Makes a new name in a folder last."""
+    """Flushes a folder to disk, so that a new name in it survives a power failure."""
     if _LOCKS_BY_OPENING:
-        return  # folders cannot be opened there
+        return  # folders cannot be opened on Windows
     handle = os.open(folder, os.O_RDONLY)
     try:
         with suppress(OSError):  # some file systems do not support it

@@ -1,10 +1,10 @@
-"""What notebooks show for a result: a small table beside a small picture, without anything from the network."""
+"""The HTML of a result in notebooks: a small table beside a small picture, without anything from the network."""
 
 from collections.abc import Mapping, Sequence
 from html import escape
 
 MAX_TEXT = 120
-"""Longer texts are cut."""
+"""The maximum number of characters of a text; longer ones are cut."""
 _BOX = "display:flex;flex-wrap:wrap;gap:16px;align-items:center;font:13px/1.4 system-ui,sans-serif"
 _TABLE = "border-collapse:collapse;margin:0;width:auto;color:inherit;font:inherit"
 _DOT = "display:inline-block;width:9px;height:9px;border-radius:5px;margin-right:6px"
@@ -15,7 +15,7 @@ def summary(heading: str, facts: Mapping[str, object], picture: str = "") -> str
     """Returns a table with one fact per row, and a picture.
 
     Args:
-        heading: What the result is.
+        heading: A description of the result.
         facts: The names and values to show; every text is escaped.
         picture: An SVG; empty for none.
     """
@@ -38,11 +38,11 @@ def listing(
     """Returns a table with named columns, the first of which names the rows, and a picture.
 
     Args:
-        heading: What the result is.
+        heading: A description of the result.
         columns: The names of the columns.
         rows: The values of each row; every text is escaped.
         picture: An SVG; empty for none.
-        colors: The colors in the picture of the first rows; empty for a row that it does not show.
+        colors: The colors of the first rows in the picture; empty for a row that the picture does not show.
         notes: Lines below the table and the picture.
     """
     lines = [_row("th", columns, "")]
@@ -54,10 +54,10 @@ def sentences(heading: str, columns: Sequence[str], rows: Sequence[Sequence[obje
     """Returns a table of sentences, which are wrapped but not cut.
 
     Args:
-        heading: What the result is.
-        columns: The names of the columns; none for a table without a head.
-        rows: The values of each row; every text is escaped, and its lines stay lines. Of several lines in the
-            first column, the first is the row's title.
+        heading: A description of the result.
+        columns: The names of the columns; empty for a table without a header.
+        rows: The values of each row; every text is escaped, and line breaks are kept. If the first column has several
+            lines, the first line is the row's title.
         notes: Lines below the table.
     """
     lines = [
@@ -74,7 +74,7 @@ def _below(notes: Sequence[str]) -> str:
 
 
 def _sentences(tag: str, lines: Sequence[str], is_title: bool) -> str:
-    """A cell that is wide enough for sentences where it has several lines; the first one can be a title."""
+    """Returns a cell, wide enough for sentences if it has several lines; the first line can be a title."""
     style = f"{_CELL};padding:4px 16px 4px 0;text-align:left;vertical-align:top;border-top:1px solid #8886"
     escaped = [escape(line) for line in lines]
     if len(lines) > 1:

@@ -1,4 +1,4 @@
-"""Memory limits, which are checked before memory is allocated."""
+"""Memory limits, checked before memory is allocated."""
 
 import math
 import os
@@ -9,26 +9,26 @@ from pathlib import Path
 from qtab._utils import checks
 
 DEFAULT_LIMIT = 4 * 2**30
-"""The limit in bytes where the memory of the machine is unknown."""
+"""The limit in bytes if the memory of the machine is unknown."""
 BYTES_PER_EPISODE = 8 + 8 + 1
 """The size of an episode's return, length and termination flag."""
 BYTES_PER_RUN = 256
-"""About the size of what is kept of a run beside its episodes and tables, such as its seed in Python and in Rust."""
+"""The approximate size of a run without its episodes and tables, such as its seed in Python and in Rust."""
 ALWAYS_FREE = 2**26
-"""Fewer bytes are taken without a look at the memory that is free, which takes a third of a millisecond."""
+"""The number of bytes below which free memory is not checked, since the check takes a third of a millisecond."""
 _CONTROL_GROUPS = (
     ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory.current"),
     ("/sys/fs/cgroup/memory/memory.limit_in_bytes", "/sys/fs/cgroup/memory/memory.usage_in_bytes"),
 )
-"""The limit of a container's memory and its usage, in the second and in the first version of control groups."""
+"""The files with a container's memory limit and usage, in versions 2 and 1 of control groups."""
 
 
 def memory_limit(value: int | None) -> int:
     """Returns the memory limit in bytes; None means half of the machine's memory.
 
     Raises:
-        TypeError: if it is not an integer.
-        ValueError: if it is less than one.
+        TypeError: if ``value`` is not an integer.
+        ValueError: if ``value`` is less than one.
     """
     if value is not None:
         return checks.integer("memory_limit", value, least=1)
@@ -41,10 +41,10 @@ def memory_limit(value: int | None) -> int:
 
 
 def free_memory() -> int:
-    """Returns how many bytes this process can still take: of the machine's memory, and of its control group's.
+    """Returns the number of bytes that this process can still use, of the machine's and its control group's memory.
 
-    Linux gives out memory that it does not have, and kills the process that writes to it. Where what is free is not
-    known, this is a number that no table reaches.
+    Linux overcommits memory, and kills the process that writes to it. If the free memory is unknown, this is a number
+    that no table reaches.
     """
     free = [sys.maxsize]
     if sys.platform == "win32":
@@ -61,16 +61,16 @@ def free_memory() -> int:
 
 
 def check_memory(what: str, needed: int, limit: int, instead: str = "") -> None:
-    """Checks that something fits into the memory limit, and where that is the default, into what is free.
+    """Checks that data fit into the memory limit and, if that is the default, into the free memory.
 
     Args:
-        what: What needs the memory, for the message.
-        needed: The bytes it needs.
+        what: The name of the data, for the message.
+        needed: The number of bytes needed.
         limit: The limit in bytes.
-        instead: Which setting would help, to be added to the message.
+        instead: A setting that would help, to be added to the message.
 
     Raises:
-        MemoryError: if it does not fit.
+        MemoryError: if the data do not fit.
     """
     if needed > limit:
         default = ", by default half of the machine's memory" if limit == memory_limit(None) else ""
@@ -86,24 +86,24 @@ def check_memory(what: str, needed: int, limit: int, instead: str = "") -> None:
 
 
 def memory_left(needed: int, limit: int) -> tuple[int, int]:
-    """Returns what the extension takes as the memory for what grows during runs: the limit, and what is left of it.
+    """Returns the limit and the bytes left of it, which the extension takes for data that grows during runs.
 
     Args:
-        needed: The bytes that the runs need in any case.
+        needed: The number of bytes that the runs need in any case.
         limit: The limit in bytes.
     """
     return min(limit, checks.LARGEST_COUNT), min(max(limit - needed, 0), checks.LARGEST_COUNT)
 
 
 def readable_size(count: int) -> str:
-    """Returns a number of bytes in the unit that suits it."""
+    """Returns a number of bytes as text in a suitable unit."""
     power = min(int(math.log2(max(count, 1))) // 10, 4)
     return f"{count / 2 ** (10 * power):.3g} {('bytes', 'KiB', 'MiB', 'GiB', 'TiB')[power]}"
 
 
 def _windows_memory() -> tuple[int, int]:
-    """Returns the memory of a machine with Windows, and what of it is free, in bytes; zeros where it does not tell."""
-    import ctypes  # loaded by few programs, and in the test of this function not for Windows
+    """Returns the total and the free memory of a Windows machine, in bytes; zeros if unknown."""
+    import ctypes  # rarely needed; the test of this function patches its windll
 
     class Status(ctypes.Structure):
         """``MEMORYSTATUSEX`` of the Windows API."""

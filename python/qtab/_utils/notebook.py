@@ -1,4 +1,4 @@
-"""Whether a notebook is running, and progress bars that leave no output in it once they are closed."""
+"""Detects notebooks, and makes progress bars that leave no output in a notebook once they are closed."""
 
 import sys
 import warnings
@@ -6,14 +6,14 @@ from typing import Any
 
 
 def in_notebook() -> bool:
-    """Returns whether this code runs in the kernel of a notebook, which can show pictures and widgets."""
+    """Returns whether this code runs in a notebook kernel, which can show pictures and widgets."""
     ipython = sys.modules.get("IPython")  # a kernel has imported it
     shell = None if ipython is None else ipython.get_ipython()
     return getattr(shell, "kernel", None) is not None
 
 
 def notebook_bar(**options: Any) -> Any:
-    """Returns a tqdm bar as a widget, or as text where ipywidgets is not installed.
+    """Returns a tqdm bar as a widget, or as text if ipywidgets is not installed.
 
     Args:
         **options: As for ``tqdm.tqdm``.
@@ -22,7 +22,7 @@ def notebook_bar(**options: Any) -> Any:
         ModuleNotFoundError: without tqdm.
     """
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # a bar of text needs no warning
+        warnings.simplefilter("ignore")  # tqdm warns without ipywidgets, but a text bar is enough
         from tqdm import notebook, tqdm
     if notebook.IProgress is None:
         return tqdm(**options)

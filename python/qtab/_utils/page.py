@@ -19,7 +19,7 @@ _STYLE = (
 
 
 def page(title: str, body: str) -> str:
-    """Returns a page, with light or dark colors as the reader's system has.
+    """Returns a page, with light or dark colors according to the reader's system.
 
     Args:
         title: The title and the heading; it is escaped.
@@ -45,7 +45,7 @@ def paragraph(text: str) -> str:
 
 
 def table(header: Sequence[str], rows: Sequence[Sequence[Any]]) -> str:
-    """Returns a table of values, which are escaped; with an empty header the first column names the rows."""
+    """Returns a table of escaped values; with an empty header, the first column names the rows."""
     head = "".join(f'<th scope="col">{html.escape(name)}</th>' for name in header)
     lines = [_row(row, not header) for row in rows]
     body = "\n".join([f"<tr>{head}</tr>", *lines] if header else lines)

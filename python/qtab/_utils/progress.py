@@ -12,7 +12,7 @@ SECONDS_BETWEEN_UPDATES = 0.1
 """The approximate time between two updates of the bar."""
 
 DELAY_SECONDS = 1.0
-"""A bar that was not asked for appears after this time."""
+"""The time after which a bar appears with ``progress=None``."""
 
 _bars: list[Any] = []
 """The tqdm bars in use."""
@@ -21,7 +21,7 @@ _bars: list[Any] = []
 class ProgressBar:
     """The progress of a long call, as a context manager: on standard error, or as a widget in a notebook.
 
-    Without a bar to show it does nothing.
+    Without a bar, it does nothing.
 
     Args:
         total: The number of units to do.
@@ -57,10 +57,10 @@ class ProgressBar:
         return self._bar is not None
 
     def chunks(self, done: int, target: int) -> Iterator[int]:
-        """Yields the counts up to which to work in turn, from ``done`` to ``target``.
+        """Yields the counts to work up to in turn, from ``done`` to ``target``.
 
-        With a bar they are about a tenth of a second apart, and the bar moves in between. Without one there is only
-        ``target``.
+        With a bar, the counts are about a tenth of a second apart, and the bar moves in between. Without one, the only
+        count is ``target``.
         """
         if self._bar is None:
             yield target
@@ -82,10 +82,10 @@ class ProgressBar:
 
 
 def check_progress(progress: Any) -> None:
-    """Checks the argument ``progress`` of a function that may not come to show a bar.
+    """Checks the argument ``progress``, before the function may show a bar.
 
     Raises:
-        TypeError: if it is neither a boolean nor None.
+        TypeError: if ``progress`` is neither a boolean nor None.
     """
     if not (progress is None or isinstance(progress, bool)):
         raise TypeError(f"progress must be True, False or None, got {progress!r}")
@@ -121,7 +121,7 @@ def is_terminal(stream: Any) -> bool:
 
 def print_above(line: str) -> None:
     """Prints a line on standard output, above the progress bar if there is one."""
-    # tqdm.write also redraws a bar that still waits for its delay, and would leave it on the screen.
+    # tqdm.write would also draw a bar that still waits for its delay, and leave it on the screen.
     drawn = [bar for bar in _bars if bar.delay == 0 or bar.last_print_t > bar.start_t]
     if drawn:
         drawn[-1].write(line, file=sys.stdout)

@@ -1,16 +1,16 @@
-"""Values as error messages show them: short, whatever they are."""
+"""Short texts of values, for error messages."""
 
 from typing import Any
 
 LONGEST = 450
-"""Longer texts are cut in the middle: what was given may be a whole table."""
+"""The maximum number of characters; longer texts, such as those of tables, are cut in the middle."""
 
 
 def shown(value: Any) -> str:
     """Returns the ``repr`` of a value, without the middle of a long one."""
     try:
         text = repr(value)
-    except Exception:  # such as that of an integer of more digits than Python prints
+    except Exception:  # such as an integer with more digits than Python prints
         bits = f" of {value.bit_length():,} bits" if isinstance(value, int) else ""
         text = f"<{type(value).__name__}{bits}>"
     if len(text) <= LONGEST:

@@ -5,7 +5,7 @@ from difflib import get_close_matches
 
 
 def nearest(word: str, known: Iterable[str]) -> str | None:
-    """Returns the known word that is spelled most like ``word``, whatever its case; None if none is near."""
+    """Returns the known word with the spelling nearest to ``word``, ignoring case; None if none is near."""
     by_spelling = {_spelling(candidate): candidate for candidate in known}
     found = get_close_matches(_spelling(word), by_spelling, n=1, cutoff=0.65)
     return by_spelling[found[0]] if found else None

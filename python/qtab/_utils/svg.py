@@ -11,13 +11,13 @@ WIDTH, HEIGHT = 280, 90
 """The size of a picture in pixels."""
 _LEFT, _MARGIN = 62, 6
 _MAX_POINTS = 140
-"""A line has at most this many points, which average the others."""
+"""The maximum number of points of a line; longer curves are averaged."""
 _MAX_CELLS = (24, 36)
-"""A field has at most this many rows and columns."""
+"""The maximum numbers of rows and columns of a field; larger ones are averaged."""
 _LEVELS = 10
 """The number of shades of a field."""
 _COLORS = ("#3b82c4", "#d1662b", "#2f9f6b", "#a06ac0", "#b0892b", "#c0506a")
-"""Colors that can be seen on white and on black."""
+"""Colors that are visible on white and on black."""
 
 
 def color(index: int) -> str:
@@ -26,10 +26,10 @@ def color(index: int) -> str:
 
 
 def lines(title: str, curves: Mapping[str, ArrayLike], band: tuple[ArrayLike, ArrayLike] | None = None) -> str:
-    """Returns a picture of lines of (points,) each, over the same range of x; empty if there are no two points.
+    """Returns a picture of lines of (points,) each, over the same range of x; empty with fewer than two points.
 
     Args:
-        title: What the picture shows, for tooltips and screen readers.
+        title: A description of the picture, for tooltips and screen readers.
         curves: The lines by name. Values that are not finite are left out.
         band: The lower and the upper limit of a band around the first line, (points,) each.
     """
@@ -65,7 +65,7 @@ def bars(title: str, heights: ArrayLike, first: str, last: str) -> str:
 
 
 def field(title: str, values: NDArray[np.float64]) -> str:
-    """Returns a picture of (rows, columns) values, the higher the stronger; empty if they are not finite."""
+    """Returns a picture of (rows, columns) values, stronger if higher; empty if they are not finite."""
     if values.ndim != 2 or not values.size or not np.isfinite(values).all():
         return ""
     small = _averaged(_averaged(values, 0, _MAX_CELLS[0]), 1, _MAX_CELLS[1])

@@ -1,4 +1,4 @@
-"""The versions that a result was computed with, to explain differences between machines."""
+"""The software versions of a result, to explain differences between machines."""
 
 import platform
 import re
@@ -11,12 +11,12 @@ from qtab._core import BUILD_PROFILE, VERSION
 
 
 def versions() -> dict[str, str]:
-    """Returns the versions of qtab, Gymnasium, NumPy and Python, the platform and C library, and the build profile."""
+    """Returns the versions of qtab, Gymnasium, NumPy and Python, the platform, the C library and the build profile."""
     return dict(_versions())
 
 
 def distribution_version(version: str = VERSION) -> str:
-    """Returns the version of this package as its metadata spell it: ``1.2.3rc1``, which Cargo spells ``1.2.3-rc.1``."""
+    """Returns the version of this package as in its metadata: ``1.2.3rc1``, which Cargo spells ``1.2.3-rc.1``."""
     return re.sub(r"-(?:(a)lpha|(b)eta|(rc))\.?(\d+)$", r"\1\2\3\4", version)
 
 
