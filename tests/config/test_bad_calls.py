@@ -176,7 +176,7 @@ SPACES: list[tuple[gym.Space[Any], str]] = [
     (gym.spaces.Dict({"a": gym.spaces.Discrete(2)}), "discretizer must be left out for"),
     (gym.spaces.MultiBinary(3), "discretizer must be left out for"),
     (gym.spaces.Discrete(3), "observation space must be a Box .*discretizer must be left out for it"),
-    (gym.spaces.Text(3), "TransformObservation makes numbers of it with a function, or give a function as"),
+    (gym.spaces.Text(3), "TransformObservation converts it to numbers with a function, or give a function as"),
     (gym.spaces.Dict({"a": gym.spaces.Discrete(2), "b": gym.spaces.Text(3)}), r"FilterObservation\(env, \['a'\]\)"),
     (gym.spaces.Box(0, 1, (2,), np.longdouble), r"DtypeObservation\(env, numpy.float64\) converts it"),
 ]

@@ -147,7 +147,7 @@ def test_the_limits_must_be_given_where_the_space_has_none() -> None:
     env = Shown(gym.spaces.Box(-np.inf, np.inf, (1,), np.float32), np.zeros(1, dtype=np.float32))
     with pytest.raises(
         ValueError,
-        match=r"^low must be given, a number for each component, where the observation space has no finite bounds: ",
+        match=r"^low must be given, a number for each component, as the observation space has no finite bounds: ",
     ):
         qtab.train(env, discretizer="tiles")
 

@@ -23,8 +23,8 @@ def numbers(name: str, values: Any) -> NDArray[np.float64]:
     """Returns the values of the argument ``name`` as a float64 array of any shape.
 
     Raises:
-        TypeError: if they are not real numbers.
-        ValueError: if any is NaN, infinite or larger than 1e150.
+        TypeError: if the values are not real numbers.
+        ValueError: if a value is NaN, infinite or larger than 1e150.
     """
     hint = ""
     if hasattr(values, "episode_returns"):
@@ -71,8 +71,8 @@ def curves(name: str, values: ArrayLike) -> NDArray[np.float64]:
     """Returns the values of the argument ``name`` as a float64 array (runs, episodes); a single run may be (episodes,).
 
     Raises:
-        TypeError: if they are not real numbers.
-        ValueError: if they have another shape, are empty, or are not finite.
+        TypeError: if the values are not real numbers.
+        ValueError: if the values have another shape, are empty, or are not finite.
     """
     array = np.atleast_2d(numbers(name, values))
     if array.ndim != 2 or array.size == 0:

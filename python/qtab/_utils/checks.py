@@ -24,8 +24,8 @@ def real(name: str, value: Any, low: float, high: float) -> float:
     """Returns ``value`` as a float in [``low``, ``high``].
 
     Raises:
-        TypeError: if it is not a real number. Booleans are not accepted.
-        ValueError: if it is NaN or outside the interval.
+        TypeError: if ``value`` is not a real number. Booleans are not accepted.
+        ValueError: if ``value`` is NaN or outside the interval.
     """
     number = _number(value)
     if number is None:
@@ -39,8 +39,8 @@ def finite(name: str, value: Any) -> float:
     """Returns ``value`` as a finite float.
 
     Raises:
-        TypeError: if it is not a real number. Booleans are not accepted.
-        ValueError: if it is NaN or infinite.
+        TypeError: if ``value`` is not a real number. Booleans are not accepted.
+        ValueError: if ``value`` is NaN or infinite.
     """
     number = _number(value)
     if number is None:
@@ -66,8 +66,8 @@ def integer(name: str, value: Any, least: int, most: int | None = None) -> int:
     """Returns ``value`` as a Python integer of at least ``least`` and at most ``most``.
 
     Raises:
-        TypeError: if it is not an integer. Booleans and floats such as 5.0 are not accepted.
-        ValueError: if it is too small or too large.
+        TypeError: if ``value`` is not an integer. Booleans and floats such as 5.0 are not accepted.
+        ValueError: if ``value`` is too small or too large.
     """
     fits = f"an integer of at least {least}" if most is None else f"an integer from {least} to {most}"
     if isinstance(value, bool | np.bool_) or not hasattr(value, "__index__"):  # NumPy 2.0's booleans have an __index__
@@ -85,8 +85,8 @@ def count(name: str, value: Any, least: int) -> int:
     """Returns ``value`` as a Python integer of at least ``least`` that fits into 64 bits.
 
     Raises:
-        TypeError: if it is not an integer. Booleans and floats such as 5.0 are not accepted.
-        ValueError: if it is too small or too large.
+        TypeError: if ``value`` is not an integer. Booleans and floats such as 5.0 are not accepted.
+        ValueError: if ``value`` is too small or too large.
     """
     number = integer(name, value, least)
     if number > LARGEST_COUNT:
@@ -98,8 +98,8 @@ def threads(value: Any) -> int:
     """Returns the value of the argument ``threads`` as a Python integer.
 
     Raises:
-        TypeError: if it is not an integer. Booleans and floats such as 5.0 are not accepted.
-        ValueError: if it is too small or too large.
+        TypeError: if ``value`` is not an integer. Booleans and floats such as 5.0 are not accepted.
+        ValueError: if ``value`` is too small or too large.
     """
     return integer("threads", value, least=1, most=MAX_THREADS)
 
@@ -113,7 +113,7 @@ def boolean(name: str, value: Any) -> bool:
     """Returns ``value``, which must be True or False; NumPy's booleans become Python's.
 
     Raises:
-        TypeError: if it is anything else, such as "no", which would count as true.
+        TypeError: if ``value`` is anything else, such as "no", which would count as true.
     """
     if not isinstance(value, bool | np.bool_):
         raise TypeError(f"{name} must be True or False, got {shown(value)}")
@@ -124,8 +124,8 @@ def choice(name: str, value: Any, choices: Collection[str]) -> str:
     """Returns ``value``, which must be one of ``choices``.
 
     Raises:
-        TypeError: if it is not a string.
-        ValueError: if it is another string.
+        TypeError: if ``value`` is not a string.
+        ValueError: if ``value`` is another string.
     """
     if isinstance(value, str) and value in choices:
         return value

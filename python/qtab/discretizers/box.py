@@ -52,7 +52,7 @@ def span(space: spaces.Box, low: Sequence[float] | None, high: Sequence[float] |
             raise ValueError(f"{name} must hold {held} for this observation space, got {shown(given)}")
         if not np.isfinite(limit).all():
             raise ValueError(
-                f"{name} must be given, a number for each component, where the observation space has no finite bounds: "
+                f"{name} must be given, a number for each component, as the observation space has no finite bounds: "
                 f"{' '.join(str(space).split())}"
             )
         limits.append(limit)

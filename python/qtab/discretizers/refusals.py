@@ -17,7 +17,7 @@ def refusal(space: Any, whole: Any, path: tuple[str | int, ...]) -> str:
         whole: The observation space that contains it, or ``space`` itself.
         path: The keys of the space in ``whole``.
     """
-    where = f"under {path[0]!r}" if path else "as it is"
+    where = f"under {path[0]!r}" if path else "at the top level"
     text = (
         f"the observation space must consist of numbers for a table, got {type(space).__name__} {where}: {shown(whole)}"
     )
@@ -26,7 +26,7 @@ def refusal(space: Any, whole: Any, path: tuple[str | int, ...]) -> str:
         return f"{text}; gymnasium.wrappers.FilterObservation(env, {others!r}) leaves it out, or give {FUNCTION}"
     if isinstance(space, spaces.Box):
         return f"{text}; gymnasium.wrappers.DtypeObservation(env, numpy.float64) converts it"
-    return f"{text}; gymnasium.wrappers.TransformObservation makes numbers of it with a function, or give {FUNCTION}"
+    return f"{text}; gymnasium.wrappers.TransformObservation converts it to numbers with a function, or give {FUNCTION}"
 
 
 def too_large(parts: Any) -> str:

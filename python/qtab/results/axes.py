@@ -54,7 +54,7 @@ class Axis:
 
 
 def run_quantities(config: Config, discretizer: "Discretizer") -> Quantities:
-    """Returns the names and units of the numbers of a run's environment, as far as they are known."""
+    """Returns the names and units of the observations and actions of a run, as far as they are known."""
     known = observed_quantities(config.env, discretizer.low, discretizer.high)
     environment = trained_on(config)
     if environment is None:  # a file of an earlier version

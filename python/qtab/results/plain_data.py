@@ -39,7 +39,7 @@ def plain_data(run: "Run") -> dict[str, Any]:
 
 
 def write(run: "Run", path: Path) -> None:
-    """Writes the policy of a run to a JSON file, whole or not at all.
+    """Writes the policy of a run to a JSON file, completely or not at all.
 
     Raises:
         OSError: if the file cannot be written.

@@ -171,7 +171,7 @@ class Runs:
 
         Raises:
             TypeError: if ``block`` is not an integer.
-            ValueError: if it is less than one.
+            ValueError: if ``block`` is less than one.
         """
         block = checks.integer("block", block, least=1)
         return block_means(self.episode_returns, block)

@@ -161,7 +161,7 @@ def check_header(path: Path) -> None:
 
     Raises:
         OSError: if the file cannot be read.
-        StoreError: if it is not an SQLite file.
+        StoreError: if the file is not an SQLite file.
     """
     with path.open("rb") as file:
         header = file.read(HEADER_BYTES)
@@ -177,7 +177,7 @@ def reading(path: Path) -> Iterator[sqlite3.Connection]:
 
     Raises:
         OSError: if the file cannot be opened.
-        StoreError: if it is not an SQLite file.
+        StoreError: if the file is not an SQLite file.
     """
     check_header(path)
     with ExitStack() as on_exit, translated_errors(path):

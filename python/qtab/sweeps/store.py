@@ -57,7 +57,7 @@ class Store:
 
         Raises:
             OSError: if the file cannot be opened or written.
-            StoreError: if it is damaged, has another format version, or belongs to another study.
+            StoreError: if the file is damaged, has another format version, or belongs to another study.
             TypeError: if ``path`` is not a path.
             ValueError: if ``path`` is empty.
         """
@@ -255,7 +255,7 @@ def finished_contents(path: Path, study: StoredStudy) -> Contents | None:
 
     Raises:
         OSError: if the store is not finished.
-        StoreError: if it is damaged, or belongs to another study.
+        StoreError: if the file is damaged, or belongs to another study.
     """
     if not path.exists() or is_writable(path):
         return None

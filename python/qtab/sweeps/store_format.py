@@ -145,7 +145,7 @@ def read_store(path: Path) -> Contents:
 
     Raises:
         OSError: if the file cannot be read.
-        StoreError: if it is not a store, is damaged, or is empty.
+        StoreError: if the file is not a store, is damaged, or is empty.
     """
     with reading(path) as connection:
         connection.execute("BEGIN")

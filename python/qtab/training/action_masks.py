@@ -1,4 +1,4 @@
-"""The action masks of a run: the source training reads them from, and the masks known before the first episode."""
+"""The action masks of a run: their source during training, and the masks known before the first episode."""
 
 import math
 from collections.abc import Callable, Iterator

@@ -33,7 +33,7 @@ class BaseCallback(ABC):
 
     Raises:
         TypeError: if ``every`` is not an integer.
-        ValueError: if it is less than one.
+        ValueError: if ``every`` is less than one.
     """
 
     def __init__(self, every: int | None = None) -> None:
