@@ -141,7 +141,7 @@ def test_pictures_show_a_step(run: qtab.Run) -> None:
 
 def test_what_would_ignore_the_steps_is_refused(run: qtab.Run) -> None:
     shorter = gym.make(LAKE, max_episode_steps=LIMIT - 1)
-    with pytest.raises(ValueError, match="env must have a time limit of at least 20 steps, that of the run with"):
+    with pytest.raises(ValueError, match="env must have a time limit of at least 20 steps, as in the run with"):
         qtab.evaluate(run, 5, env=shorter)
     with pytest.raises(ValueError, match="policy must not depend on the number of steps taken, got a run with"):
         qtab.policy_values(LAKE, run)
