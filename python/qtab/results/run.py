@@ -172,7 +172,7 @@ class Run(WithPage):
     def q_values(self, observation: Any, step: int = 0) -> NDArray[np.float64]:
         """Returns the (actions,) values of an observation, or the (n, actions) values of n observations.
 
-        For policy gradient methods, they are preferences. With ``time_aware``, the values after ``step`` steps.
+        For policy gradient methods, they are preferences. With ``time_aware``, they apply after ``step`` steps.
 
         Raises:
             TypeError: if the observation does not hold numbers (integers for a discrete space).

@@ -34,7 +34,8 @@ def resume(
 
     An environment that is stepped in Python is resumed with its next episode, since qtab cannot restore its state
     within an episode. The result is that of the uninterrupted run if the run was stopped between two episodes and the
-    environment keeps nothing from one episode to the next but its ``np_random``; otherwise a message is logged.
+    environment keeps nothing from one episode to the next but its ``np_random``. A message is logged if the run was
+    stopped within an episode.
 
     ``qtab.train(..., resume=run)`` does the same, and checks that other settings given are those of the run.
 

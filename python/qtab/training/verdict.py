@@ -60,8 +60,8 @@ class Verdict:
     """Whether a run solved its environment, and the returns that decide it. ``str`` lists the returns."""
 
     solved: bool | None
-    """True if the greedy policy's return, or, where that is not exact, the mean of the last 100 training episodes
-    reaches the goal. None if there is no goal, or neither is known."""
+    """True if the greedy policy's return reaches the goal or, if that return is not exact, the mean of the last 100
+    training episodes does. None if there is no goal, or neither is known."""
     goal: Goal
     last: int
     """The number of last training episodes averaged: 100, or all if there are fewer, which then do not count."""
