@@ -50,7 +50,7 @@ def test_preferences_alone_are_named(algorithm: Any) -> None:
     assert np.nanmax(shown(ax)) == run.tables[0].max()
     assert "Preferences" in [ax.get_title("left") for ax in plots.overview(run).axes]
     if algorithm != "gradient_bandit":
-        with pytest.raises(ValueError, match="runs that learned values or runs that learned preferences alone"):
+        with pytest.raises(ValueError, match="runs that learned values or only runs that learned preferences"):
             plots.values([run, qtab.train(**LAKE)])
 
 
