@@ -74,6 +74,7 @@ def spec_with(path: str, value: Any) -> Any:
         ("settings.epsilon", "much", ValueError, r"^epsilon must be a number in \[0, 1\], got 'much'$"),
         ("settings.epsilon_warm_up", 5, ValueError, r"^epsilon_warm_up must be an integer from 0 to 4, got 5$"),
         ("settings.learning_rate", None, ValueError, r"^learning_rate must be given$"),
+        ("settings.episodes", 0, ValueError, r"^episodes must be an integer from 1 to \d+, got 0$"),
         ("discretizer.low", [1.0], ValueError, r"^discretizer\.low must be a list of length 2, got length 1$"),
         ("settings.bit_generator", "Philox", ValueError, r"^bit_generator must be 'PCG64' or 'MT19937', got 'Philox'$"),
         ("env.type", "remote", ValueError, r"^env\.type must be 'native' or 'python', got 'remote'$"),

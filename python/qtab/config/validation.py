@@ -24,12 +24,12 @@ def validated(fields: Mapping[str, Any]) -> dict[str, Any]:
         ValueError: for a value that is out of range, or that does not go with another.
     """
     checked = dict(fields)
+    if fields["seed"] is not None and fields["bit_generator"] == "MT19937":
+        checks.integer("seed", fields["seed"], least=0, most=LARGEST_MT19937_SEED)
     for name, setting in SETTINGS.items():
         if fields[name] is not None or not setting.may_be_none:
             checked[name] = setting.check(name, fields[name])
     checked["discretizer"] = checked_discretizer("discretizer", fields["discretizer"])
-    if checked["seed"] is not None and checked["bit_generator"] == "MT19937":
-        checks.integer("seed", fields["seed"], least=0, most=LARGEST_MT19937_SEED)
     check_options(checked)
     missing = isinstance(checked["initial_q"], np.ndarray) and np.isneginf(checked["initial_q"]).any()
     if missing and uses_tiles(checked["discretizer"]):

@@ -176,10 +176,6 @@ impl<R: AsRef<[u32]> + Copy, U: PredictionRule + ?Sized, B: Behavior<R>> Learner
         (self.values.weights.len(), 1)
     }
 
-    fn skip_episodes(&mut self, episodes: usize) {
-        (0..episodes).for_each(|_| self.values.learning_rate.end_episode());
-    }
-
     fn abandon_episode(&mut self) {}
 
     /// A prediction has no checkpoints.

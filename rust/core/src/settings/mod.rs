@@ -8,6 +8,9 @@ pub use algorithm::AlgorithmRows;
 pub use policy::PolicySpec;
 pub use schedule::{LearningRateSpec, SCHEDULES, ScheduleSpec};
 
+/// The smallest number above 0, as a bound of [`SettingSource::number`].
+pub(crate) const ABOVE_ZERO: f64 = f64::from_bits(1);
+
 /// What holds settings. Each reader returns an error for a setting that is not there, and `None` for one of another type.
 pub trait SettingSource {
     /// What is wrong with a setting.
@@ -43,14 +46,14 @@ pub trait SettingSource {
     /// The error of a setting that must be something else, which shows its value.
     fn invalid(&self, name: &'static str, expected: &str) -> Self::Error;
 
-    /// A number from `low` to `high`; `f64::MAX` is no limit, and `f64::MIN_POSITIVE` excludes 0.
+    /// A number from `low` to `high`; `f64::MAX` is no limit, and [`ABOVE_ZERO`] excludes 0.
     ///
     /// # Errors
     /// If the setting is not there, or is not such a number.
     fn number(&self, name: &'static str, low: f64, high: f64) -> Result<f64, Self::Error> {
         let number = self.any_number(name)?.filter(|number| (low..=high).contains(number));
         number.ok_or_else(|| match (low, high) {
-            (f64::MIN_POSITIVE, f64::MAX) => self.invalid(name, "a finite number above 0"),
+            (ABOVE_ZERO, f64::MAX) => self.invalid(name, "a finite number above 0"),
             (_, f64::MAX) => self.invalid(name, "a finite number that is not negative"),
             _ => self.invalid(name, &format!("a number in [{low}, {high}]")),
         })

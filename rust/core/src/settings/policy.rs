@@ -1,6 +1,6 @@
 //! How actions are chosen.
 
-use super::{ScheduleSpec, SettingSource};
+use super::{ABOVE_ZERO, ScheduleSpec, SettingSource};
 use crate::StopFlag;
 use crate::memory::AllocationError;
 use crate::policies::{AnyPolicy, TieBreaking, Ucb};
@@ -49,9 +49,7 @@ impl PolicySpec {
             PolicyKind::EpsilonGreedy => {
                 Self::EpsilonGreedy { epsilon: ScheduleSpec::epsilon(settings, episodes)?, ties: ties()? }
             }
-            PolicyKind::Softmax => {
-                Self::Softmax { temperature: settings.number("temperature", f64::MIN_POSITIVE, f64::MAX)? }
-            }
+            PolicyKind::Softmax => Self::Softmax { temperature: settings.number("temperature", ABOVE_ZERO, f64::MAX)? },
             PolicyKind::Ucb => Self::Ucb { confidence: settings.number("confidence", 0.0, f64::MAX)?, ties: ties()? },
         })
     }

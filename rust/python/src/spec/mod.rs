@@ -117,7 +117,7 @@ impl RunSpec {
         let max_episode_steps = fields.get("max_episode_steps")?;
         // Errors name these as the user did, without the path of the dict.
         let settings = Fields::new(&fields.any("settings")?)?;
-        let episodes = settings.integer("episodes", 0, u64::MAX)?;
+        let episodes = settings.integer("episodes", 1, u64::MAX)?;
         let (algorithm, learning_rate) = AnyAlgorithm::parse(&settings, episodes, max_episode_steps, LARGEST_RATE)?;
         let spec = Self {
             discretizer: DiscretizerSpec::parse(&fields.nested("discretizer")?)?,

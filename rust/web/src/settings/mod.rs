@@ -52,6 +52,11 @@ impl Settings {
         let discretizer = Discretizer::parse(&fields, bounds)?;
         let tiles = matches!(discretizer, Discretizer::Tiles { .. });
         let largest_rate = if tiles { 2.0 } else { 1.0 };
+        fields.word("algorithm", ALGORITHMS)?;
+        fields.word("exploration", &[("epsilon_greedy", ()), ("softmax", ())])?;
+        if fields.has("model") {
+            fields.word("model", &[("deterministic", ())])?;
+        }
         let (algorithm, learning_rate) = AnyAlgorithm::parse(&fields, episodes, max_episode_steps, largest_rate)?;
         if tiles && algorithm.needs_single_rows() {
             return Err(fields.invalid("algorithm", "an algorithm without a model for discretizer 'tiles'"));
@@ -60,13 +65,9 @@ impl Settings {
         if terminal_update == TerminalUpdate::Assign && (tiles || !assigns(algorithm)) {
             return Err(fields.invalid("terminal_update", "'target' for this algorithm and discretizer"));
         }
-        let policy = PolicySpec::parse(&fields, episodes)?;
-        if matches!(policy, PolicySpec::Ucb { .. }) {
-            return Err(fields.invalid("exploration", "'epsilon_greedy' or 'softmax'"));
-        }
         let parsed = Self {
             algorithm,
-            policy,
+            policy: PolicySpec::parse(&fields, episodes)?,
             learning_rate,
             discount: fields.number("discount", 0.0, 1.0)?,
             initial_q: initial_q(&fields)?,
@@ -118,6 +119,20 @@ impl Settings {
         Ok(QTable::new(values, num_actions))
     }
 }
+
+/// The algorithms whose learners the playground has.
+const ALGORITHMS: &[(&str, ())] = &[
+    ("q_learning", ()),
+    ("sarsa", ()),
+    ("expected_sarsa", ()),
+    ("double_q_learning", ()),
+    ("n_step_sarsa", ()),
+    ("sarsa_lambda", ()),
+    ("true_online_sarsa_lambda", ()),
+    ("watkins_q_lambda", ()),
+    ("dyna_q", ()),
+    ("dyna_q_plus", ()),
+];
 
 const TERMINAL_UPDATES: &[(&str, TerminalUpdate)] =
     &[("target", TerminalUpdate::Target), ("assign", TerminalUpdate::Assign)];

@@ -25,6 +25,18 @@ fn errors_name_the_setting_and_what_would_fit() {
         (r#""scale": [10, 100]"#, r#""scale": [10]"#, "scale must be an array of 2 finite numbers, got an array of 1"),
         (r#""ties": "first""#, r#""ties": "last""#, "ties must be 'first' or 'random', got 'last'"),
         (r#""ties": "first","#, r"", "ties must be given"),
+        (
+            r#""exploration": "epsilon_greedy""#,
+            r#""exploration": "ucb""#,
+            "exploration must be 'epsilon_greedy' or 'softmax', got 'ucb'",
+        ),
+        (
+            r#""algorithm": "q_learning""#,
+            r#""algorithm": "monte_carlo""#,
+            "algorithm must be 'q_learning' or 'sarsa' or 'expected_sarsa' or 'double_q_learning' or 'n_step_sarsa' or \
+             'sarsa_lambda' or 'true_online_sarsa_lambda' or 'watkins_q_lambda' or 'dyna_q' or 'dyna_q_plus', got \
+             'monte_carlo'",
+        ),
         (r#""ties": "first""#, r#""ties": "first", "n_steps": 3"#, "n_steps does not apply to these settings"),
         (
             r#""initial_q": [-1, 1]"#,

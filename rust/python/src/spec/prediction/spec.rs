@@ -10,12 +10,11 @@ use qtab_core::prediction::{
     ActionFromTask, BatchTd, FixedPolicy, ImportanceSampling, LinearValues, NStepTd, OfflineLambdaReturn,
     PredictionRule, Predictor, StateFeatures, TdLambda, TdZero, TrueOnlineTdLambda,
 };
-use qtab_core::schedules::LearningRate;
 
 use super::observation_policy::{ObservationPolicies, ObservationPolicySpec, POLICIES, check_probabilities};
 use crate::convert::in_c_order;
 use crate::error::{allocation, invalid};
-use crate::spec::{DiscretizerSpec, Fields, LearningRateSpec, RunSpec, Variant};
+use crate::spec::{DiscretizerSpec, Fields, RunSpec, Variant};
 
 /// A method with its options.
 #[derive(Clone, Copy, Debug)]
@@ -226,13 +225,8 @@ impl PredictionSpec {
         stop: &StopFlag<'_>,
     ) -> PyResult<Predictor<U, B>> {
         let n_active = features.n_active();
-        let learning_rate = match spec.learning_rate {
-            LearningRateSpec::Schedule(schedule) => LearningRate::scheduled(schedule.build(spec.episodes), n_active),
-            LearningRateSpec::Visits { value, minimum } => {
-                LearningRate::by_visit_count(value, minimum, self.n_weights(), n_active, stop).map_err(allocation)?
-            }
-        };
+        let rate = spec.learning_rate.build(spec.episodes, self.n_weights(), n_active, stop).map_err(allocation)?;
         let weights = collect(self.initial.iter().copied()).map_err(allocation)?;
-        Ok(Predictor::new(LinearValues::new(weights, features, learning_rate, spec.discount), behavior, rule))
+        Ok(Predictor::new(LinearValues::new(weights, features, rate, spec.discount), behavior, rule))
     }
 }
