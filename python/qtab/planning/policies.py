@@ -93,7 +93,15 @@ def of_array(name: str, policy: ArrayLike, cells: Discretizer, actions: Actions)
         raise ValueError(
             f"{name} must have the shape {shape} of actions or {(*shape, count)} of probabilities, got {array.shape}"
         )
-    table = array.astype(np.float64).reshape(cells.n_rows, count)
+    return _distributions(name, array.astype(np.float64).reshape(cells.n_rows, count))
+
+
+def _distributions(name: str, table: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Returns (rows, actions) probabilities, checked; exactly 1 for the actions of a deterministic policy.
+
+    Raises:
+        ValueError: if a row is not a distribution over the actions.
+    """
     if not (table >= 0.0).all():
         row = int(np.flatnonzero(~(table >= 0.0).all(axis=1))[0])
         raise ValueError(f"{name} must hold probabilities of at least 0, got {shown(table[row].tolist())} in row {row}")
@@ -101,7 +109,8 @@ def of_array(name: str, policy: ArrayLike, cells: Discretizer, actions: Actions)
     wrong = np.flatnonzero(~(np.abs(sums - 1.0) <= SUM_TOLERANCE))
     if len(wrong):
         raise ValueError(f"{name} must sum to 1 in every state, got {sums[wrong[0]]:.6g} in row {wrong[0]}")
-    return table
+    positive = table > 0.0
+    return positive.astype(np.float64) if (positive.sum(axis=1) == 1).all() else table
 
 
 def _of_actions(name: str, chosen: NDArray[Any], actions: Actions) -> NDArray[np.float64]:
@@ -151,7 +160,7 @@ def _of_function(
         elif isinstance(space, gym.spaces.MultiDiscrete):
             observation = numbers.astype(space.dtype)
         table[row] = answered(name, policy(observation), observation, actions)
-    return table
+    return _distributions(name, table)
 
 
 def answered(name: str, answer: Any, observation: Any, actions: Actions) -> list[float]:

@@ -6,7 +6,7 @@ use crate::StopFlag;
 use std::mem::swap;
 
 use super::PlanningError;
-use super::bellman::{action_error, action_size, action_value, action_values, initial_value};
+use super::bellman::{action_error, action_value, action_values, initial_value};
 use super::stop_checks::StopChecks;
 use crate::envs::Env;
 use crate::envs::tabular::TabularMdp;
@@ -112,26 +112,6 @@ pub fn policy_return(
     steps: u64,
     stop: &StopFlag<'_>,
 ) -> Result<f64, PlanningError> {
-    induction(mdp, policy, steps, action_value, stop)
-}
-
-/// The expected sum of the magnitudes of the rewards of such a policy, of which rounding errors are a fraction.
-pub(super) fn return_size(
-    mdp: &TabularMdp,
-    policy: &[usize],
-    steps: u64,
-    stop: &StopFlag<'_>,
-) -> Result<f64, PlanningError> {
-    induction(mdp, policy, steps, action_size, stop)
-}
-
-fn induction(
-    mdp: &TabularMdp,
-    policy: &[usize],
-    steps: u64,
-    value: impl Fn(&TabularMdp, usize, usize, f64, &[f64]) -> f64,
-    stop: &StopFlag<'_>,
-) -> Result<f64, PlanningError> {
     let num_states = mdp.num_states();
     let is_stationary = policy.len() == num_states;
     let fits = is_stationary || policy.len() as u64 == num_states as u64 * steps;
@@ -142,7 +122,7 @@ fn induction(
         checks.now()?;
         let first = if is_stationary { 0 } else { taken as usize * num_states };
         for (state, &action) in policy[first..][..num_states].iter().enumerate() {
-            next_returns[state] = value(mdp, state, action, 1.0, &returns);
+            next_returns[state] = action_value(mdp, state, action, 1.0, &returns);
             if !next_returns[state].is_finite() {
                 return Err(PlanningError::Overflow(state));
             }
@@ -154,4 +134,30 @@ fn induction(
         }
     }
     Ok(initial_value(mdp, &returns))
+}
+
+/// A bound of the rounding error of [`policy_return`], for a policy with one action per state.
+///
+/// # Errors
+/// `OutOfMemory`; `Stopped` after `stop` was set.
+pub(super) fn return_error(
+    mdp: &TabularMdp,
+    policy: &[usize],
+    steps: u64,
+    stop: &StopFlag<'_>,
+) -> Result<f64, PlanningError> {
+    let zeros = || filled(&0.0, mdp.num_states(), stop);
+    let (mut returns, mut next_returns, mut errors, mut next_errors) = (zeros()?, zeros()?, zeros()?, zeros()?);
+    let mut checks = StopChecks::new(mdp, stop);
+    for _ in 0..steps {
+        checks.now()?;
+        for (state, &action) in policy.iter().enumerate() {
+            next_returns[state] = action_value(mdp, state, action, 1.0, &returns);
+            next_errors[state] = action_error(mdp, state, action, 1.0, &returns, &errors);
+            checks.state()?;
+        }
+        swap(&mut returns, &mut next_returns);
+        swap(&mut errors, &mut next_errors);
+    }
+    Ok(initial_value(mdp, &errors))
 }

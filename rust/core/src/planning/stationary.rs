@@ -1,6 +1,6 @@
 //! The best known policy under a time limit that does not depend on the number of steps taken.
 
-use super::finite_horizon::{finite_horizon, policy_return, return_size};
+use super::finite_horizon::{finite_horizon, policy_return, return_error};
 use super::{Mdp, PlanningError};
 use crate::StopFlag;
 use crate::envs::Env;
@@ -16,8 +16,7 @@ const LEAST_SWEEPS: u64 = 100;
 const MAX_PAIR_UPDATES: u64 = 20_000_000;
 /// How many outcomes backward induction may look at, and then the changes of single actions: less than a second each.
 const MAX_UPDATES: u64 = 50_000_000;
-/// What two equal returns may differ by, relative to the sum of the magnitudes of their rewards: they are sums in another
-/// order.
+/// A change of a single action must improve the return by more than this fraction of it.
 const TOLERANCE: f64 = 1e-12;
 
 /// A policy that does not depend on the number of steps taken, and its return under the time limit.
@@ -79,13 +78,14 @@ pub fn stationary_policy(
 struct Candidate {
     policy: Vec<usize>,
     expected_return: f64,
-    /// What an equal return may differ by.
+    /// The rounding error that the return may have.
     error: f64,
 }
 
 impl Candidate {
     fn reaches(&self, optimal: f64) -> bool {
-        (optimal - self.expected_return).abs() <= self.error.max(TOLERANCE * optimal.abs())
+        // The optimal return has at most about the same error.
+        (optimal - self.expected_return).abs() <= (2.0 * self.error).max(TOLERANCE * optimal.abs())
     }
 }
 
@@ -103,9 +103,9 @@ impl Search<'_> {
         policy_return(&self.mdp.table, &self.by_state, self.steps, self.stop)
     }
 
-    /// What a return that equals that of the policy evaluated last may differ by.
+    /// A bound of the rounding error of the return that was evaluated last.
     fn error(&self) -> Result<f64, PlanningError> {
-        Ok(TOLERANCE * return_size(&self.mdp.table, &self.by_state, self.steps, self.stop)?)
+        return_error(&self.mdp.table, &self.by_state, self.steps, self.stop)
     }
 
     /// Takes every change of a single action that helps, in turn, until none does or `most` were tried.
@@ -124,7 +124,7 @@ impl Search<'_> {
                 most -= 1;
                 best.policy[row] = action;
                 let changed = self.expected_return(&best.policy)?;
-                if changed > best.expected_return + best.error {
+                if changed > best.expected_return + TOLERANCE * best.expected_return.abs() {
                     (best.expected_return, best.error, unchanged) = (changed, self.error()?, 0);
                 } else {
                     best.policy[row] = kept;
