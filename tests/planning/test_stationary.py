@@ -50,6 +50,25 @@ def test_it_is_proven_where_its_rewards_cancel() -> None:
     assert (known.proven, known.label) == (True, "best")
 
 
+def test_it_is_not_proven_where_large_rewards_hide_that_another_policy_returns_more() -> None:
+    size, steps = 1e6, 100_000
+    first = {action: [(1.0, 1, size, False)] for action in range(2)}
+    second = {0: [(1.0, 0, -size + 0.04 / (steps / 2), False)], 1: [(1.0, 1, -size + 0.04, True)]}
+    best = qtab.optimum(qtab.TabularEnv({0: first, 1: second}, [1.0, 0.0]), max_episode_steps=steps)
+    known = best.stationary
+    assert known is not None
+    assert best.expected_return == pytest.approx(0.08, abs=1e-5)
+    assert known.expected_return < best.expected_return - 0.03
+    assert not known.proven
+
+
+def test_it_is_known_where_the_sum_of_the_magnitudes_of_its_rewards_overflows() -> None:
+    rewards = (9e307, -9e307, 1.0)
+    table = {state: {0: [(1.0, min(state + 1, 2), reward, state == 2)]} for state, reward in enumerate(rewards)}
+    best = qtab.optimum(qtab.TabularEnv(table, [1.0, 0.0, 0.0]), max_episode_steps=3)
+    assert "stationary" in str(best) or best.stationary is not None
+
+
 def test_it_is_not_known_for_a_search_or_a_large_table() -> None:
     walk = {state: {0: [(1.0, state - 1, -1.0, state == 1)]} for state in range(1, 2100)}
     large = qtab.TabularEnv({0: {0: [(1.0, 0, 0.0, True)]}, **walk}, [0.0] * 2099 + [1.0])

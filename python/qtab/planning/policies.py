@@ -97,7 +97,7 @@ def of_array(name: str, policy: ArrayLike, cells: Discretizer, actions: Actions)
 
 
 def _distributions(name: str, table: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Returns (rows, actions) probabilities, checked; exactly 1 for the actions of a deterministic policy.
+    """Returns (rows, actions) probabilities, checked.
 
     Raises:
         ValueError: if a row is not a distribution over the actions.
@@ -109,8 +109,13 @@ def _distributions(name: str, table: NDArray[np.float64]) -> NDArray[np.float64]
     wrong = np.flatnonzero(~(np.abs(sums - 1.0) <= SUM_TOLERANCE))
     if len(wrong):
         raise ValueError(f"{name} must sum to 1 in every state, got {sums[wrong[0]]:.6g} in row {wrong[0]}")
-    positive = table > 0.0
-    return positive.astype(np.float64) if (positive.sum(axis=1) == 1).all() else table
+    return table
+
+
+def as_followed(table: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Returns (rows, actions) probabilities as an agent follows them: exactly 1 if only one action is possible."""
+    possible = table > 0.0
+    return possible.astype(np.float64) if (possible.sum(axis=1) == 1).all() else table
 
 
 def _of_actions(name: str, chosen: NDArray[Any], actions: Actions) -> NDArray[np.float64]:

@@ -13,7 +13,14 @@ from qtab.discretizers import Discretizer
 from qtab.discretizers.box import BoxDiscretizer
 from qtab.envs.actions import Actions
 from qtab.planning.optimum import Optimum
-from qtab.planning.policies import GivenPolicy, answered, equal_probabilities, probabilities, refuse_time_aware
+from qtab.planning.policies import (
+    GivenPolicy,
+    answered,
+    as_followed,
+    equal_probabilities,
+    probabilities,
+    refuse_time_aware,
+)
 from qtab.results.action_values import read_by_policy
 from qtab.results.run import Run
 
@@ -139,7 +146,7 @@ def observation_policy(
             f"{name} must be a function, a run, an optimum or 'random' for tile coding, which has no cells, got "
             f"{shown(policy)}"
         )
-    return TablePolicy(probabilities(name, policy, None, cells, actions))
+    return TablePolicy(as_followed(probabilities(name, policy, None, cells, actions)))
 
 
 def _of_run(name: str, run: Run, cells: Discretizer, actions: Actions) -> GreedyPolicy:

@@ -15,7 +15,7 @@ from qtab._utils.memory import check_memory, memory_left, memory_limit
 from qtab._utils.progress import ProgressBar
 from qtab._utils.shown import counted, shown
 from qtab.discretizers import Discretizer
-from qtab.planning.policies import GivenPolicy, probabilities
+from qtab.planning.policies import GivenPolicy, as_followed, probabilities
 from qtab.prediction.estimates import ValueEstimates
 from qtab.prediction.features import Rows, feature_rows
 from qtab.prediction.learning_rates import AVERAGES_ONLY, rate_settings
@@ -59,8 +59,9 @@ def run_prediction(
         acting = evaluated if behavior is None else observation_policy("behavior", behavior, cells, actions)
         policies = ObservationPolicies(evaluated, acting)
     else:
-        target = probabilities("policy", policy, space, cells, actions)
-        followed = target if behavior is None else probabilities("behavior", behavior, space, cells, actions)
+        target = followed = as_followed(probabilities("policy", policy, space, cells, actions))
+        if behavior is not None:
+            followed = as_followed(probabilities("behavior", behavior, space, cells, actions))
         _check_covered(target, followed)
     rows, n_weights = _features(features, cells, settings)
     n_active = cells.n_active if rows is None else rows.shape[1]
