@@ -48,16 +48,16 @@ def test_an_endless_greedy_policy_is_refused_at_once() -> None:
     env = qtab.TabularEnv({0: {0: [(1.0, 0, -1.0, False)], 1: [(1.0, 0, -9.0, True)]}}, [1.0])
     planning = qtab.planning.ExpectedUpdates(env)
     planning.advance(2)
-    with pytest.raises(ValueError, match="policy must end every episode here: from state 0 no episode ends"):
+    with pytest.raises(ValueError, match="policy must end every episode: from state 0 no episode ends"):
         planning.greedy_return()
 
 
 def test_values_that_do_not_settle_name_what_would_help() -> None:
     """Rounded probabilities add up to more than the discount takes away."""
     env = qtab.TabularEnv({0: {0: [(0.5 + 1e-10, 0, 1.0, False), (0.5, 0, 1.0, False)]}}, [1.0])
-    with pytest.raises(ValueError, match=r"^discount must be smaller here, got 0\.99999999999: the values still"):
+    with pytest.raises(ValueError, match=r"^discount must be smaller, got 0\.99999999999: the values still"):
         qtab.policy_values(env, [0], discount=0.99999999999)
-    with pytest.raises(ValueError, match=r"^policy must end every episode here: .*; with a discount below 1 it still"):
+    with pytest.raises(ValueError, match=r"^policy must end every episode: .*; with a discount below 1 it has"):
         qtab.policy_values(env, [0])
 
 
@@ -87,7 +87,7 @@ def _expected_updates(count: int) -> float:
 )
 def test_values_beyond_the_range_of_float64_are_errors(compute: Callable[[], Any]) -> None:
     with pytest.raises(
-        OverflowError, match=r"rewards must be smaller here: the return from state [01] exceeds the range"
+        OverflowError, match=r"rewards must be smaller: the return from state [01] exceeds the range"
     ):
         compute()
 

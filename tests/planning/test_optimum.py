@@ -164,7 +164,7 @@ MINT = qtab.TabularEnv({0: {0: [(1.0, 0, 1.0, False)], 1: [(1.0, 0, 0.0, True)]}
 @pytest.mark.parametrize("method", METHODS[:2])
 def test_unbounded_returns_need_a_discount(method):
     with pytest.raises(
-        ValueError, match=r"^discount must be smaller here, got 1: .*'finite_horizon' fits any discount$"
+        ValueError, match=r"^discount must be smaller, got 1: .*'finite_horizon' works with any discount$"
     ):
         qtab.optimum(MINT, method=method)
     assert qtab.optimum(MINT, method=method, discount=0.5).values[0] == 2.0

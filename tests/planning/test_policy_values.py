@@ -87,7 +87,7 @@ def test_what_is_no_policy_is_refused_by_name(policy: Any, error: type[Exception
 
 def test_an_endless_policy_needs_a_discount() -> None:
     up = np.zeros(48, np.int64)
-    with pytest.raises(ValueError, match="policy must end every episode here: from state 0 no episode ends"):
+    with pytest.raises(ValueError, match="policy must end every episode: from state 0 no episode ends"):
         qtab.policy_values("CliffWalking-v1", up)
     assert qtab.policy_values("CliffWalking-v1", up, 0.5).values[0] == pytest.approx(-2.0)
 

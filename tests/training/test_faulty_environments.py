@@ -101,7 +101,7 @@ def test_a_reward_that_is_not_finite_is_refused(dtype, reward):
     assert np.isfinite(run_of(caught.value).tables).all()
 
 
-REWARD = r"^step of <ScriptedEnv instance> must return a finite number as the reward, as Gymnasium's API says, got "
+REWARD = r"^step of <ScriptedEnv instance> must return a finite number as the reward, as Gymnasium's API requires, got "
 
 
 @pytest.mark.parametrize("reward", [None, "1", b"1", 1j, [1.0], np.ones(2)])

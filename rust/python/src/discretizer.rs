@@ -1,4 +1,4 @@
-//! `Discretizer`: the active rows of observations, one or many at once, by the features that training uses.
+//! `Discretizer`: the active rows of one or many observations, computed with the features that training uses.
 
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
@@ -12,11 +12,11 @@ use crate::convert::{DiscreteReader, FromNumber, floats, integers};
 use crate::error::allocation;
 use crate::spec::{DiscretizerSpec, Fields, FloatType};
 
-/// Maps observations to the active rows of a table, as a `DiscretizerSpec` describes.
+/// Maps observations to the active rows of a table, as its `DiscretizerSpec` describes.
 #[pyclass(frozen, name = "Discretizer", module = "qtab._core")]
 pub(crate) struct PyDiscretizer {
     features: AnyFeatures,
-    /// How many components an observation has; None for a single integer.
+    /// The number of components of an observation; None for a single integer.
     dimensions: Option<usize>,
     n_active: usize,
 }
@@ -48,7 +48,7 @@ impl PyDiscretizer {
         Ok(Self { features, dimensions: Some(dimensions), n_active })
     }
 
-    /// How many rows the table has.
+    /// The number of rows of the table.
     #[getter]
     fn n_rows(&self) -> usize {
         match &self.features {
@@ -58,14 +58,14 @@ impl PyDiscretizer {
         }
     }
 
-    /// How many rows are active at a time.
+    /// The number of rows that are active at a time.
     #[getter]
     fn n_active(&self) -> usize {
         self.n_active
     }
 
-    /// The active rows of one observation, an int64 array of shape `(n_active,)`; of a batch of `n` observations, one of
-    /// shape `(n, n_active)`.
+    /// The active rows as int64: shape `(n_active,)` for one observation, `(n, n_active)` for a batch of `n`
+    /// observations.
     fn active_rows<'py>(&self, observations: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<i64>>> {
         let py = observations.py();
         let array = py.import(intern!(py, "numpy"))?.call_method1(intern!(py, "asarray"), (observations,))?;
@@ -85,7 +85,7 @@ impl PyDiscretizer {
 }
 
 impl PyDiscretizer {
-    /// How many observations an array holds; None for one observation that is not in a batch.
+    /// The number of observations in an array; None for a single observation that is not in a batch.
     fn batch_size(&self, array: &Bound<'_, PyUntypedArray>) -> PyResult<Option<usize>> {
         let (shape, components) = (array.shape(), self.dimensions.as_slice());
         if shape == components {
@@ -127,7 +127,7 @@ impl PyDiscretizer {
         })
     }
 
-    /// The rows of each observation in turn.
+    /// The active rows of all observations, one observation after another.
     fn rows<T>(
         &self,
         values: &[T],

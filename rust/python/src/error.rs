@@ -1,4 +1,4 @@
-//! The errors of the binding: what can end a run early, and how an argument is refused.
+//! The errors of the bindings: early ends of runs, and invalid arguments.
 
 use std::fmt::Display;
 
@@ -15,7 +15,7 @@ pub(crate) enum RunError {
     OutOfBounds(OutOfBounds),
     /// An exception that Python code raised, such as a Python environment's.
     Python(PyErr),
-    /// What the run stores does not fit into memory, or its making was stopped.
+    /// The run's data does not fit into memory, or its construction was stopped.
     Allocation(AllocationError),
     /// The action values overflowed in this episode, counted from 0.
     Diverged { episode: usize },
@@ -62,8 +62,8 @@ impl From<RunError> for PyErr {
             RunError::Allocation(AllocationError::OutOfMemory { bytes }) => out_of_memory(bytes),
             RunError::Allocation(AllocationError::LimitReached { limit, growing }) => limit_reached(limit, growing),
             RunError::Allocation(AllocationError::TooManyEntries) => PyMemoryError::new_err(
-                "this algorithm can number fewer than 2**32 state-action pairs and fewer than 2**31 outcomes of its model, \
-                 and this run needs more; use a table with fewer cells, or train for fewer episodes",
+                "this algorithm supports fewer than 2**32 state-action pairs and fewer than 2**31 outcomes of its \
+                 model, but this run needs more; use a table with fewer cells, or train for fewer episodes",
             ),
             RunError::Diverged { episode } => PyOverflowError::new_err(format!(
                 "the action values overflowed in episode {episode} (counted from 0): the updates grow instead of \
@@ -77,13 +77,13 @@ impl From<RunError> for PyErr {
     }
 }
 
-/// A `MemoryError`: so many bytes more could not be had.
+/// A `MemoryError`: this many more bytes could not be allocated.
 pub(crate) fn out_of_memory(bytes: usize) -> PyErr {
     let size = readable(bytes as u64);
-    PyMemoryError::new_err(format!("out of memory: {size} more are needed, and there is no room for them"))
+    PyMemoryError::new_err(format!("out of memory: another {size} could not be allocated"))
 }
 
-/// A `MemoryError`: what grows during a run would take more than the user permits.
+/// A `MemoryError`: the data that grows during a run would exceed the user's limit.
 fn limit_reached(limit: u64, growing: Growing) -> PyErr {
     let (what, instead) = match growing {
         Growing::Recordings => ("the recordings", "record fewer episodes with record="),
@@ -107,12 +107,12 @@ fn readable(bytes: u64) -> String {
     }
 }
 
-/// A failed allocation as a Python exception.
+/// Converts a failed allocation to a Python exception.
 pub(crate) fn allocation(error: AllocationError) -> PyErr {
     RunError::from(error).into()
 }
 
-/// A checkpoint that cannot be written, or read: `owner` is what it belongs to.
+/// The error for a checkpoint that cannot be written or read; `owner` names the object that it belongs to.
 pub(crate) fn unusable_checkpoint(error: CheckpointError, owner: &str) -> PyErr {
     match error {
         CheckpointError::OutOfMemory => PyMemoryError::new_err(format!("the checkpoint cannot be made: {error}")),
@@ -120,7 +120,7 @@ pub(crate) fn unusable_checkpoint(error: CheckpointError, owner: &str) -> PyErr 
     }
 }
 
-/// A `ValueError` that names the argument, what would fit, and what was given.
+/// A `ValueError` that names the argument, the expected value and the given one.
 pub(crate) fn invalid(name: &str, expected: impl Display, got: impl Display) -> PyErr {
     PyValueError::new_err(format!("{name} must be {expected}, got {got}"))
 }

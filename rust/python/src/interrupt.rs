@@ -1,4 +1,4 @@
-//! Long calls release the interpreter's lock and listen for Ctrl-C.
+//! Long calls release the GIL and react to Ctrl-C.
 
 use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -9,17 +9,18 @@ use std::time::{Duration, Instant};
 use pyo3::prelude::*;
 use qtab_core::StopFlag;
 
-/// How often signals are checked. Ctrl-C takes effect within this time plus the time between two looks at the flag.
+/// The interval between checks for signals. Ctrl-C takes effect within this time plus the time between two checks of
+/// the flag.
 const POLL: Duration = Duration::from_millis(10);
 
-/// How long [`run_resumable`] works on the calling thread. While other Python threads are busy, each return to the
-/// interpreter takes milliseconds, so long work does not stay there.
+/// The time that [`run_resumable`] works on the calling thread. While other Python threads are busy, each return to the
+/// interpreter takes milliseconds, so long work moves to another thread.
 const ON_THIS_THREAD: Duration = Duration::from_millis(100);
 
-/// Calls `work` until it is finished, as it says by its result. It must go on where it stopped, ask often whether to pause,
-/// and return soon when it is told so.
+/// Calls `work` until its result reports that it is finished. `work` must resume where it stopped, ask often whether to
+/// pause, and return soon when told to.
 ///
-/// Short work is done on this thread: it is over before another one has started, whose core's caches are empty, too.
+/// Short work runs on this thread: it finishes before another thread, with empty caches, would have started.
 pub(crate) fn run_resumable<E: Send>(
     py: Python<'_>,
     mut work: impl FnMut(&dyn Fn() -> bool) -> Result<bool, E> + Send,
@@ -35,8 +36,8 @@ pub(crate) fn run_resumable<E: Send>(
     run_interruptible(py, |stop| work(&|| stop.is_set()).map(drop))
 }
 
-/// Does the same work on so many threads, of which this one is the first. Threads may run out: those that there are then do
-/// all of it.
+/// Does the same work on this many threads, including the calling one. If no more threads can be started, the existing
+/// ones do all of it.
 pub(crate) fn on_threads(threads: usize, work: impl Fn() + Sync) {
     thread::scope(|scope| {
         for _ in 1..threads {
@@ -48,24 +49,25 @@ pub(crate) fn on_threads(threads: usize, work: impl Fn() + Sync) {
     });
 }
 
-/// Runs `work` on a thread of its own, while this thread handles signals and other Python threads run. `work` must look
-/// at the flag at least every few milliseconds and return early when it is set; the signal's exception is then raised.
+/// Runs `work` on a new thread, while this thread handles signals and other Python threads run. `work` must check the
+/// flag at least every few milliseconds and return early when it is set; the signal's exception is then raised.
 ///
-/// Where no thread can be started, this one does the work, and the flag asks for signals.
+/// If no thread can be started, `work` runs on this thread, and the flag checks for signals.
 pub(crate) fn run_interruptible<T: Send>(py: Python<'_>, work: impl FnOnce(&StopFlag<'_>) -> T + Send) -> PyResult<T> {
     run_polled(py, |_| Ok(()), work)
 }
 
-/// The same, and whenever signals are handled `poll` is called as well; an error that it returns stops the work and is raised.
+/// Like [`run_interruptible`], but also calls `poll` whenever signals are handled; an error from `poll` stops the work
+/// and is raised.
 ///
-/// Where no thread can be started, it is not called.
+/// If no thread can be started, `poll` is not called.
 pub(crate) fn run_polled<T: Send>(
     py: Python<'_>,
     mut poll: impl FnMut(Python<'_>) -> PyResult<()>,
     work: impl FnOnce(&StopFlag<'_>) -> T + Send,
 ) -> PyResult<T> {
     let (stop, done, caller) = (StopFlag::new(), AtomicBool::new(false), thread::current());
-    // Where the thread can take it, and this one can take it back.
+    // In a mutex, so that the thread can take it, and this thread can take it back.
     let work = Mutex::new(Some(work));
     let take = || work.lock().unwrap_or_else(PoisonError::into_inner).take();
     let finished = thread::scope(|scope| {
@@ -94,13 +96,13 @@ pub(crate) fn run_polled<T: Send>(
     }
 }
 
-/// Runs `work` on this thread. The flag asks for signals whenever `work` looks at it.
+/// Runs `work` on this thread. Whenever `work` checks the flag, the flag checks for signals.
 pub(crate) fn run_polling<T>(work: impl FnOnce(&StopFlag<'_>) -> T) -> PyResult<T> {
     run_polling_when(|| true, work)
 }
 
-/// Runs `work` on this thread, while other Python threads run. The flag asks for signals at most once per [`POLL`], since it
-/// must wait for those threads each time.
+/// Runs `work` on this thread, while other Python threads run. The flag checks for signals at most once per [`POLL`],
+/// since each check must wait for those threads.
 pub(crate) fn run_detached<T: Send>(py: Python<'_>, work: impl FnOnce(&StopFlag<'_>) -> T + Send) -> PyResult<T> {
     let asked = Mutex::new(Instant::now());
     let is_due = || {
@@ -114,7 +116,7 @@ pub(crate) fn run_detached<T: Send>(py: Python<'_>, work: impl FnOnce(&StopFlag<
     py.detach(|| run_polling_when(is_due, work))
 }
 
-/// Runs `work` on this thread. When `work` looks at the flag and `is_due` returns true, the flag asks for signals.
+/// Runs `work` on this thread. When `work` checks the flag and `is_due` returns true, the flag checks for signals.
 fn run_polling_when<T>(is_due: impl Fn() -> bool + Sync, work: impl FnOnce(&StopFlag<'_>) -> T) -> PyResult<T> {
     let raised = Mutex::new(None);
     let poll = || {
@@ -139,7 +141,7 @@ fn run_polling_when<T>(is_due: impl Fn() -> bool + Sync, work: impl FnOnce(&Stop
     }
 }
 
-/// Wakes the calling thread when it is dropped, also when `work` panics.
+/// Wakes the calling thread when dropped, even if `work` panics.
 struct WakeOnDrop<'a> {
     done: &'a AtomicBool,
     caller: thread::Thread,

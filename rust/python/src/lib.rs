@@ -1,4 +1,4 @@
-//! `qtab._core`: the extension module. It converts, dispatches and returns; what it computes is in `qtab-core`.
+//! `qtab._core`: the extension module. It converts, dispatches and returns; `qtab-core` does the computing.
 
 #![allow(clippy::needless_pass_by_value, reason = "pyo3 passes arguments by value")]
 
@@ -16,7 +16,8 @@ mod vector;
 
 use pyo3::prelude::*;
 
-// The module needs no interpreter's lock: docs/explanation/free_threading.md lists what threads share, and what guards it.
+// The module does not need the GIL: docs/explanation/free_threading.md lists the data that threads share, and its
+// guards.
 #[pymodule(gil_used = false)]
 mod _core {
     use pyo3::exceptions::PyImportError;
@@ -41,11 +42,11 @@ mod _core {
     #[pymodule_export]
     use super::training::{PyTrainer, estimate_values, run_testbeds, train_many};
 
-    /// The version of the package, which Python's metadata takes ten times as long to tell.
+    /// The version of the package. Reading it from Python's metadata takes ten times as long.
     #[pymodule_export]
     const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-    /// How the extension was compiled: only "release" says anything about speed.
+    /// The build profile of the extension: only "release" is meaningful for measuring speed.
     #[pymodule_export]
     const BUILD_PROFILE: &str = if cfg!(debug_assertions) { "debug" } else { "release" };
 

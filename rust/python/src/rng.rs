@@ -1,4 +1,4 @@
-//! Random generators: the environment's and the agent's, seeded as `NumPy` seeds them.
+//! Random generators: the environment's and the agent's, seeded like `NumPy`'s.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -9,7 +9,7 @@ use qtab_core::random::{AgentRng, Pcg64, Rng, SeedSequence};
 use crate::convert::Seed;
 use crate::error::invalid;
 
-/// Which bit generator the agent draws from.
+/// The agent's bit generator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum BitGenerator {
     Pcg64,
@@ -17,7 +17,7 @@ pub(crate) enum BitGenerator {
 }
 
 impl BitGenerator {
-    /// By `NumPy`'s names.
+    /// The bit generators by their `NumPy` names.
     pub(crate) const WORDS: &'static [(&'static str, Self)] = &[("PCG64", Self::Pcg64), ("MT19937", Self::Mt19937)];
 
     /// The agent's generator.
@@ -40,7 +40,7 @@ pub(crate) fn environment_rng(seed: &Seed) -> Pcg64 {
     Pcg64::new(&SeedSequence::new(seed.words()))
 }
 
-/// The agent's generator, for comparisons with `NumPy`'s.
+/// The agent's generator, for comparison with `NumPy`'s.
 #[pyclass(frozen, name = "AgentRng", module = "qtab._core")]
 pub(crate) struct PyAgentRng(Mutex<AgentRng>);
 
@@ -65,7 +65,7 @@ impl PyAgentRng {
         self.with(Rng::random)
     }
 
-    /// An integer in 0 to `below` - 1.
+    /// An integer from 0 to `below` - 1.
     fn integers(&self, below: u32) -> u32 {
         self.with(|rng| rng.integers(below))
     }

@@ -9,7 +9,7 @@ use qtab_core::numeric::Scalar;
 /// `math.pow` raises where the square of a larger force would overflow.
 pub(crate) const LARGEST_FORCE: f64 = 1e150;
 
-/// A discrete action: an integer of Python's or `NumPy`'s from 0 to `count` - 1; None for anything else.
+/// A discrete action: a Python or `NumPy` integer from 0 to `count` - 1; None for anything else.
 pub(crate) fn discrete_action(action: &Bound<'_, PyAny>, count: usize) -> Option<usize> {
     static INTEGER: PyOnceLock<Py<PyType>> = PyOnceLock::new();
     let py = action.py();
@@ -19,7 +19,7 @@ pub(crate) fn discrete_action(action: &Bound<'_, PyAny>, count: usize) -> Option
     action.extract::<usize>().ok().filter(|&action| action < count)
 }
 
-/// The first number of a continuous action, in the dtype of its array; None where it is too large or no float array.
+/// The first number of a continuous action, in the dtype of its array; None if it is too large or not in a float array.
 pub(crate) fn box_action(action: &Bound<'_, PyAny>) -> Option<Scalar> {
     first_item(action).filter(|&force| f64::from(force).abs() <= LARGEST_FORCE)
 }

@@ -1,4 +1,4 @@
-//! Arrays of any numeric dtype, converted as `astype` converts them.
+//! Arrays of any numeric dtype, converted as `NumPy`'s `astype` does.
 
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ use qtab_core::numeric::Float;
 
 use crate::error::allocation;
 
-/// A dtype of a Box, to which any number converts as `astype` converts it.
+/// A dtype of a Box, to which any number converts as with `astype`.
 pub(crate) trait FromNumber: Float + numpy::Element {
     fn from_f64(number: f64) -> Self;
     fn from_i64(number: i64) -> Self;
@@ -50,7 +50,7 @@ impl FromNumber for f64 {
     }
 }
 
-/// The numbers of an array in C order. `as_slice` gives them in the order of the memory, also where that is Fortran's.
+/// The numbers of an array in C order. `as_slice` would return them in memory order, which may be Fortran's.
 pub(crate) fn in_c_order<T: numpy::Element + Copy, D: Dimension>(
     array: &PyReadonlyArray<'_, T, D>,
 ) -> PyResult<Arc<[T]>> {
@@ -67,11 +67,11 @@ pub(crate) fn small_array<'py, T: numpy::Element + Copy, const N: usize>(
     PyArray1::from_slice(py, values)
 }
 
-/// Up to this many bytes `NumPy` allocates the array, which is several times faster. That panics if memory runs out, but then
-/// the interpreter could not continue either.
+/// Up to this many bytes, `NumPy` allocates the array, which is several times faster. It panics if memory runs out, but
+/// then the interpreter could not continue either.
 const SMALL: usize = 1 << 14;
 
-/// A new array that is a copy of these values. `PyArray1::from_slice` would panic where memory runs out.
+/// A new array with a copy of these values. `PyArray1::from_slice` would panic if memory runs out.
 #[inline]
 #[expect(clippy::disallowed_methods, reason = "a small array")]
 pub(crate) fn array_from<'py, T: numpy::Element + Copy>(
@@ -84,7 +84,7 @@ pub(crate) fn array_from<'py, T: numpy::Element + Copy>(
     array_of(py, values.iter().copied())
 }
 
-/// A new array of shape `(rows.len(), N)` that is a copy of these rows.
+/// A new array of shape `(rows.len(), N)` with a copy of these rows.
 #[inline]
 #[expect(clippy::disallowed_methods, reason = "a small array")]
 pub(crate) fn rows_array<'py, T: numpy::Element + Copy, const N: usize>(
@@ -97,7 +97,7 @@ pub(crate) fn rows_array<'py, T: numpy::Element + Copy, const N: usize>(
     array_of(py, rows.as_flattened().iter().copied())?.reshape([rows.len(), N])
 }
 
-/// A new array of these values. `PyArray1::from_iter` would panic where memory runs out.
+/// A new array of these values. `PyArray1::from_iter` would panic if memory runs out.
 pub(crate) fn array_of<T: numpy::Element + Copy>(
     py: Python<'_>,
     values: impl ExactSizeIterator<Item = T>,
@@ -124,7 +124,7 @@ pub(crate) fn floats<T: FromNumber>(array: &Bound<'_, PyUntypedArray>) -> PyResu
 pub(crate) fn integers(array: &Bound<'_, PyUntypedArray>) -> PyResult<Vec<i64>> {
     match array.dtype().kind() {
         b'i' | b'b' => converted(array, "int64", |number: i64| number),
-        // No space has integers beyond i64, and none contains its largest.
+        // No space has integers beyond i64, and no space contains the largest i64.
         b'u' => converted(array, "uint64", |number: u64| i64::try_from(number).unwrap_or(i64::MAX)),
         _ => Err(PyTypeError::new_err(format!("observation must hold integers, got {}", array.repr()?))),
     }

@@ -1,4 +1,4 @@
-//! From Python's values to Rust's.
+//! Conversions from Python values to Rust values.
 
 mod actions;
 mod arrays;

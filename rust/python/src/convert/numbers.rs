@@ -1,4 +1,4 @@
-//! Numbers of Python's and `NumPy`'s; None for those with which Python would compute something else.
+//! Conversions of Python and `NumPy` numbers; None for numbers with which Python would compute a different result.
 
 use pyo3::prelude::*;
 use pyo3::types::{PyFloat, PyInt};
@@ -6,12 +6,12 @@ use qtab_core::numeric::Scalar;
 
 use super::small_array;
 
-/// `NumPy` warns where a constant is too large for f32, Python raises where its square is too large for f64.
+/// `NumPy` warns about constants too large for f32, and Python raises if the square is too large for f64.
 const LARGEST_FLOAT: f64 = 1e30;
-/// Python computes exactly with integers of any size; f64 does up to the products of such integers.
+/// Python computes exactly with integers of any size; f64 does so only up to the products of integers of this size.
 const LARGEST_INTEGER: f64 = 1e6;
 
-/// A constant of an environment: a plain Python number, since `NumPy`'s numbers promote differently.
+/// A constant of an environment. It must be a plain Python number, since `NumPy` numbers promote differently.
 pub(crate) fn constant(value: &Bound<'_, PyAny>) -> Option<f64> {
     if value.is_exact_instance_of::<PyFloat>() {
         let number: f64 = value.extract().ok()?;

@@ -1,4 +1,4 @@
-//! From an observation of a Python environment to the active rows of the table.
+//! Conversion of a Python environment's observations to the active rows of the table.
 
 use std::marker::PhantomData;
 
@@ -12,7 +12,7 @@ use qtab_core::numeric::Float;
 
 use crate::error::RunError;
 
-/// Observations of at most so many components are read without an allocation.
+/// Observations of at most this many components are read without an allocation.
 const FEW_COMPONENTS: usize = 32;
 
 /// Reads the observations of one observation space.
@@ -55,7 +55,7 @@ impl<T: Float + Default + numpy::Element, F: Features<[T]>> ObservationReader fo
         let array = if let Ok(array) = observation.cast::<PyArray1<T>>() {
             array
         } else {
-            // Of another dtype than the space's: convert it, as the space declares what is meant.
+            // The dtype differs from the space's: convert to the dtype that the space declares.
             let arguments = (observation, numpy::dtype::<T>(py));
             let array = py.import(intern!(py, "numpy"))?.call_method1(intern!(py, "asarray"), arguments)?;
             converted = array.cast_into::<PyArray1<T>>().map_err(|error| self.wrong_shape(&error.into_inner()))?;
@@ -64,7 +64,8 @@ impl<T: Float + Default + numpy::Element, F: Features<[T]>> ObservationReader fo
         if array.len()? != self.dimensions {
             return Err(self.wrong_shape(array).into());
         }
-        // Item by item, without NumPy's record of borrowed arrays, which takes longer than the rest of a step.
+        // Item by item, without the numpy crate's record of borrowed arrays, which takes longer than the rest of a
+        // step.
         let item = |index| array.get_owned(index).unwrap_or_default();
         let mut few = [T::default(); FEW_COMPONENTS];
         if let Some(values) = few.get_mut(..self.dimensions) {
@@ -75,12 +76,12 @@ impl<T: Float + Default + numpy::Element, F: Features<[T]>> ObservationReader fo
     }
 }
 
-/// Reads integers, each combination of which has a row: the observations of a Discrete space, or of several together.
+/// Reads observations of a Discrete space, or of several together: each combination of integers has its own row.
 #[derive(Clone, Debug)]
 pub(crate) struct DiscreteReader {
-    /// The first integer of each component, and how many integers it takes.
+    /// The first integer of each component, and the number of integers.
     axes: Vec<(i64, u32)>,
-    /// Whether an observation is one integer, not a sequence of integers.
+    /// Whether an observation is a single integer, not a sequence of integers.
     scalar: bool,
 }
 
@@ -105,7 +106,7 @@ impl DiscreteReader {
         self.scalar
     }
 
-    /// The row of an observation that has as many components as the space.
+    /// The row of an observation with as many components as the space.
     pub(crate) fn row(&self, observation: &[i64]) -> Result<u32, OutOfBounds> {
         observation.iter().enumerate().try_fold(0, |row, (axis, &number)| self.extend(row, axis, number))
     }

@@ -8,13 +8,13 @@ use qtab_core::memory::with_capacity;
 
 use crate::error::allocation;
 
-/// How many seeds are read between two checks for signals.
+/// The number of seeds that are read between two checks for signals.
 const SEEDS_BETWEEN_CHECKS: usize = 1 << 16;
 
 /// A non-negative integer as 32-bit words, least significant first; zero is one word.
 #[derive(Clone, Debug)]
 pub(crate) enum Seed {
-    /// Up to 64 bits, without an allocation, as there may be many millions: the words, and how many there are.
+    /// Up to 64 bits: the words, and their number. It needs no allocation, as there may be millions of seeds.
     Small([u32; 2], u8),
     Large(Vec<u32>),
 }

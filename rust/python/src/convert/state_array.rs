@@ -23,7 +23,7 @@ enum Dtype {
 }
 
 impl StateArray {
-    /// The f64 state that a step in Rust left, followed by zeros.
+    /// An f64 state left by a step in Rust, padded with zeros.
     pub(crate) fn new(numbers: [f64; 4]) -> Self {
         Self { numbers, dtype: Dtype::F64 }
     }
@@ -51,7 +51,7 @@ impl StateArray {
         numbers.iter().all(|number| number.is_finite()).then_some(Self { numbers, dtype })
     }
 
-    /// The numbers, where Python would compute with them in f64.
+    /// The numbers, if Python would compute with them in f64.
     pub(crate) fn doubles<const N: usize>(&self) -> Option<[f64; N]> {
         (self.dtype != Dtype::F32).then(|| self.numbers())
     }

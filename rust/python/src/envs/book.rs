@@ -57,7 +57,7 @@ impl NativeEnv for KArmedBanditEnv {
     }
 }
 
-/// `qtab/MaximizationBias-v0`, the example of maximisation bias.
+/// `qtab/MaximizationBias-v0`, the example of maximization bias.
 pub(super) struct MaximizationBiasEnv(MaximizationBias);
 
 impl MaximizationBiasEnv {

@@ -1,4 +1,4 @@
-//! What the Gymnasium-facing classes share: their generator, and Gymnasium's errors.
+//! Helpers shared by the Gymnasium-facing classes: access to their generator, and Gymnasium's errors.
 
 use pyo3::exceptions::PyAttributeError;
 use pyo3::intern;
@@ -11,14 +11,15 @@ pub(super) fn generator<'py>(env: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyA
     env.getattr(intern!(env.py(), "np_random"))
 }
 
-/// Whether a generator is exactly `numpy.random.Generator`, so that one call for many numbers draws what many calls draw.
+/// Whether a generator is exactly `numpy.random.Generator`, so that one call for many numbers draws the same as many
+/// calls.
 pub(super) fn is_numpy_generator(generator: &Bound<'_, PyAny>) -> bool {
     static GENERATOR: PyOnceLock<Py<PyType>> = PyOnceLock::new();
     let class = GENERATOR.import(generator.py(), "numpy.random", "Generator");
     class.is_ok_and(|class| generator.is_exact_instance(class))
 }
 
-/// An attribute that the first reset sets. It is Gymnasium's `ResetNeeded` where it is missing.
+/// An attribute that the first reset sets. Raises Gymnasium's `ResetNeeded` if it is missing.
 pub(super) fn attribute_after_reset<'py>(
     env: &Bound<'py, PyAny>,
     name: &Bound<'py, PyString>,
@@ -42,7 +43,7 @@ pub(super) fn reset_needed(py: Python<'_>, message: impl Into<String>) -> PyErr 
     }
 }
 
-/// Renders a frame where `render_mode` is "human".
+/// Renders a frame if `render_mode` is "human".
 pub(super) fn render_if_human(env: &Bound<'_, PyAny>) -> PyResult<()> {
     let mode = env.getattr(intern!(env.py(), "render_mode"))?;
     if !mode.is_none() && mode.eq(intern!(env.py(), "human"))? {

@@ -1,7 +1,7 @@
-//! The environments that Rust steps, and the registry of them.
+//! The environments that Rust steps, and their registry.
 //!
-//! To add an environment, implement [`NativeEnv`] for it ([`classic_control::ClassicEnv`] brings an
-//! implementation for what has Gymnasium-style parameters), and add its line to the registry.
+//! To add an environment, implement [`NativeEnv`] for it ([`classic_control::ClassicEnv`] provides an implementation
+//! for environments with Gymnasium-style parameters), and add a line to the registry.
 
 mod book;
 mod classic_control;

@@ -16,7 +16,7 @@ pub(crate) trait NativeEnv: Send + Sync {
     /// Training runs as the spec describes them.
     fn runs(&self, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>>;
 
-    /// A vector environment; None where there is none.
+    /// A vector environment; None if Rust has none for this environment.
     fn vector_env(&self, _py: Python<'_>, _options: VectorOptions) -> PyResult<Option<Box<dyn DynVectorEnv>>> {
         Ok(None)
     }
@@ -26,7 +26,7 @@ pub(crate) trait NativeEnv: Send + Sync {
         Err(invalid("env", "a k-armed bandit", "another environment"))
     }
 
-    /// The Markov decision process; None where it is not known.
+    /// The Markov decision process; None if it is not known.
     fn mdp(&self) -> PyResult<Option<Mdp>> {
         Ok(None)
     }
@@ -38,8 +38,8 @@ pub(crate) struct PyNativeEnv(Arc<dyn NativeEnv>);
 
 #[pymethods]
 impl PyNativeEnv {
-    /// `name` is a name of the registry, `env` the unwrapped Gymnasium environment, whose attributes are read now.
-    /// `actions` are what a learner chooses from where the action space is continuous.
+    /// `name` is a name in the registry, and `env` the unwrapped Gymnasium environment, whose attributes are read now.
+    /// If the action space is continuous, the learner chooses from `actions`.
     #[new]
     #[pyo3(signature = (name, env, actions = Vec::new()))]
     fn new(name: &str, env: &Bound<'_, PyAny>, actions: Vec<f32>) -> PyResult<Self> {

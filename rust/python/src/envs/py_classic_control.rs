@@ -1,5 +1,5 @@
-//! `ClassicControl`: the base of the Gymnasium-facing classes of classic control. The step runs in Rust, everything else is
-//! Gymnasium's.
+//! `ClassicControl`: the base of the Gymnasium-facing classes of classic control. The step runs in Rust; everything
+//! else is Gymnasium's.
 
 use std::mem::replace;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -14,13 +14,13 @@ use super::gymnasium::{generator, is_numpy_generator, render_if_human};
 use super::registry::{Entry, classic_control, entry};
 use crate::convert::{StateArray, array_from};
 
-/// The names of all parameters of an environment, as Gymnasium spells its attributes.
+/// The names of an environment's parameters, as Gymnasium spells its attributes.
 #[pyfunction]
 pub(crate) fn parameter_names(name: &str) -> PyResult<Vec<&'static str>> {
     Ok(classic_control(name)?.parameter_names())
 }
 
-/// Whether an environment in Rust computes the numbers of Gymnasium's on this machine, its reset included.
+/// Whether an environment in Rust, its reset included, computes the same numbers as Gymnasium on this machine.
 #[pyfunction]
 pub(crate) fn matches_numpy(py: Python<'_>, name: &str) -> PyResult<bool> {
     match entry(name)? {
@@ -31,36 +31,36 @@ pub(crate) fn matches_numpy(py: Python<'_>, name: &str) -> PyResult<bool> {
 
 /// Holds an environment's state, and steps it.
 ///
-/// A Python class inherits from this class and from Gymnasium's, and names its `model`. The parameters stay where
-/// Gymnasium has them, in attributes of the instance or the class. They are read at the first step after a reset and after
-/// any assignment. What Rust does not compute with (a float32 state where Gymnasium keeps float64, a parameter of another
-/// width) steps in Python, in Gymnasium's own code, and so does every step that overflows.
+/// A Python class inherits from this class and from Gymnasium's, and names its `model`. The parameters stay in
+/// Gymnasium's attributes of the instance or the class. They are read at the first step after a reset and after any
+/// assignment. Steps that Rust does not support (with a float32 state where Gymnasium's is float64, or a parameter of
+/// another width) run in Gymnasium's own code, and so do steps that overflow.
 ///
-/// Several threads may use an environment at once, with or without the interpreter's lock: steps then overwrite each
-/// other's state, as in Gymnasium, but a thread that only reads changes nothing. Python is never called, and no object
-/// dropped, while the mutex is locked.
+/// Several threads may use an environment at once, with or without the GIL: steps then overwrite each other's state, as
+/// in Gymnasium, but a thread that only reads changes nothing. While the mutex is locked, Python is never called and no
+/// object is dropped.
 #[pyclass(subclass, frozen, name = "ClassicControl", module = "qtab._core")]
 pub(crate) struct PyClassicControl(Mutex<Contents>);
 
 struct Contents {
     env: Arc<dyn DynClassicEnv>,
     parameters: Parameters,
-    /// How often an attribute was assigned: what was read of the attributes before the last time is out of date.
+    /// The number of attribute assignments so far. Parameters read before the last one are out of date.
     assignments: u64,
     state: StoredState,
 }
 
-/// What is known of the attributes.
+/// The parameters as last read from the attributes.
 #[derive(Clone, Copy)]
 enum Parameters {
     /// Read before the last assignment, or never.
     Stale,
-    /// Rust has all of them.
+    /// Rust supports all of them.
     Loaded {
         /// Whether `render_mode` is "human".
         human: bool,
     },
-    /// Rust cannot take over all of them.
+    /// Rust does not support all of them.
     Unsupported,
 }
 
@@ -80,8 +80,8 @@ impl PyClassicControl {
         Ok(Self(Mutex::new(Contents { env, parameters, assignments: 0, state })))
     }
 
-    /// Draws the initial state from the environment's generator. Returns what `reset` returns; None, and nothing drawn,
-    /// where Gymnasium's own code must do it.
+    /// Draws the initial state from the environment's generator. Returns the result of `reset`; or None, drawing
+    /// nothing, if Gymnasium's own code must do it.
     fn native_reset<'py>(slf: &Bound<'py, Self>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let py = slf.py();
         let (generator, env) = (generator(slf)?, Arc::clone(&slf.get().lock().env));
@@ -90,7 +90,7 @@ impl PyClassicControl {
             return Ok(None);
         }
         let Some(result) = env.reset_python(&generator)? else { return Ok(None) };
-        // Around `__setattr__`, since no parameter changes.
+        // Bypasses `__setattr__`, since no parameter changes.
         let attributes = slf.getattr(intern!(py, "__dict__"))?.cast_into::<PyDict>()?;
         for name in layout.terminal_counter.iter().chain(&layout.last_action) {
             attributes.set_item(name, py.None())?;
@@ -101,7 +101,7 @@ impl PyClassicControl {
         Ok(Some((result.observation, PyDict::new(py)).into_pyobject(py)?.into_any()))
     }
 
-    /// One step, with the types that Gymnasium returns.
+    /// One step, with Gymnasium's return types.
     fn step<'py>(slf: &Bound<'py, Self>, action: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let py = slf.py();
         let Some((result, human)) = Self::native_step(slf, action)? else {
@@ -122,7 +122,7 @@ impl PyClassicControl {
         contents.assignments += 1;
     }
 
-    /// The state as Gymnasium keeps it.
+    /// The state, in Gymnasium's type.
     #[getter]
     fn state<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         let py = slf.py();
@@ -163,11 +163,11 @@ impl PyClassicControl {
 
     fn store(&self, state: StoredState) {
         let before = replace(&mut self.lock().state, state);
-        // An array of a subclass may run Python code when it is dropped.
+        // Dropping an array of a subclass may run Python code.
         drop(before);
     }
 
-    /// The step, and whether `render_mode` is "human"; None where Gymnasium's own code must take the step.
+    /// The step, and whether `render_mode` is "human"; None if Gymnasium's own code must take the step.
     fn native_step<'py>(
         slf: &Bound<'py, Self>,
         action: &Bound<'py, PyAny>,
@@ -195,8 +195,8 @@ impl PyClassicControl {
         Ok(env.step_python(slf, &state, action)?.map(|result| (result, human)))
     }
 
-    /// Reads the attributes. Returns the environment with them, and whether `render_mode` is "human"; None where Rust
-    /// cannot take over all of them.
+    /// Reads the attributes. Returns the environment with these parameters, and whether `render_mode` is "human"; None
+    /// if Rust does not support all of them.
     fn load_parameters(slf: &Bound<'_, Self>) -> PyResult<Option<(Arc<dyn DynClassicEnv>, bool)>> {
         let (env, assignments) = {
             let contents = slf.get().lock();
@@ -204,7 +204,7 @@ impl PyClassicControl {
         };
         let loaded = Self::supported(slf, &*env)?;
         let mut contents = slf.get().lock();
-        // Otherwise the attributes changed while they were read: the next step reads them again.
+        // Otherwise an attribute changed during the reading, and the next step reads them again.
         if contents.assignments == assignments {
             contents.parameters = Parameters::Unsupported;
             if let Some((env, human)) = &loaded {
@@ -215,7 +215,7 @@ impl PyClassicControl {
         Ok(loaded)
     }
 
-    /// The environment with its parameters, and whether `render_mode` is "human"; None where Rust cannot step it.
+    /// The environment with its parameters, and whether `render_mode` is "human"; None if Rust cannot step it.
     fn supported(slf: &Bound<'_, Self>, env: &dyn DynClassicEnv) -> PyResult<Option<(Arc<dyn DynClassicEnv>, bool)>> {
         let py = slf.py();
         let layout = env.layout();

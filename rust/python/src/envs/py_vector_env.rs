@@ -16,19 +16,19 @@ use crate::error::{allocation, invalid, unusable_checkpoint};
 use crate::vector::{DynVectorEnv, SubEnvRng, VectorOptions};
 
 const ENTROPY_BYTES: usize = 16;
-/// What a checkpoint belongs to, in messages.
+/// The owner of a checkpoint, as error messages name it.
 const OWNER: &str = "vector environment";
 
 const AUTORESET_MODES: [(&str, Autoreset); 3] =
     [("NextStep", Autoreset::NextStep), ("SameStep", Autoreset::SameStep), ("Disabled", Autoreset::Disabled)];
 
-/// The sub-environments in Rust; none before `start`, and after `release`, when Python steps them.
+/// The sub-environments in Rust; None before `start`, and after `release`, when Python steps them.
 #[pyclass(subclass, name = "VectorEnv", module = "qtab._core")]
 pub(crate) struct PyVectorEnv {
     envs: Option<Box<dyn DynVectorEnv>>,
     rngs: Vec<SubEnvRng>,
     seeds: Vec<Seed>,
-    /// Whether each sub-environment still waits for its first reset; empty once all were reset.
+    /// Whether each sub-environment still needs its first reset; empty once all have been reset.
     not_reset: Vec<bool>,
 }
 
@@ -40,8 +40,8 @@ impl PyVectorEnv {
         Self { envs: None, rngs: vec![], seeds: vec![], not_reset: vec![] }
     }
 
-    /// Makes `num_envs` sub-environments that equal `env`, with seeds from the operating system. Returns False, and does
-    /// nothing, where Rust has no vector environment of that kind.
+    /// Makes `num_envs` copies of `env`, with seeds from the operating system. Returns False, and does nothing, if Rust
+    /// has no vector environment of that kind.
     fn start(
         slf: &Bound<'_, Self>,
         env: &PyNativeEnv,
@@ -72,7 +72,7 @@ impl PyVectorEnv {
         Ok(borrow(slf)?.envs.is_some())
     }
 
-    /// One step of all sub-environments, with the types that Gymnasium returns.
+    /// One step of all sub-environments, with Gymnasium's return types.
     fn step<'py>(slf: &Bound<'py, Self>, actions: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let py = slf.py();
         let mut this = borrow_mut(slf)?;
@@ -87,8 +87,8 @@ impl PyVectorEnv {
         Ok(envs.step(actions, rngs)?.into_pyobject(py)?.into_any())
     }
 
-    /// Starts an episode in each sub-environment of `indices`, with a seed for each; None leaves its generator as it is.
-    /// Returns all observations, and the infos of those that were reset.
+    /// Starts an episode in each sub-environment of `indices`, with a seed for each; None leaves its generator
+    /// unchanged. Returns all observations, and the infos of the sub-environments that were reset.
     fn native_reset<'py>(
         slf: &Bound<'py, Self>,
         indices: Vec<usize>,
@@ -120,13 +120,13 @@ impl PyVectorEnv {
         envs.observe(slf.py(), &indices)
     }
 
-    /// The indices of the sub-environments that were never reset.
+    /// The indices of the sub-environments that have never been reset.
     fn not_reset(slf: &Bound<'_, Self>) -> PyResult<Vec<usize>> {
         let this = borrow(slf)?;
         Ok((0..this.not_reset.len()).filter(|&index| this.not_reset[index]).collect())
     }
 
-    /// The reset options that bound initial states, and their defaults; None where there are none.
+    /// The reset options that bound initial states, and their defaults; None for environments without them.
     fn reset_bounds(slf: &Bound<'_, Self>) -> PyResult<Option<[(&'static str, f64); 2]>> {
         Ok(borrow(slf)?.envs.as_ref().and_then(|envs| envs.reset_bounds()))
     }
@@ -136,8 +136,8 @@ impl PyVectorEnv {
         borrow(slf)?.seeds.get(index).ok_or_else(|| no_such_env(index))?.to_python(slf.py())
     }
 
-    /// The generator of a sub-environment: `NumPy`'s, or of one in Rust how many 64-bit words it has drawn since it was
-    /// seeded, and its buffered half-word.
+    /// The generator of a sub-environment: `NumPy`'s generator or, for one in Rust, the number of 64-bit words drawn
+    /// since it was seeded, and its buffered half-word.
     fn rng<'py>(slf: &Bound<'py, Self>, index: usize) -> PyResult<Bound<'py, PyAny>> {
         let py = slf.py();
         match borrow(slf)?.rngs.get(index).ok_or_else(|| no_such_env(index))? {
@@ -152,7 +152,7 @@ impl PyVectorEnv {
         Ok(())
     }
 
-    /// All that it takes to step each sub-environment in Python: its attributes, the steps of its episode so far, whether
+    /// The data for stepping each sub-environment in Python: its attributes, the steps of its episode so far, whether
     /// the episode is done, and the observation.
     fn snapshots<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyList>> {
         let (py, this) = (slf.py(), borrow(slf)?);
@@ -161,8 +161,8 @@ impl PyVectorEnv {
         PyList::new(py, snapshots.collect::<PyResult<Vec<_>>>()?)
     }
 
-    /// The episodes, the positions of the generators in Rust, and which sub-environments were never reset: what `restore`
-    /// needs beside the seeds, and beside the generators that Python has.
+    /// The data that `restore` needs besides the seeds and the generators in Python: the episodes, the positions of the
+    /// generators in Rust, and the sub-environments that were never reset.
     fn checkpoint<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyBytes>> {
         let mut bytes = Vec::new();
         borrow_mut(slf)?
@@ -171,7 +171,7 @@ impl PyVectorEnv {
         Ok(PyBytes::new(slf.py(), &bytes))
     }
 
-    /// Continues what `checkpoint` saved, in new sub-environments of the same kind and number.
+    /// Restores a `checkpoint` in new sub-environments of the same kind and number.
     fn restore(slf: &Bound<'_, Self>, checkpoint: &[u8], seeds: Vec<Seed>) -> PyResult<()> {
         let mut this = borrow_mut(slf)?;
         if seeds.len() != this.rngs.len() {
@@ -193,7 +193,7 @@ impl PyVectorEnv {
 }
 
 impl PyVectorEnv {
-    /// Saves or restores the episodes, the generators in Rust, and which sub-environments were never reset.
+    /// Saves or restores the episodes, the generators in Rust, and `not_reset`.
     fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
         let Some(envs) = &mut self.envs else { return Ok(()) };
         envs.persist(checkpoint)?;
@@ -228,7 +228,7 @@ fn busy() -> PyErr {
     )
 }
 
-/// Seeds from the operating system, each of as many bytes of entropy as `NumPy` takes.
+/// Seeds from the operating system, each with as many bytes of entropy as `NumPy` uses.
 fn random_seeds(py: Python<'_>, count: usize) -> PyResult<Vec<Seed>> {
     let entropy = py.import("os")?.call_method1("urandom", (count.saturating_mul(ENTROPY_BYTES),))?;
     let entropy = entropy.cast_into::<PyBytes>()?;

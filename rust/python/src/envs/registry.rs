@@ -1,4 +1,4 @@
-//! Every environment that Rust steps, by the name that `qtab/envs/registry.py` gives it.
+//! All environments that Rust steps, by their names in `qtab/envs/registry.py`.
 
 use std::sync::Arc;
 
@@ -11,12 +11,12 @@ use super::native_env::NativeEnv;
 use super::toy_text::{BlackjackEnv, TableEnv, TaxiEnv};
 use crate::error::invalid;
 
-/// How an environment is made.
+/// The constructor of an environment.
 #[derive(Clone, Copy)]
 pub(super) enum Entry {
-    /// With default parameters, which are then read from Gymnasium's environment.
+    /// Makes the environment with default parameters; they are then read from Gymnasium's environment.
     ClassicControl(fn() -> Arc<dyn DynClassicEnv>),
-    /// From Gymnasium's environment.
+    /// Makes the environment from Gymnasium's environment.
     FromGymnasium(fn(&Bound<'_, PyAny>) -> PyResult<Arc<dyn NativeEnv>>),
 }
 

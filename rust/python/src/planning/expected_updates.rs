@@ -32,7 +32,7 @@ impl PyExpectedUpdates {
         Ok(Self { planning: planning.map_err(|error| to_py_err(error, discount))?, discount })
     }
 
-    /// Makes so many updates.
+    /// Makes this many updates.
     fn advance(&mut self, py: Python<'_>, updates: u64) -> PyResult<()> {
         let advanced = run_interruptible(py, |stop| self.planning.advance(updates, stop))?;
         advanced.map_err(|error| to_py_err(error, self.discount))

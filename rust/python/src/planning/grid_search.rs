@@ -15,10 +15,10 @@ use crate::interrupt::run_interruptible;
 type Array<'py, T> = Bound<'py, PyArray1<T>>;
 /// The returns of episodes, and their lengths.
 type Episodes<'py> = (Array<'py, f64>, Array<'py, i64>);
-/// The actions from each state, where a way was found.
+/// The actions from each state; None if no route was found.
 type Routes<'py> = Vec<Option<Array<'py, u8>>>;
 
-/// The constants of an environment: numbers, and whether a flag is set.
+/// The constants of an environment: its numbers, and its flags.
 type Constants = (Vec<(String, f64)>, Vec<(String, bool)>);
 
 /// State values on a grid.
@@ -29,7 +29,7 @@ enum AnyGrid {
     Acrobot(GridValues<Acrobot, 4>),
 }
 
-/// An expression of the values, whatever their type.
+/// Evaluates an expression for grid values of any type.
 macro_rules! on_grid {
     ($grid:expr, $values:ident => $result:expr) => {
         match $grid {
@@ -50,7 +50,7 @@ pub(crate) struct PyGridSearch {
 
 #[pymethods]
 impl PyGridSearch {
-    /// `parameters` are pairs of a name and a value, and `flags` of a name and whether it is set; an episode has at most
+    /// `parameters` holds pairs of a name and a value, `flags` pairs of a name and a bool. An episode has at most
     /// `max_steps` steps.
     #[new]
     fn new(
@@ -76,7 +76,7 @@ impl PyGridSearch {
         on_grid!(&self.grid, values => values.axes().map(|axis| PyArray1::from_vec(py, axis)).into())
     }
 
-    /// The values at every point of the grid, and of every action there, both in C order.
+    /// The state values at every point of the grid, and the action values there, both in C order.
     fn values<'py>(&self, py: Python<'py>) -> PyResult<(Array<'py, f64>, Array<'py, f64>)> {
         on_grid!(&self.grid, values => Ok((array_from(py, values.grid())?, array_from(py, values.action_grid())?)))
     }
@@ -98,8 +98,8 @@ impl PyGridSearch {
         on_grid!(&self.grid, values => Ok(values.best_action(components(&state)?)))
     }
 
-    /// The returns and lengths of episodes of the greedy policy, which sees float32 observations, from (starts, components)
-    /// states.
+    /// The returns and lengths of episodes from the (starts, components) states under the greedy policy, which sees
+    /// float32 observations.
     fn rollouts<'py>(&self, py: Python<'py>, starts: PyReadonlyArray2<'py, f64>) -> PyResult<Episodes<'py>> {
         on_grid!(&self.grid, values => {
             let starts = states(&starts)?;
@@ -108,9 +108,9 @@ impl PyGridSearch {
         })
     }
 
-    /// The actions that lead from each of (starts, components) states to the end of an episode, by a search that keeps
-    /// `beam` states after each step, with the returns and lengths of those episodes. Where it finds no way there are no
-    /// actions, and the episode is the greedy policy's.
+    /// The actions that lead from each of the (starts, components) states to the end of an episode, found by a search
+    /// that keeps `beam` states after each step, with the returns and lengths of those episodes. If the search finds no
+    /// route, there are no actions, and the episode is that of the greedy policy.
     fn routes<'py>(
         &self,
         py: Python<'py>,

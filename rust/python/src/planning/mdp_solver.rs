@@ -21,9 +21,9 @@ use crate::interrupt::run_interruptible;
 type Array<'py, T> = Bound<'py, PyArray1<T>>;
 /// State values, action values, the policy.
 type PySolution<'py> = (Array<'py, f64>, Array<'py, f64>, Array<'py, i64>);
-/// State values, action values, a bound of the error.
+/// State values, action values, an error bound.
 type PyPolicyValues<'py> = (Array<'py, f64>, Array<'py, f64>, f64);
-/// From how many remaining steps on, in which state, which action is best.
+/// Changes of the policy: the number of remaining steps from which on the action is best, the state, and the action.
 type PyPolicyChanges<'py> = (Array<'py, i64>, Array<'py, i64>, Array<'py, i64>);
 
 type Method = fn(&TabularMdp, f64, &StopFlag<'_>) -> Result<Solution, PlanningError>;
@@ -40,7 +40,7 @@ impl PyMdpSolver {
         mdp.map(Self).ok_or_else(|| PyValueError::new_err("env must have a transition table"))
     }
 
-    /// For each state the row of an agent's table. Several states may share a row, where the observation hides the rest.
+    /// The row of an agent's table for each state. States that share an observation share a row.
     #[getter]
     fn rows<'py>(&self, py: Python<'py>) -> PyResult<Array<'py, i64>> {
         indices(py, self.0.rows.iter())
@@ -58,8 +58,8 @@ impl PyMdpSolver {
         array_from(py, self.0.table.initial_distribution())
     }
 
-    /// The outcomes of each state-action pair, the actions of state 0 first, as `P` lists them: probability, next state,
-    /// reward, terminated.
+    /// The outcomes of each state-action pair, the actions of state 0 first, in the order of `P`: probability, next
+    /// state, reward, terminated.
     fn transitions(&self) -> Vec<Vec<(f64, u32, f64, bool)>> {
         let pairs = (0..self.0.table.num_states()).flat_map(|state| {
             (0..self.0.table.num_actions()).map(move |action| {
@@ -78,7 +78,7 @@ impl PyMdpSolver {
         self.solve(py, discount, policy_iteration)
     }
 
-    /// The solution for `steps` steps, how the policy depends on the remaining steps, and the expected return.
+    /// The solution for `steps` steps, the changes of the policy with the remaining steps, and the expected return.
     fn finite_horizon<'py>(
         &self,
         py: Python<'py>,
@@ -96,8 +96,8 @@ impl PyMdpSolver {
         Ok((to_python(py, values, q_values, &policy)?, changes, expected_return))
     }
 
-    /// The expected return of a policy within `steps` steps. The policy has an action for each state, or for each row; or as
-    /// many for each number of steps taken, `(steps, rows)`.
+    /// The expected return of a policy within `steps` steps. The policy has an action for each state or for each row,
+    /// or an array `(steps, rows)` of them, one row for each number of steps taken.
     fn policy_return(&self, py: Python<'_>, policy: PyReadonlyArrayDyn<'_, i64>, steps: u64) -> PyResult<f64> {
         let actions = policy.as_slice()?;
         let width = policy.as_array().shape().last().copied().unwrap_or(0).max(1);
@@ -110,8 +110,9 @@ impl PyMdpSolver {
         expected.map_err(|error| to_py_err(error, 1.0))
     }
 
-    /// The best known policy within `steps` steps that does not depend on the number of steps taken: the action of each of
-    /// `rows` rows, its expected return, and whether it is proven; `None` for tables too large to search within seconds.
+    /// The best known policy within `steps` steps that does not depend on the number of steps taken: the action of each
+    /// of `rows` rows, its expected return, and whether it is proven optimal; `None` for tables too large to search
+    /// within seconds.
     fn stationary_policy<'py>(
         &self,
         py: Python<'py>,
@@ -124,8 +125,8 @@ impl PyMdpSolver {
         Ok(Some((indices(py, policy.iter())?, expected_return, proven)))
     }
 
-    /// One step of policy iteration: the values of a policy, which has an action for each row, and the better action of
-    /// each state; `None` if no action is better.
+    /// One step of policy iteration: the values of a policy, which has an action for each row, and an improved action
+    /// for each state; `None` if no action is better.
     fn policy_improvement<'py>(
         &self,
         py: Python<'py>,
@@ -157,7 +158,7 @@ impl PyMdpSolver {
         Ok((PyArray1::from_vec(py, values), PyArray1::from_vec(py, q_values), error))
     }
 
-    /// The values after one more sweep: with a policy those of policy evaluation, otherwise those of value iteration.
+    /// The values after one more sweep: of policy evaluation if a policy is given, otherwise of value iteration.
     fn sweep<'py>(
         &self,
         py: Python<'py>,
@@ -178,7 +179,8 @@ impl PyMdpSolver {
         Ok(PyArray1::from_vec(py, values))
     }
 
-    /// The expected number of visits of each state in an episode under such a policy.
+    /// The expected number of visits of each state in an episode under a policy with a probability for each row and
+    /// action.
     fn expected_visits<'py>(&self, py: Python<'py>, policy: PyReadonlyArray1<'py, f64>) -> PyResult<Array<'py, f64>> {
         let policy = self.by_state(policy.as_slice()?)?;
         let visits = run_interruptible(py, |stop| expected_visits(&self.0.table, &policy, stop))?;
@@ -187,7 +189,7 @@ impl PyMdpSolver {
 }
 
 impl PyMdpSolver {
-    /// The action of a policy in each state. The policy has an action for each state, or for each row.
+    /// The action of a policy in each state. The policy has an action for each state or for each row.
     fn actions(&self, policy: &[i64]) -> PyResult<Vec<usize>> {
         let by_state = policy.len() == self.0.rows.len();
         let action = |(state, &row): (usize, &usize)| {
@@ -199,7 +201,7 @@ impl PyMdpSolver {
         actions.ok_or_else(|| PyValueError::new_err("policy must have an action for each row"))
     }
 
-    /// The probabilities of a policy over rows, for each state instead.
+    /// Converts the probabilities of a policy from rows to states.
     fn by_state(&self, policy: &[f64]) -> PyResult<Vec<f64>> {
         let num_actions = self.0.table.num_actions();
         let rows = self.0.rows.iter().map(|&row| policy.get(row * num_actions..(row + 1) * num_actions));

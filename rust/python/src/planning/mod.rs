@@ -14,34 +14,34 @@ pub(crate) use expected_updates::PyExpectedUpdates;
 pub(crate) use grid_search::PyGridSearch;
 pub(crate) use mdp_solver::PyMdpSolver;
 
-/// Why an optimal policy was not found.
+/// The error for an optimal policy that could not be found.
 fn to_py_err(error: PlanningError, discount: f64) -> PyErr {
     of_any_method(error).unwrap_or_else(|| {
         PyValueError::new_err(format!(
-            "discount must be smaller here, got {discount}: {error}; method 'finite_horizon' fits any discount"
+            "discount must be smaller, got {discount}: {error}; method 'finite_horizon' works with any discount"
         ))
     })
 }
 
-/// Why a policy was not evaluated.
+/// The error for a policy that could not be evaluated.
 fn of_policy(error: PlanningError, discount: f64) -> PyErr {
     of_any_method(error).unwrap_or_else(|| {
         PyValueError::new_err(match error {
-            _ if discount < 1.0 => format!("discount must be smaller here, got {discount}: {error}"),
+            _ if discount < 1.0 => format!("discount must be smaller, got {discount}: {error}"),
             PlanningError::NoProperPolicy(_) => {
-                format!("policy must end every episode here: {error}; with a discount below 1 it still has values")
+                format!("policy must end every episode: {error}; with a discount below 1 it has values anyway")
             }
-            _ => format!("policy must end episodes in fewer steps here: {error}; a discount below 1 helps"),
+            _ => format!("policy must end episodes in fewer steps: {error}; a discount below 1 helps"),
         })
     })
 }
 
-/// The errors that do not depend on what is computed.
+/// The errors that all methods share.
 fn of_any_method(error: PlanningError) -> Option<PyErr> {
     match error {
         PlanningError::Stopped => Some(PyKeyboardInterrupt::new_err(())),
         PlanningError::OutOfMemory { bytes } => Some(out_of_memory(bytes)),
-        PlanningError::Overflow(_) => Some(PyOverflowError::new_err(format!("rewards must be smaller here: {error}"))),
+        PlanningError::Overflow(_) => Some(PyOverflowError::new_err(format!("rewards must be smaller: {error}"))),
         PlanningError::NotConverged { .. } | PlanningError::NoProperPolicy(_) | PlanningError::UnboundedReturn(_) => {
             None
         }

@@ -1,4 +1,4 @@
-//! The action mask of an observation, as a Python environment or a function gives it.
+//! The action mask of an observation, from a Python environment or a function.
 
 use numpy::{PyArray1, PyArrayDescrMethods, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -9,7 +9,7 @@ use pyo3::types::PyDict;
 use super::answers::{named, shortened};
 use crate::spec::{Fields, Variant};
 
-/// Where the masks come from.
+/// The source of the masks.
 pub(super) enum MaskSource {
     None,
     /// `info["action_mask"]`, Gymnasium's convention.
@@ -33,7 +33,7 @@ impl MaskSource {
         matches!(self, Self::None)
     }
 
-    /// Replaces `mask` by that of an observation, which `method` of the environment returned with an `info`.
+    /// Replaces `mask` by the mask of an observation, which `method` of the environment returned with `info`.
     pub(super) fn read(
         &self,
         (env, method): (&Bound<'_, PyAny>, &str),
@@ -49,7 +49,7 @@ impl MaskSource {
                 let name = || format!("info['action_mask'] of {method} of {}", named(env));
                 let Some(given) = found else {
                     return Err(PyValueError::new_err(format!(
-                        "{} must be there for action_mask=True; action_mask=f takes a function of the observation",
+                        "{} must be present for action_mask=True; action_mask=f takes a function of the observation",
                         name()
                     )));
                 };

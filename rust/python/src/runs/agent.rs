@@ -1,4 +1,4 @@
-//! The core's agents, as a spec describes them.
+//! The core's agents, built from a spec.
 
 use pyo3::prelude::*;
 use qtab_core::StopFlag;
@@ -8,7 +8,7 @@ use qtab_core::random::Rng;
 use crate::error::allocation;
 use crate::spec::RunSpec;
 
-/// The agent of any learner, with its first table.
+/// An agent with any learner, and its initial table.
 pub(super) fn generic_agent(
     spec: &RunSpec,
     n_rows: usize,
@@ -18,7 +18,7 @@ pub(super) fn generic_agent(
 ) -> PyResult<Agent> {
     let shape = (n_rows, spec.num_actions);
     let masks = match spec.algorithm {
-        // They draw actions without looking at values: to plan with what was not tried, and to start an episode.
+        // These algorithms choose some actions regardless of the values: untried ones, or the first of an episode.
         AnyAlgorithm::DynaQPlus { .. } | AnyAlgorithm::MonteCarloEs { .. } if spec.action_masks.is_none() => {
             spec.initial_q.masks(n_rows * spec.num_actions, spec.num_actions)?
         }

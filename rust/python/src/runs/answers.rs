@@ -1,4 +1,4 @@
-//! What the methods of a Python environment return, checked against Gymnasium's API.
+//! The return values of a Python environment's methods, checked against Gymnasium's API.
 
 use pyo3::Borrowed;
 use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
@@ -6,7 +6,7 @@ use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyBytes, PyDict, PyFloat, PyString, PyTuple};
 
-/// What `step` returned.
+/// The return value of `step`.
 pub(super) struct Answer<'a, 'py> {
     pub(super) observation: Borrowed<'a, 'py, PyAny>,
     pub(super) reward: f64,
@@ -16,7 +16,7 @@ pub(super) struct Answer<'a, 'py> {
 }
 
 impl<'a, 'py> Answer<'a, 'py> {
-    /// Takes apart what `env.step` returned.
+    /// Unpacks the return value of `env.step`.
     pub(super) fn of_step(env: &Bound<'py, PyAny>, answer: &'a Bound<'py, PyAny>) -> PyResult<Self> {
         let expected = "a tuple (observation, reward, terminated, truncated, info)";
         let values = tuple_of(env, "step", expected, 5, answer)?;
@@ -30,7 +30,7 @@ impl<'a, 'py> Answer<'a, 'py> {
     }
 }
 
-/// The observation and the info in what `env.reset` returned.
+/// Unpacks the return value of `env.reset`.
 pub(super) fn of_reset<'py>(
     env: &Bound<'py, PyAny>,
     answer: &Bound<'py, PyAny>,
@@ -39,7 +39,7 @@ pub(super) fn of_reset<'py>(
     let values = tuple_of(env, "reset", expected, 2, answer)?;
     let info = values.get_item(1)?;
     if !info.is_instance_of::<PyDict>() {
-        // Two components of an observation, as `reset` returned it before Gymnasium.
+        // An observation of two components, as `reset` returned it before Gymnasium.
         return Err(wrong_type(env, "reset", "a dict as the info", &info));
     }
     Ok((values.get_item(0)?, info))
@@ -66,7 +66,7 @@ fn finite(env: &Bound<'_, PyAny>, reward: &Bound<'_, PyAny>) -> PyResult<f64> {
     let expected = "a finite number as the reward";
     let number = match reward.cast_exact::<PyFloat>() {
         Ok(number) => number.value(),
-        // A text has no `__float__`, and an array of several numbers refuses.
+        // A string has no `__float__`, and an array of several numbers refuses the conversion.
         Err(_) => reward.extract::<f64>().map_err(|error| {
             if error.is_instance_of::<PyOverflowError>(reward.py()) {
                 return PyValueError::new_err(message(env, "step", expected, &shortened(reward)));
@@ -80,7 +80,7 @@ fn finite(env: &Bound<'_, PyAny>, reward: &Bound<'_, PyAny>) -> PyResult<f64> {
     Err(PyValueError::new_err(message(env, "step", expected, &shortened(reward))))
 }
 
-/// A bool, of Python's or `NumPy`'s or of an array library without dimensions, or the integers 0 and 1.
+/// A bool of Python, `NumPy` or an array library (without dimensions), or the integer 0 or 1.
 fn flag(env: &Bound<'_, PyAny>, name: &str, value: &Bound<'_, PyAny>) -> PyResult<bool> {
     if let Ok(flag) = value.cast_exact::<PyBool>() {
         return Ok(flag.is_true());
@@ -101,15 +101,15 @@ fn wrong_type(env: &Bound<'_, PyAny>, method: &str, expected: &str, got: &Bound<
 
 fn message(env: &Bound<'_, PyAny>, method: &str, expected: &str, got: &str) -> String {
     let name = named(env);
-    format!("{method} of {name} must return {expected}, as Gymnasium's API says, got {got}")
+    format!("{method} of {name} must return {expected}, as Gymnasium's API requires, got {got}")
 }
 
-/// The environment as messages name it.
+/// The environment's name in messages.
 pub(super) fn named(env: &Bound<'_, PyAny>) -> String {
     env.str().map_or_else(|_| "the environment".into(), |name| name.to_string())
 }
 
-/// The longest value that a message shows, in characters.
+/// The largest number of characters of a value that a message shows.
 const SHOWN: usize = 80;
 
 pub(super) fn shortened(value: &Bound<'_, PyAny>) -> String {

@@ -1,4 +1,4 @@
-//! Runs that differ in their seeds alone: one after the other, or several in a batch.
+//! Runs that differ only in their seeds: one after another, or several in a batch.
 
 use pyo3::prelude::*;
 use qtab_core::batch::{BatchedRun, LANES};
@@ -14,16 +14,16 @@ const HALF: usize = LANES / 2;
 
 /// Builds the runs of one spec in one environment.
 pub(crate) trait RunFactory: Send + Sync {
-    /// Builds a run. What takes long stops when `stop` is set.
+    /// Builds a run. Slow construction stops when `stop` is set.
     fn build(&self, seed: &Seed, stop: &StopFlag<'_>) -> PyResult<BuiltRun>;
 
-    /// A batch without runs, whose learners take their memory from this room.
+    /// An empty batch, whose learners take their memory from `room`.
     fn batch(&self, room: &MemoryRoom) -> Box<dyn RunBatch + '_>;
 }
 
 /// Runs that advance together.
 pub(crate) trait RunBatch {
-    /// How many runs advance together best.
+    /// The number of runs that is most efficient to advance together.
     fn lanes(&self) -> usize;
 
     /// Adds a run at the end.
@@ -38,13 +38,13 @@ pub(crate) trait RunBatch {
     fn swap_remove(&mut self, index: usize);
 }
 
-/// Advances some of several runs. An error comes with the index of the run that failed.
+/// Advances some of the runs. An error comes with the index of the run that failed.
 type AdvanceRuns<R> = fn(&mut [R], Budget) -> Result<(), (usize, RunError)>;
 
-/// How several runs of type `R` advance: together, or `None` for one after the other.
+/// The function that advances several runs of type `R` together; `None` to advance one after another.
 pub(super) type Batching<R> = Option<AdvanceRuns<R>>;
 
-/// Advances as many runs in the processor's vector registers as there are lanes.
+/// Advances runs in the processor's vector registers, one run per lane.
 pub(super) fn advance_lanes<R: Run + BatchedRun>(runs: &mut [R], budget: Budget) -> Result<(), (usize, RunError)> {
     let advanced = if let Some(runs) = runs.first_chunk_mut::<LANES>() {
         R::advance_all(runs, budget)
@@ -60,7 +60,7 @@ pub(super) fn advance_lanes<R: Run + BatchedRun>(runs: &mut [R], budget: Budget)
     Ok(())
 }
 
-/// Builds runs of type `R` by a function of the seed.
+/// Makes a factory from a function that builds a run of type `R` from a seed.
 pub(super) fn factory<R, B>(build: B, batching: Batching<R>) -> Box<dyn RunFactory>
 where
     R: Run + 'static,
@@ -96,7 +96,7 @@ where
     }
 }
 
-/// Builds runs of any type, boxed, by a function of the seed.
+/// Builds boxed runs of any type with a function of the seed.
 pub(crate) struct BoxedFactory<B>(pub(crate) B);
 
 impl<B> RunFactory for BoxedFactory<B>

@@ -1,4 +1,4 @@
-//! Runs of any learner on any task, boxed: what is not worth compiling for its types.
+//! Boxed runs of any learner on any task, for combinations that are not worth compiling separately.
 
 use std::sync::Arc;
 
@@ -20,7 +20,7 @@ use crate::error::{RunError, allocation, invalid};
 use crate::rng::environment_rng;
 use crate::spec::{DiscretizerSpec, RunSpec, TilesSpec};
 
-/// How many bytes a recorded action takes: here, in the list that Python reads, and in Python's recording.
+/// The number of bytes of a recorded action: in Rust, in the list that Python reads, and in Python's recording.
 const RECORDED_ACTION_BYTES: u64 = 4 + 8 + 8;
 
 /// Runs in an environment whose observations are `M` float32 numbers, with any discretizer of a Box.
@@ -38,7 +38,7 @@ where
         return observed_box(env, spec, prediction);
     }
     match &spec.discretizer {
-        // Compiled for the usual numbers of tilings, but not once more for what is rarely asked for besides.
+        // Compiled for the usual numbers of tilings, but not again for rare combinations with wrappers.
         DiscretizerSpec::Tiles(tiles) if !path.has_wrappers() => match_tilings!(
             tiles.tilings,
             N => fixed_tilings::<E, M, N>(env, tiles, spec),
@@ -69,7 +69,7 @@ where
     Ok(Box::new(BoxedFactory(build)))
 }
 
-/// Refuses a spec for another number of actions than the environment's.
+/// Checks that the spec has the environment's number of actions.
 pub(crate) fn check_actions(num_actions: usize, spec: &RunSpec) -> PyResult<()> {
     if spec.num_actions == num_actions {
         return Ok(());
@@ -92,7 +92,7 @@ where
     Ok(Box::new(BoxedFactory(build)))
 }
 
-/// Boxed runs of a task that is made from a seed. `shape` is the number of rows and of active rows.
+/// Boxed runs of a task built from a seed. `shape` is the number of rows and of active rows.
 pub(crate) fn boxed_factory<W>(
     new_task: impl Fn(&Seed) -> W + Send + Sync + 'static,
     shape: (usize, usize),
@@ -109,7 +109,7 @@ where
     Box::new(BoxedFactory(build))
 }
 
-/// A run of any learner, with recordings if asked for. `shape` is the number of rows and of active rows.
+/// A run of any learner, with recordings if the spec asks for them. `shape` is the number of rows and of active rows.
 pub(crate) fn boxed_run<W>(
     task: W,
     shape: (usize, usize),
@@ -130,7 +130,7 @@ where
     Ok((run_of(task, shape, seed, spec, stop)?, keep(recordings)))
 }
 
-/// A run of any learner, without recordings other than those that the task makes.
+/// A run of any learner, without recordings other than those of the task.
 fn run_of<W>(task: W, shape: (usize, usize), seed: &Seed, spec: &RunSpec, stop: &StopFlag<'_>) -> PyResult<Box<dyn Run>>
 where
     W: Task<Active: Send, State: Send> + Send + 'static,
@@ -143,7 +143,7 @@ where
     build_learner(boxed_task(task, shape, spec, stop)?, shape, rng, spec, stop)
 }
 
-/// A run with rows for each step. The task is boxed before, so that this is compiled once for each kind of active rows.
+/// A run with rows for each step. The task is boxed first, so that this is compiled once for each kind of active rows.
 fn time_aware_run<R: ActiveRows + Send + 'static>(
     task: BoxedTask<R, RunError>,
     n_rows: usize,
@@ -199,7 +199,7 @@ where
         return Ok(run.visit(predictor));
     }
     let agent = generic_agent(spec, n_rows, n_active, &mut rng, stop)?;
-    // The generator draws both tables before the run takes it over.
+    // The generator draws both tables before the run takes ownership of it.
     let second_table = match spec.algorithm.n_tables() {
         1 => None,
         _ if spec.algorithm.value_learning_rate().is_some() => {
@@ -216,7 +216,7 @@ where
     run.ok_or_else(|| invalid("discretizer", "one with one active row, for this algorithm", "'tiles'"))
 }
 
-/// All of a run but its learner.
+/// A run without its learner.
 struct BoxedRun<R> {
     task: BoxedTask<R, RunError>,
     rng: AgentRng,

@@ -1,4 +1,4 @@
-//! Training runs of every type behind one interface, and how a run is built from its spec.
+//! Training runs of every type behind one interface, and their construction from a spec.
 
 mod action_mask;
 mod agent;

@@ -1,4 +1,4 @@
-//! Which path a run takes: one that is compiled for its types, or the generic one, which supports every setting.
+//! The path of a run: code compiled for its types, or the generic path, which supports every setting.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use crate::spec::{ActionMasksSpec, InitialQSpec, LearningRateSpec, PolicySpec, P
 
 /// The paths that a run may take.
 pub(super) enum RunPath {
-    /// A learner that needs no settings beyond a [`PlainSpec`]: code that is compiled for its types may run it.
+    /// A learner that needs no settings beyond a [`PlainSpec`]: code compiled for its types may run it.
     Plain(PlainSpec),
     /// The values of a policy over numbered states, with the default generator and bootstrapping at the time limit.
     PlainPrediction(Arc<PredictionSpec>),
@@ -22,8 +22,8 @@ pub(super) enum RunPath {
     GenericWithWrappers,
 }
 
-/// The settings that runs compiled for their types support. Such runs are built from these alone, by code that names every
-/// field, so that no setting is ignored.
+/// The settings that runs compiled for their types support. Such runs are built from these alone, by code that names
+/// every field, so that no setting is ignored.
 #[derive(Clone)]
 pub(super) struct PlainSpec {
     pub(super) num_actions: usize,
@@ -40,10 +40,10 @@ pub(super) struct PlainSpec {
 }
 
 impl RunPath {
-    /// The path of a run. The pattern names every field of the spec, so that none is added without a decision here.
+    /// The path of a run. The pattern names every field of the spec, so that adding one forces a decision here.
     pub(super) fn of(spec: &RunSpec) -> Self {
         let RunSpec {
-            discretizer: _, // The environment builds the features from it for all paths.
+            discretizer: _, // All paths: the environment builds the features from it.
             num_actions,
             max_episode_steps,
             time_aware,
@@ -65,7 +65,7 @@ impl RunPath {
         } = spec;
         let has_default_generator = *bit_generator == BitGenerator::Pcg64;
         if let Some(prediction) = prediction {
-            // `RunSpec::predicting` has refused the settings that only control has.
+            // `RunSpec::predicting` has rejected the settings that apply only to control.
             return if prediction.reads_observations() {
                 Self::ObservedPrediction(Arc::clone(prediction))
             } else if has_default_generator && !terminate_on_truncation {

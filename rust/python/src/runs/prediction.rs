@@ -1,4 +1,5 @@
-//! Runs that estimate the values of a policy: of numbered states, compiled for their environment, or of observations.
+//! Runs that estimate the values of a policy: over numbered states, compiled for their environment, or over
+//! observations.
 
 use std::sync::Arc;
 
@@ -51,7 +52,7 @@ where
     E: Env<Action = usize, Observation = [f32; M], State: Send> + Clone + Send + Sync + 'static,
 {
     Ok(match &spec.discretizer {
-        // Fewer rows are copied at each step.
+        // With a fixed number of tilings, each step copies fewer rows.
         DiscretizerSpec::Tiles(tiles) => match_tilings!(
             tiles.tilings,
             N => factory(env, fixed_tiles::<M, N>(tiles)?, spec, prediction),
@@ -99,7 +100,7 @@ where
     RunError: From<W::Error>,
 {
     let rng = spec.bit_generator.agent_rng(seed)?;
-    // Only the policy draws numbers, and it is part of the task. The learner's generator is never used.
+    // Only the policy, which is part of the task, draws numbers. The learner's generator is never used.
     let task: BoxedTask<_, RunError> = BoxedTask::new(PolicyTask { task, policy, rng: rng.clone() });
     let learner = prediction.of_observations(spec, stop)?;
     let learner = TransformedSteps { learner, terminate: spec.terminate_on_truncation, bonus: None };

@@ -1,4 +1,4 @@
-//! A Python environment, as a learner steps it.
+//! A Python environment, stepped by a learner.
 
 use pyo3::intern;
 use pyo3::prelude::*;
@@ -7,19 +7,19 @@ use pyo3::types::{PyDict, PyInt, PyTuple};
 use super::action_mask::MaskSource;
 use crate::spec::Fields;
 
-/// How many actions of a discrete space are kept as Python objects; more are made when they are taken.
+/// The number of discrete actions that are cached as Python objects; others are created when they are taken.
 const KEPT_ACTIONS: usize = 1024;
 
-/// A Python environment, how the learner's actions are passed to it, and where its action masks come from.
+/// A Python environment, the arguments for its actions, and the source of its action masks.
 pub(crate) struct PythonEnv {
     env: Py<PyAny>,
     /// Its method `step`, looked up once per episode; None before the first.
     step: Option<Py<PyAny>>,
-    /// The environment's number of the first action, `Discrete.start`.
+    /// The environment's number for the first action, `Discrete.start`.
     first_action: i64,
     /// The arguments of `step` for the first actions of a discrete space.
     kept: Vec<Py<PyTuple>>,
-    /// What the actions of any other space stand for: arrays, or tuples and dicts; empty for a discrete space.
+    /// The actions of any other space: arrays, or tuples and dicts; empty for a discrete space.
     actions: Vec<Py<PyAny>>,
     pub(super) masks: MaskSource,
 }
@@ -36,7 +36,7 @@ impl PythonEnv {
         })
     }
 
-    /// Makes the arguments of `step` for the first of so many actions.
+    /// Makes the arguments of `step` for the first `num_actions` actions, up to `KEPT_ACTIONS`.
     pub(super) fn keep_actions(&mut self, py: Python<'_>, num_actions: usize) -> PyResult<()> {
         if self.actions.is_empty() {
             let kept = (0..num_actions.min(KEPT_ACTIONS)).map(|index| Ok(self.discrete(py, index)?.unbind()));
@@ -49,7 +49,7 @@ impl PythonEnv {
         self.env.bind(py)
     }
 
-    /// Calls `reset`; with a seed where one is given.
+    /// Calls `reset`, with a seed if one is given.
     pub(super) fn reset<'py>(&mut self, py: Python<'py>, seed: Option<&Py<PyAny>>) -> PyResult<Bound<'py, PyAny>> {
         let arguments = PyDict::new(py);
         if let Some(seed) = seed {
@@ -79,7 +79,7 @@ impl PythonEnv {
     }
 }
 
-/// An action that the environment may write to: its arrays are copies.
+/// A copy of an action, since the environment may write to its arrays.
 fn fresh<'py>(action: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     if action.is_instance_of::<PyInt>() {
         return Ok(action.clone());

@@ -1,4 +1,4 @@
-//! A Gymnasium environment that is stepped in Python, as a learner's task.
+//! A Gymnasium environment stepped in Python, as a learner's task.
 
 use pyo3::intern;
 use pyo3::prelude::*;
@@ -18,10 +18,10 @@ use crate::convert::{BoxReader, ObservationReader, Seed};
 use crate::error::RunError;
 use crate::spec::{BoxFeatures, DiscretizerSpec, FloatType, PredictionSpec, RunSpec};
 
-/// How many steps of Q-learning on a grid a step in Python counts as. It may take a millisecond.
+/// The number of Q-learning steps on a grid that one step in Python counts as. It may take a millisecond.
 const STEP_WORK: u64 = 127;
 
-/// What a run that steps a Python environment is built from. Only this needs the interpreter.
+/// The parts from which a run that steps a Python environment is built. Only this function needs the interpreter.
 pub(crate) fn python_task<'a>(
     py: Python<'_>,
     mut env: PythonEnv,
@@ -40,7 +40,7 @@ pub(crate) struct PythonTaskBuilder<'a> {
 }
 
 impl PythonTaskBuilder<'_> {
-    /// Builds the run. What takes long stops when `stop` is set.
+    /// Builds the run. Slow construction stops when `stop` is set.
     pub(crate) fn build(self, stop: &StopFlag<'_>) -> PyResult<BuiltRun> {
         let spec = self.spec;
         if let DiscretizerSpec::Identity(reader) = &spec.discretizer {
@@ -56,7 +56,7 @@ impl PythonTaskBuilder<'_> {
         }
     }
 
-    /// With the observations of a Box of dtype `T`.
+    /// A run with the observations of a Box of dtype `T`.
     fn box_run<T>(self, to_dtype: impl Fn(f64) -> T, dimensions: usize, stop: &StopFlag<'_>) -> PyResult<BuiltRun>
     where
         T: Float + Default + numpy::Element + 'static,
@@ -74,7 +74,7 @@ impl PythonTaskBuilder<'_> {
         self.run(BoxReader::new(grid, dimensions), n_rows, stop)
     }
 
-    /// The values of a policy that reads the observations.
+    /// A run that estimates the values of a policy that reads the observations.
     fn observed_run<T>(
         self,
         prediction: &PredictionSpec,
@@ -129,9 +129,9 @@ struct PythonTask<R> {
     seeded: bool,
     max_episode_steps: u64,
     reader: R,
-    /// Which actions the last state has, where the environment has action masks.
+    /// The actions available in the last state, if the environment has action masks.
     mask: Vec<bool>,
-    /// Whether a policy reads the observations, so that the last one is kept.
+    /// Whether a policy reads the observations, so that the last one is stored.
     keeps_observation: bool,
     last_observation: Option<Py<PyAny>>,
 }
@@ -176,7 +176,7 @@ impl<R: ObservationReader> Task for PythonTask<R> {
                 self.last_observation = Some(observation.to_owned().unbind());
             }
             if terminated {
-                // Nothing is chosen in a terminal state: it may have no action left.
+                // No action is chosen in a terminal state, whose mask may have none left.
                 return Ok(Transition { reward, next: Next::Terminal });
             }
             if !self.env.masks.is_none() {
@@ -207,13 +207,13 @@ impl<R: ObservationReader> Task for PythonTask<R> {
         false
     }
 
-    /// Whether the environment was seeded. Its generator is the caller's to restore.
+    /// Whether the environment was seeded. The caller must restore its generator.
     fn persist(&mut self, _state: Option<&mut u64>, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
         self.seeded.persist(checkpoint)
     }
 }
 
-/// The state of the environment's bit generator, a dict; the seed, before the first reset.
+/// The state of the environment's bit generator, a dict; before the first reset, the seed.
 impl<R: ObservationReader> RngSnapshot for PythonTask<R> {
     type Snapshot = Py<PyAny>;
 

@@ -13,41 +13,41 @@ use crate::spec::InitialQSpec;
 pub(crate) trait Run: Send {
     fn advance(&mut self, budget: Budget) -> Result<(), RunError>;
 
-    /// An error where the learner has diverged.
+    /// Returns an error if the learner has diverged.
     fn check(&self) -> Result<(), RunError>;
 
     fn episodes(&self) -> &EpisodeLog;
 
-    /// Takes the finished episodes out. The run cannot be continued.
+    /// Takes the finished episodes out, after which the run cannot continue.
     fn take_episodes(&mut self) -> EpisodeLog;
 
     /// The values of each table, rows first.
     fn tables(&self) -> Vec<&[f64]>;
 
-    /// How often each action was taken in each row; None where visits are not counted.
+    /// The number of times each action was taken in each row; None if visits are not counted.
     fn visits(&self) -> Option<&[i64]>;
 
-    /// Which actions the states have, row by row; None if each has all of them.
+    /// The available actions of the states, row by row; None if every state has all actions.
     fn action_masks(&self) -> Option<&[bool]>;
 
-    /// How many updates were made from a model; None where that is not counted.
+    /// The number of updates made from a model; None if they are not counted.
     fn planning_updates(&self) -> Option<u64>;
 
-    /// The estimate of the average reward; None where none is learned.
+    /// The estimate of the average reward; None if none is learned.
     fn average_reward(&self) -> Option<f64>;
 
     /// Limits the memory that the learner takes from now on.
     fn limit_memory(&mut self, room: MemoryRoom);
 
-    /// Saves or restores all but the tables and the finished episodes. Returns where in an episode the checkpoint was made.
+    /// Saves or restores everything but the tables and the finished episodes. Returns the progress within the episode.
     fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<EpisodeProgress, CheckpointError>;
 
-    /// Takes over the tables and the finished episodes of a run that is resumed.
+    /// Restores the tables and the finished episodes of a run that is resumed.
     fn restore(&mut self, episodes: EpisodeLog, tables: &[&[f64]]) -> Result<(), CheckpointError>;
 }
 
-/// An error where the tables of a finished run have overflowed. Learners notice an overflow in the values that they read;
-/// this finds it in values that were not read again, too.
+/// Returns an error if the tables of a finished run have overflowed. Learners notice an overflow only in values that
+/// they read again; this checks all values.
 pub(crate) fn check_tables(run: &dyn Run, initial_q: &InitialQSpec) -> Result<(), RunError> {
     if initial_q.has_overflowed(&run.tables()) {
         return Err(RunError::Overflowed { episode: run.episodes().returns.len().saturating_sub(1) });
@@ -115,11 +115,11 @@ where
 /// The last episodes of a run, where it records them.
 pub(crate) enum AnyRecordings {
     None,
-    /// By how many words the environment's generator had drawn when the episode began, and its buffered half-word.
+    /// The number of words drawn from the environment's generator when the episode began, and its buffered half-word.
     Native(Recordings<(u64, Option<u32>)>),
-    /// By the state of the environment's generator when the episode began.
+    /// The state of the environment's generator when the episode began.
     Python(Recordings<Py<PyAny>>),
-    /// Of a bandit: whether the optimal action was taken in each episode.
+    /// For a bandit: whether the optimal action was taken in each episode.
     OptimalActions(OptimalActions),
 }
 

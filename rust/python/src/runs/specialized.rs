@@ -1,4 +1,4 @@
-//! Runs that are compiled for their types: one-step learners on a grid, with `N` actions known at compile time.
+//! Runs compiled for their types: one-step learners on a grid, with `N` actions known at compile time.
 
 use std::sync::Arc;
 
@@ -24,7 +24,7 @@ use crate::spec::{LearningRateSpec, PolicySpec, RunSpec, ScheduleSpec};
 pub(super) type OneStepRun<E, F, U, P, A, const N: usize> =
     Trainer<NativeTask<E, F>, TdLearner<U, Agent<N, P, A>>, Pcg64>;
 
-/// How runs of one-step learners advance together, by the types of their update rule and their learning rate.
+/// The functions that advance one-step learners together, by the types of their update rule and learning rate.
 pub(crate) struct OneStepBatching<E, F, P, const N: usize>
 where
     E: Env<Action = usize>,
@@ -41,7 +41,7 @@ where
     E: Env<Action = usize>,
     F: Features<E::Observation>,
 {
-    /// Each run by itself.
+    /// Advances each run separately.
     pub(crate) fn one_by_one() -> Self {
         Self { q_learning: None, scheduled_q_learning: None, sarsa: None, expected_sarsa: None }
     }
@@ -56,7 +56,7 @@ where
     OneStepRun<E, F, Sarsa, P, Schedule, N>: Run + BatchedRun,
     OneStepRun<E, F, ExpectedSarsa, P, Schedule, N>: Run + BatchedRun,
 {
-    /// Several runs in the processor's vector registers.
+    /// Advances several runs in the processor's vector registers.
     pub(crate) fn in_lanes() -> Self {
         Self {
             q_learning: Some(advance_lanes),
@@ -67,7 +67,7 @@ where
     }
 }
 
-/// Runs compiled for their types where the spec asks for a one-step learner of `N` actions; the generic ones otherwise.
+/// Runs compiled for their types if the spec asks for a one-step learner with `N` actions, otherwise generic runs.
 pub(crate) fn specialized<E, F, const N: usize>(
     env: E,
     features: F,
@@ -101,7 +101,7 @@ where
     })
 }
 
-/// Whether a spec and its environment have so many actions, and updates bootstrap where the time limit ends an episode.
+/// Whether the spec and its environment have `num_actions` actions, and updates bootstrap at the time limit.
 pub(super) fn fits(env: &impl Env, spec: &PlainSpec, num_actions: usize) -> bool {
     spec.num_actions == num_actions && env.num_actions() == num_actions && !spec.terminate_on_truncation
 }
@@ -174,7 +174,7 @@ where
             initial_q,
             terminal_update,
             count_visits,
-            // `fits` leaves out the runs that do not bootstrap.
+            // `fits` excludes runs that do not bootstrap.
             terminate_on_truncation: _,
             // The arguments and `N` were built from these.
             num_actions: _,
@@ -197,7 +197,7 @@ where
             let learner = TdLearner { agent, rule: rule.clone() };
             PyResult::Ok((task, learner, rng))
         };
-        // Counting is compiled into the steps of a type of its own: a run that does not count pays nothing for it.
+        // Counting is a separate type, so that runs that do not count pay nothing for it.
         if count_visits {
             let build = move |seed: &Seed, stop: &StopFlag<'_>| {
                 let (task, learner, rng) = parts(seed, stop)?;

@@ -1,4 +1,4 @@
-//! Tile coding that is compiled for the usual numbers of tilings, and runs with it of the learners that batches know.
+//! Tile coding compiled for the usual numbers of tilings, and runs of the learners that can be batched with it.
 
 use std::sync::Arc;
 
@@ -16,8 +16,9 @@ use super::{RunFactory, generic_box};
 use crate::error::invalid;
 use crate::spec::{DiscretizerSpec, LearningRateSpec, RunSpec, TilesSpec};
 
-/// Evaluates an expression in which the constant `$n` is the number of tilings, or another one if the number is unusual. A
-/// usual one is a power of two that is at least four times the number of components (Sutton & Barto, section 9.5.4).
+/// Evaluates an expression in which the constant `$n` is the number of tilings, or another expression if the number is
+/// unusual. A usual number is a power of two that is at least four times the number of components (Sutton & Barto,
+/// section 9.5.4).
 macro_rules! match_tilings {
     ($tilings:expr, $n:ident => $compiled:expr, _ => $other:expr $(,)?) => {
         match $tilings {
@@ -46,8 +47,8 @@ pub(super) fn fixed_tiles<const M: usize, const N: usize>(tiles: &TilesSpec) -> 
         .ok_or_else(|| invalid("discretizer", format!("{N} tilings of {M} components"), "others"))
 }
 
-/// Runs of `N` actions that train in batches where the spec asks for Q-learning, Sarsa or Expected Sarsa on a usual number of
-/// tilings; the generic ones otherwise.
+/// Runs of `N` actions that train in batches if the spec asks for Q-learning, Sarsa or Expected Sarsa with a usual
+/// number of tilings, otherwise generic runs.
 pub(crate) fn tiled_box<E, const M: usize, const N: usize>(env: E, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>>
 where
     E: SimdEnv<M> + Env<Observation = [f32; M], State: Send> + Send + Sync + 'static,
@@ -61,7 +62,7 @@ where
     runs.map_or_else(|| generic_box(env, spec), Ok)
 }
 
-/// Runs with so many tilings; `None` if the spec asks for what is not compiled.
+/// Runs with this many tilings; `None` if the spec asks for a combination that is not compiled.
 fn of_tilings<E, const M: usize, const N: usize, const TILINGS: usize>(
     env: &E,
     tiles: &TilesSpec,

@@ -1,4 +1,4 @@
-//! Which actions the states have, as far as that is known before the first episode.
+//! The actions available in each state, as far as they are known before the first episode.
 
 use std::sync::Arc;
 
@@ -15,9 +15,9 @@ use crate::error::{allocation, invalid};
 pub(crate) enum ActionMasksSpec {
     /// Every state has all actions.
     None,
-    /// The environment gives the mask of each observation.
+    /// The environment provides the mask of each observation.
     Observed,
-    /// The masks of all rows. Shared, since many runs may have them.
+    /// The masks of all rows, shared between runs.
     Known(Arc<Vec<bool>>),
 }
 

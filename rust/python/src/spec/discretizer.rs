@@ -1,4 +1,4 @@
-//! How observations become rows of the table, and the core's features of that description.
+//! The spec of a discretizer, and the core's features built from it.
 
 use pyo3::prelude::*;
 use qtab_core::features::{AnyGrid, Axis, Bins, Edges, MAX_TILINGS, Rounding, TileCoding};
@@ -53,7 +53,7 @@ pub(crate) struct TilesSpec {
     hashed_rows: Option<u32>,
 }
 
-/// Every discretizer by its name. `qtab.config` has `edges` besides, which is sent as `bins`; a test compares the lists.
+/// Every discretizer by its name. `qtab.config` also has `edges`, which is sent as `bins`; a test compares the lists.
 pub(crate) const DISCRETIZERS: &[Variant<DiscretizerSpec>] = &[
     ("round", |fields| RoundSpec::parse(fields).map(DiscretizerSpec::Round)),
     ("bins", |fields| BinsSpec::parse(fields).map(DiscretizerSpec::Bins)),
@@ -89,12 +89,12 @@ impl DiscretizerSpec {
         }
     }
 
-    /// The number of rows. Parsing has made sure that it fits.
+    /// The number of rows. Parsing has checked that it fits.
     pub(crate) fn num_rows(&self) -> usize {
         self.row_counts().into_iter().product::<u64>() as usize
     }
 
-    /// The dtype and the number of components of the observations. It is an error for integers.
+    /// The dtype and the number of components of the observations. Returns an error for integer observations.
     pub(crate) fn box_space(&self) -> PyResult<(FloatType, usize)> {
         match self {
             Self::Round(round) => Ok((round.dtype, round.scale.len())),
@@ -105,16 +105,16 @@ impl DiscretizerSpec {
         }
     }
 
-    /// Refuses all but the integers of an environment whose table has so many rows.
+    /// Checks that the observations are integers, with this many rows in the table.
     pub(crate) fn check_identity(&self, n_rows: usize) -> PyResult<()> {
         match self {
             Self::Identity(reader) if reader.n_rows() == n_rows => Ok(()),
-            Self::Identity(reader) => Err(invalid("discretizer", format!("of {n_rows} rows here"), reader.n_rows())),
-            _ => Err(invalid("discretizer", "'identity' here", "one for a Box of observations")),
+            Self::Identity(reader) => Err(invalid("discretizer", format!("one of {n_rows} rows"), reader.n_rows())),
+            _ => Err(invalid("discretizer", "'identity' for this environment", "one for a Box of observations")),
         }
     }
 
-    /// How many rows are active at a time.
+    /// The number of rows that are active at a time.
     pub(crate) fn n_active(&self) -> usize {
         match self {
             Self::Tiles(tiles) => tiles.tilings as usize,
@@ -123,7 +123,7 @@ impl DiscretizerSpec {
         }
     }
 
-    /// Whether the rows are those of tilings, in which a state has none of its own.
+    /// Whether the rows are those of tilings, so that no state has a row of its own.
     pub(crate) fn is_tile_coding(&self) -> bool {
         match self {
             Self::Tiles(_) => true,
@@ -132,7 +132,7 @@ impl DiscretizerSpec {
         }
     }
 
-    /// The grid, with arithmetic in `T`. It is an error for discretizers that are no grid of a Box.
+    /// The grid, with arithmetic in `T`. Returns an error for discretizers that are not a grid of a Box.
     pub(crate) fn grid<T: Float>(&self, to_dtype: impl Fn(f64) -> T) -> PyResult<AnyGrid<T>> {
         match self {
             Self::Round(round) => Ok(AnyGrid::Rounding(Rounding::new(round.axes(to_dtype)))),
@@ -178,7 +178,7 @@ impl RoundSpec {
         bounds.zip(&self.scale).map(|((&low, &high), &scale)| Axis::new(to_dtype(low), to_dtype(high), scale)).collect()
     }
 
-    /// The grid over `N` float32 components; None where there are more or fewer.
+    /// The grid over `N` float32 components; None for any other number of components.
     pub(crate) fn rounding<const N: usize>(&self) -> Option<Rounding<f32, [Axis<f32>; N]>> {
         self.axes(|bound| bound as f32).try_into().ok().map(Rounding::new)
     }
@@ -197,7 +197,7 @@ impl BinsSpec {
         Ok(Self { dtype: FloatType::parse(fields)?, edges })
     }
 
-    /// The bins over `N` float32 components; None where there are more or fewer.
+    /// The bins over `N` float32 components; None for any other number of components.
     pub(crate) fn bins<const N: usize>(&self) -> Option<Bins<f32, [Edges; N]>> {
         self.edges.clone().try_into().ok().map(Bins::new)
     }
@@ -234,7 +234,7 @@ impl TilesSpec {
         Ok(spec)
     }
 
-    /// Tile coding with room for `M` tilings, of which there must not be more.
+    /// Tile coding with room for `M` tilings, which must be enough.
     pub(crate) fn tile_coding<T: Float, const M: usize>(&self) -> TileCoding<T, M> {
         let tiles = TileCoding::new(&self.low, &self.high, &self.tiles, self.tilings);
         match self.hashed_rows {

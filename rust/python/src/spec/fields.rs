@@ -7,10 +7,10 @@ use qtab_core::settings::SettingSource;
 
 use crate::error::{invalid, required};
 
-/// What a tag stands for: its word, and how the fields beside it are parsed.
+/// A tag of a tagged dict, and the parser for the fields beside it.
 pub(crate) type Variant<T> = (&'static str, fn(&Fields<'_>) -> PyResult<T>);
 
-/// A dict of a spec, and where it is in the spec.
+/// A dict of a spec, and its path in the spec.
 pub(crate) struct Fields<'py> {
     dict: Bound<'py, PyDict>,
     path: String,
@@ -30,7 +30,7 @@ impl<'py> Fields<'py> {
         Err(PyTypeError::new_err(format!("{name} must be a dict, got {}", value.repr()?)))
     }
 
-    /// What a message calls this dict.
+    /// The name of this dict in messages.
     pub(crate) fn name(&self) -> &str {
         if self.path.is_empty() { "spec" } else { &self.path }
     }

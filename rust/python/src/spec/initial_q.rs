@@ -17,7 +17,7 @@ use crate::error::{allocation, invalid};
 
 #[derive(Clone, Debug)]
 pub(crate) enum InitialQSpec {
-    /// The values of all tables, in C order. Shared, since many runs may start from them.
+    /// The values of all tables, in C order, shared between runs.
     Given(Arc<Vec<f64>>),
     Uniform {
         low: f64,
@@ -31,7 +31,7 @@ pub(crate) enum InitialQSpec {
 impl InitialQSpec {
     pub(crate) fn parse(fields: &Fields<'_>) -> PyResult<Self> {
         let given = fields.any("initial_q")?;
-        // An array first: one of a single value counts as a number as well.
+        // Arrays first: an array of a single value also extracts as a number.
         if let Ok(values) = given.extract::<PyReadonlyArrayDyn<'_, f64>>() {
             return Ok(Self::Given(Arc::new(collect(values.as_array().iter().copied()).map_err(allocation)?)));
         }
@@ -43,12 +43,12 @@ impl InitialQSpec {
         Ok(Self::Constant { value })
     }
 
-    /// Whether some states lack actions, which a first value of -∞ says.
+    /// Whether some states lack actions, marked by an initial value of -∞.
     pub(crate) fn has_masked_actions(&self) -> bool {
         matches!(self, Self::Given(values) if values.contains(&f64::NEG_INFINITY))
     }
 
-    /// Whether values of these tables are not finite, other than those that were -∞ before the first episode.
+    /// Whether these tables hold values that are not finite, other than the initial -∞ of missing actions.
     pub(crate) fn has_overflowed(&self, tables: &[&[f64]]) -> bool {
         let initial = if let Self::Given(values) = self { &values[..] } else { &[] };
         let pairs = tables.iter().copied().flatten().zip(initial.iter().chain(repeat(&0.0)));
@@ -56,7 +56,8 @@ impl InitialQSpec {
         !pairs.into_iter().all(|(&value, &initial)| value.is_finite() || missing(value, initial))
     }
 
-    /// The same as masks, for learners that must know them beside the values; None where no state lacks an action.
+    /// The missing actions as masks, for learners that need them in addition to the values; None if no state lacks an
+    /// action.
     pub(crate) fn masks(&self, size: usize, num_actions: usize) -> PyResult<Option<Box<ActionMasks>>> {
         match self {
             Self::Given(values) if self.has_masked_actions() => {
@@ -68,7 +69,7 @@ impl InitialQSpec {
         }
     }
 
-    /// The table of state values beside a table of preferences: 0 everywhere, unless both tables are given.
+    /// The table of state values beside a table of preferences: all 0, unless both tables are given.
     pub(crate) fn critic_table(&self, shape: (usize, usize), stop: &StopFlag<'_>) -> PyResult<QTable> {
         match self {
             Self::Given(_) => self.table((1, 2), shape, &mut NoRng, stop),
@@ -76,7 +77,7 @@ impl InitialQSpec {
         }
     }
 
-    /// Table number `index` of `n_tables`, as it is before the first episode.
+    /// Table `index` of `n_tables`, as it is before the first episode.
     pub(crate) fn table<const N: usize>(
         &self,
         (index, n_tables): (usize, usize),

@@ -1,5 +1,5 @@
-//! A run as Python describes it (`qtab/_spec.py`), parsed once: every tag becomes a variant, every word a value, and what
-//! is unknown is refused here.
+//! The spec of a run from Python (`qtab/_spec.py`), parsed once: every tag becomes a variant, every word a value, and
+//! unknown ones are rejected here.
 
 mod action_masks;
 mod discretizer;
@@ -26,10 +26,10 @@ pub(crate) use qtab_core::settings::{LearningRateSpec, PolicySpec, ScheduleSpec}
 use crate::error::invalid;
 use crate::rng::BitGenerator;
 
-/// The largest learning rate: that of tile coding, of which each tiling has its share.
+/// The largest learning rate. Tile coding divides it among the tilings.
 const LARGEST_RATE: f64 = 2.0;
 
-/// The agent and its training: all of a run's description but the environment and the seed.
+/// The agent and its training: the description of a run without the environment and the seed.
 #[derive(Clone, Debug)]
 pub(crate) struct RunSpec {
     pub(crate) discretizer: DiscretizerSpec,
@@ -41,7 +41,7 @@ pub(crate) struct RunSpec {
     pub(crate) policy: PolicySpec,
     pub(crate) learning_rate: LearningRateSpec,
     pub(crate) discount: f64,
-    /// The weight of the bonus for rarely visited state-action pairs; 0 for none.
+    /// The weight of the bonus for rarely visited state-action pairs; 0 for no bonus.
     pub(crate) count_bonus: f64,
     pub(crate) initial_q: InitialQSpec,
     pub(crate) action_masks: ActionMasksSpec,
@@ -49,13 +49,15 @@ pub(crate) struct RunSpec {
     pub(crate) terminate_on_truncation: bool,
     pub(crate) episodes: u64,
     pub(crate) bit_generator: BitGenerator,
-    /// How many of the last episodes to record. Like the next two, not part of what is learned, so not of Python's spec.
+    /// The number of last episodes to record. Like `room` and `count_visits`, it does not affect learning, so Python's
+    /// spec omits it.
     pub(crate) record: usize,
     /// The memory for recordings.
     pub(crate) room: MemoryRoom,
     /// Whether to count the visits of each state-action pair.
     pub(crate) count_visits: bool,
-    /// What is estimated instead of learning to act. It has a spec of its own in Python.
+    /// The spec of a prediction, for runs that estimate values instead of learning to act. Python has a separate spec
+    /// for it.
     pub(crate) prediction: Option<Arc<PredictionSpec>>,
 }
 
@@ -63,11 +65,11 @@ impl RunSpec {
     /// The same task, in which the values of a policy are estimated.
     ///
     /// # Errors
-    /// `ValueError` for settings that only control has.
+    /// `ValueError` for settings that apply only to control.
     pub(crate) fn predicting(self, prediction: PredictionSpec) -> PyResult<Self> {
-        // Every field is named, so that none is added without a decision here.
+        // Every field is named, so that adding one forces a decision here.
         let Self {
-            // The task, and the settings that prediction supports as well.
+            // The task, and the settings that prediction also supports.
             discretizer: _,
             num_actions: _,
             max_episode_steps: _,
@@ -76,7 +78,7 @@ impl RunSpec {
             terminate_on_truncation: _,
             episodes: _,
             bit_generator: _,
-            // The prediction has a method, policies and initial weights instead.
+            // A prediction has a method, policies and initial weights instead.
             algorithm: _,
             policy: _,
             initial_q: _,
@@ -115,7 +117,7 @@ impl RunSpec {
             return Err(invalid("num_actions", "at least 1", num_actions));
         }
         let max_episode_steps = fields.get("max_episode_steps")?;
-        // Errors name these as the user did, without the path of the dict.
+        // Errors name these settings as the user did, without the path of the dict.
         let settings = Fields::new(&fields.any("settings")?)?;
         let episodes = settings.integer("episodes", 1, u64::MAX)?;
         let (algorithm, learning_rate) = AnyAlgorithm::parse(&settings, episodes, max_episode_steps, LARGEST_RATE)?;
@@ -150,7 +152,7 @@ impl RunSpec {
         Ok(spec)
     }
 
-    /// Refuses what needs a table with a row for each state.
+    /// Rejects settings that need a table with a row for each state.
     fn check_tile_coding(&self) -> PyResult<()> {
         if !self.discretizer.is_tile_coding() {
             return Ok(());
@@ -167,7 +169,7 @@ impl RunSpec {
         Ok(())
     }
 
-    /// Refuses what does not fit a state that the time limit ends.
+    /// Rejects settings that do not fit a state that ends with the time limit.
     fn check_time_aware(&self) -> PyResult<()> {
         if !self.time_aware {
             return Ok(());
@@ -184,7 +186,7 @@ impl RunSpec {
         Ok(())
     }
 
-    /// Refuses preferences with another policy than the softmax, and with a learning rate that falls with visits.
+    /// Rejects preferences with any policy but the softmax, or with a learning rate that decreases with visits.
     fn check_preferences(&self) -> PyResult<()> {
         if !self.algorithm.learns_preferences() {
             return Ok(());

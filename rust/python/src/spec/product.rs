@@ -1,4 +1,4 @@
-//! A discretizer of observations whose components are discretized differently.
+//! A discretizer with a separate discretizer for each group of components.
 
 use pyo3::prelude::*;
 use qtab_core::Features;
@@ -8,13 +8,13 @@ use super::discretizer::{DiscretizerSpec, FloatType};
 use super::fields::Fields;
 use crate::error::invalid;
 
-/// Factors, of which each discretizes some of the components.
+/// Factors, each of which discretizes some of the components.
 #[derive(Clone, Debug)]
 pub(crate) struct ProductSpec {
     pub(crate) features: Product,
-    /// How many components an observation has.
+    /// The number of components of an observation.
     pub(crate) dimensions: usize,
-    /// How many rows are active at a time.
+    /// The number of rows that are active at a time.
     pub(crate) tilings: u32,
     pub(crate) has_tiles: bool,
 }
@@ -49,7 +49,7 @@ impl ProductSpec {
     }
 }
 
-/// The features of a factor, and how many components they take.
+/// The features of a factor, and the number of components they take.
 fn features(discretizer: &DiscretizerSpec) -> PyResult<(FactorFeatures, usize)> {
     let features = match discretizer {
         DiscretizerSpec::Identity(reader) => {

@@ -1,4 +1,4 @@
-//! The environment of a run: one that Rust steps, or one that is stepped in Python.
+//! The environment of a run, stepped in Rust or in Python.
 
 use std::sync::Arc;
 

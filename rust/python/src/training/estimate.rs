@@ -1,4 +1,4 @@
-//! Estimates with many seeds in one call, on threads of the call's own where Rust steps the environment.
+//! Estimates with many seeds in one call, on several threads if Rust steps the environment.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -16,15 +16,15 @@ use crate::interrupt::{on_threads, run_polled};
 use crate::runs::{Run, python_task};
 use crate::spec::{Fields, PredictionSpec, RunSpec};
 
-/// How many episodes are logged at once. Their returns are of no further use.
+/// The number of episodes logged at once. Their returns are not used.
 const EPISODES_AT_ONCE: u64 = 1 << 16;
 
 /// The index of a run that failed, and why.
 type FailedRun = (usize, PyErr);
 
 /// Estimates values with one run for each seed on `threads` threads, and writes the weights after each of the ascending
-/// numbers of `episodes` into `weights`, (seeds, episodes, weights). `report` is called now and then with the number of
-/// episodes that all runs have finished. Returns the runs that failed; what they had not reached is left as it was.
+/// numbers of `episodes` into `weights`, (seeds, episodes, weights). `report` is called at intervals with the number of
+/// episodes that all runs have finished. Returns the runs that failed; the rest of their weights are left unchanged.
 #[pyfunction]
 #[pyo3(signature = (spec, prediction, seeds, episodes, weights, threads, report, memory = None))]
 #[expect(clippy::too_many_arguments, reason = "they are Python's")]
@@ -69,13 +69,13 @@ pub(crate) fn estimate_values(
     let factory = env.runs(&run_spec)?;
     let mut failed = Vec::new();
     if calls_python {
-        // On this thread, which holds the interpreter's lock: to take it at each step would take much longer than the step.
+        // On this thread, which holds the GIL: acquiring it at each step would take much longer than the step.
         for (index, row) in rows {
             let run = factory.build(&seeds[index], &StopFlag::new());
             if let Err(error) = run.and_then(|built| estimates.run(built.run, row, check)) {
                 let diverged = error.is_instance_of::<PyOverflowError>(py);
                 failed.push((index, error));
-                // An exception of Python code ends all runs.
+                // An exception from Python code ends all runs.
                 if !diverged {
                     break;
                 }
@@ -84,7 +84,7 @@ pub(crate) fn estimate_values(
         return Ok(failed);
     }
     let (rows, shared_failed) = (Mutex::new(rows), Mutex::new(failed));
-    // One run after the other, until none is left.
+    // Takes runs one after another, until none is left.
     let work = |stop: &StopFlag<'_>| {
         while !stop.is_set() {
             let Some((index, row)) = rows.lock().unwrap_or_else(PoisonError::into_inner).next() else { return };
@@ -101,7 +101,7 @@ pub(crate) fn estimate_values(
     Ok(failed)
 }
 
-/// What all runs of one call share.
+/// The data that all runs of one call share.
 struct Estimates<'a> {
     episodes: &'a [u64],
     finished: &'a AtomicU64,
@@ -109,7 +109,8 @@ struct Estimates<'a> {
 }
 
 impl Estimates<'_> {
-    /// Runs to each of the numbers of episodes, and writes the weights then. Adds the finished episodes to those of all runs.
+    /// Runs to each of the numbers of episodes, and writes the weights then. Adds the finished episodes to those of all
+    /// runs.
     fn run(&self, mut run: Box<dyn Run>, row: &mut [f64], check: impl Fn() -> Result<(), RunError>) -> PyResult<()> {
         run.limit_memory(self.room.clone());
         let width = row.len() / self.episodes.len();
@@ -135,7 +136,7 @@ impl Estimates<'_> {
     }
 }
 
-/// The error as Python raises it, in a run of which so many episodes were finished before.
+/// Converts the error of a run to a Python exception; `finished` episodes were finished before.
 fn as_python(error: RunError, finished: u64) -> PyErr {
     match error {
         RunError::Diverged { episode } => PyOverflowError::new_err(format!(

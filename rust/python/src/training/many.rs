@@ -1,4 +1,4 @@
-//! Many runs in one call, on threads of the call's own, in batches where the runs can be batched.
+//! Many runs in one call, on several threads, and in batches if the runs can be batched.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -21,8 +21,8 @@ type FailedRun = (usize, PyErr);
 /// Trains one run for each seed, in an environment that Rust steps, on `threads` threads, and writes the runs into
 /// `results`. Returns the runs that failed; unless `keep_going` is set, the first failure ends all runs.
 ///
-/// The learners of all runs share `memory`. A run starts when a thread is free for it, so that few more tables are alive
-/// than threads are at work.
+/// The learners of all runs share `memory`. A run starts when a thread becomes free, so that few more tables exist than
+/// threads are working.
 #[pyfunction]
 #[pyo3(signature = (spec, seeds, results, threads, keep_going, memory = None))]
 pub(crate) fn train_many(
@@ -41,7 +41,7 @@ pub(crate) fn train_many(
     let Seeds(seeds) = seeds;
     let rows = results.rows(seeds.len())?;
     let threads = threads.min(seeds.len());
-    // A few runs are divided evenly among the threads first.
+    // If there are few runs, divide them evenly among the threads.
     let share = seeds.len().div_ceil(threads.max(1));
     let queue = WorkQueue {
         factory: &*factory,
@@ -59,7 +59,7 @@ pub(crate) fn train_many(
     Ok(failed)
 }
 
-/// What the threads of one call share.
+/// The data that the threads of one call share.
 struct WorkQueue<'a> {
     factory: &'a dyn RunFactory,
     initial_q: &'a InitialQSpec,
@@ -72,7 +72,7 @@ struct WorkQueue<'a> {
 }
 
 impl<'a> WorkQueue<'a> {
-    /// What one thread does: it keeps a batch of up to `share` runs full until no run is left.
+    /// The work of one thread: keeps a batch of up to `share` runs full until no run is left.
     fn run_worker(&self, share: usize, stop: &StopFlag<'_>) {
         let mut batch = self.factory.batch(&self.room);
         let mut rows = Vec::new();
@@ -104,7 +104,7 @@ impl<'a> WorkQueue<'a> {
         }
     }
 
-    /// Starts runs until the batch has so many `lanes`, or no run is left.
+    /// Starts runs until the batch has `lanes` runs, or no run is left.
     fn fill(&self, batch: &mut dyn RunBatch, rows: &mut Vec<Row<'a>>, lanes: usize, stop: &StopFlag<'_>) {
         while rows.len() < lanes && !self.is_cancelled(stop) {
             let Some(row) = self.rows.lock().unwrap_or_else(PoisonError::into_inner).next() else { return };

@@ -1,4 +1,4 @@
-//! What Python calls to train: one run that it can advance, or many runs at once.
+//! The training functions that Python calls: one run that Python can advance, or many runs at once.
 
 mod env_spec;
 mod estimate;
@@ -15,13 +15,13 @@ pub(crate) use many::train_many;
 pub(crate) use testbed::run_testbeds;
 pub(crate) use trainer::PyTrainer;
 
-/// Signals are checked after this much work: some 8192 steps of Q-learning on a grid, a fraction of a millisecond.
+/// The work between two checks for signals: some 8192 steps of Q-learning on a grid, a fraction of a millisecond.
 const WORK_BETWEEN_CHECKS: u64 = 8192;
 
-/// How many bytes the user permits, for messages, and how many of them are left for what grows during the runs.
+/// The memory limit in bytes, for messages, and the number of bytes left for data that grows during the runs.
 pub(crate) type Memory = (u64, u64);
 
-/// The room for what grows; without a limit, as much as there is.
+/// The room for data that grows; unlimited without a limit.
 fn room_of(memory: Option<Memory>) -> MemoryRoom {
     memory.map_or_else(MemoryRoom::unlimited, |(limit, left)| MemoryRoom::new(limit, left))
 }

@@ -1,4 +1,4 @@
-//! Where the results of many runs are written: straight into `NumPy`'s arrays, a row for each run.
+//! The results of many runs, written directly into `NumPy` arrays, one row per run.
 
 use std::mem::take;
 
@@ -8,15 +8,15 @@ use pyo3::prelude::*;
 use crate::error::invalid;
 use crate::runs::Run;
 
-/// The arrays of `Results` in `qtab/_spec.py`. Of a run that failed, the episodes before the failure are written, and the
-/// rest of its row is left as it was.
+/// The arrays of `Results` in `qtab/_spec.py`. If a run fails, the episodes before the failure are written, and the
+/// rest of its row is left unchanged.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Results<'py> {
     returns: PyReadwriteArray2<'py, f64>,
     lengths: PyReadwriteArray2<'py, i64>,
     terminated: PyReadwriteArray2<'py, bool>,
-    /// (runs, values), or (runs, 0) where the tables are not kept.
+    /// (runs, values), or (runs, 0) if the tables are not kept.
     tables: PyReadwriteArray2<'py, f64>,
     /// Whether a run is finished and its row complete.
     finished: PyReadwriteArray1<'py, bool>,
@@ -33,7 +33,7 @@ pub(super) struct Row<'a> {
 }
 
 impl Row<'_> {
-    /// How many episodes the run has.
+    /// The number of episodes of the run.
     pub(super) fn episodes(&self) -> usize {
         self.returns.len()
     }
@@ -47,7 +47,7 @@ impl Row<'_> {
         self.terminated[..count].copy_from_slice(&episodes.terminated[..count]);
     }
 
-    /// Writes the tables of a run whose episodes are all written, which completes the row.
+    /// Writes the tables of a run whose episodes have all been written, which completes the row.
     pub(super) fn write_tables(self, run: &dyn Run) -> PyResult<()> {
         if !self.tables.is_empty() {
             let tables = run.tables();
@@ -67,7 +67,7 @@ impl Row<'_> {
     }
 }
 
-/// The rows that are still to be handed out, in their order. It holds no list of them: there may be many millions.
+/// The remaining rows, in order. They are not kept in a list, as there may be millions.
 pub(super) struct Rows<'a> {
     next: usize,
     /// The numbers of columns: episodes, and values of the tables.
@@ -101,7 +101,7 @@ impl<'a> Iterator for Rows<'a> {
 }
 
 impl Results<'_> {
-    /// The rows, one for each of so many runs.
+    /// The rows, one for each of `runs` runs.
     pub(super) fn rows(&mut self, runs: usize) -> PyResult<Rows<'_>> {
         let (episodes, values) = (self.returns.shape()[1], self.tables.shape()[1]);
         let finished = self.finished.as_slice_mut()?;
@@ -124,7 +124,7 @@ impl Results<'_> {
     }
 }
 
-/// The values of an array, which must have this shape.
+/// The values of an array, whose shape is checked.
 fn all<'a, T: numpy::Element>(
     name: &str,
     array: &'a mut PyReadwriteArray2<'_, T>,

@@ -19,7 +19,7 @@ use crate::spec::{Fields, InitialQSpec, RunSpec};
 type Row<'a> = (&'a Seed, &'a mut [f64], &'a mut [bool]);
 
 /// Trains one run for each seed on `threads` threads, and writes the reward of each step and whether its action was
-/// optimal into `rewards` and `optimal`, (runs, steps). A run has the numbers of `Trainer`.
+/// optimal into `rewards` and `optimal`, (runs, steps). The numbers equal those of `Trainer`.
 #[pyfunction]
 pub(crate) fn run_testbeds(
     py: Python<'_>,

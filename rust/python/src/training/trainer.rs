@@ -1,4 +1,4 @@
-//! One run, which Python advances step by step: `Trainer.advance` is its only long call.
+//! One run, which Python advances step by step. `Trainer.advance` is its only long call.
 
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -24,20 +24,20 @@ use crate::spec::{Fields, InitialQSpec, RunSpec};
 /// Returns, lengths, and whether each episode ended in a terminal state.
 type FinishedEpisodes<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<bool>>);
 
-/// The same, given.
+/// Finished episodes as an argument: returns, lengths, and whether each ended in a terminal state.
 type Episodes<'py> = (PyReadonlyArray1<'py, f64>, PyReadonlyArray1<'py, i64>, PyReadonlyArray1<'py, bool>);
 
-/// The generator's state at the start of an episode, and its actions.
+/// The generator's state at the start of an episode, and the episode's actions.
 type PyRecording<'py> = (Py<PyAny>, Bound<'py, PyArray1<u32>>);
 
-/// A training run: the spec of `qtab/_spec.py`, a seed (a non-negative integer of any size), how many of the last
-/// episodes to record, how many bytes the user permits and how many of them are left for what grows during the run, and
-/// whether to count the visits of each state-action pair.
+/// A training run. The arguments are the spec of `qtab/_spec.py`, a seed (a non-negative integer of any size), the
+/// number of last episodes to record, the memory limit in bytes with the bytes left for data that grows during the run,
+/// and whether to count the visits of each state-action pair.
 #[pyclass(frozen, name = "Trainer", module = "qtab._core")]
 pub(crate) struct PyTrainer {
     run: Mutex<BuiltRun>,
     initial_q: InitialQSpec,
-    /// Whether the results were taken out.
+    /// Whether the results have been taken out.
     over: AtomicBool,
 }
 
@@ -50,7 +50,7 @@ impl PyTrainer {
         let run_spec = RunSpec { record, room: room.clone(), count_visits: visits, ..RunSpec::parse(&fields)? };
         let environment = EnvironmentSpec::parse(&fields.nested("env")?)?;
         let initial_q = run_spec.initial_q.clone();
-        // A large table takes seconds to fill.
+        // Filling a large table takes seconds.
         let built = match environment {
             EnvironmentSpec::Native(env) => run_detached(py, |stop| env.runs(&Arc::new(run_spec))?.build(&seed, stop))?,
             EnvironmentSpec::Python(env) => {
@@ -63,8 +63,8 @@ impl PyTrainer {
         Ok(Self { run: Mutex::new(built), initial_q, over: AtomicBool::new(false) })
     }
 
-    /// Trains until `episodes` episodes are finished, counted from the start of the run. If it is interrupted, what was
-    /// learned so far stays, and a further call resumes the run.
+    /// Trains until `episodes` episodes are finished, counted from the start of the run. After an interruption, the
+    /// learned values are kept, and another call resumes the run.
     fn advance(&self, py: Python<'_>, episodes: usize) -> PyResult<()> {
         let mut guard = self.lock()?;
         if self.over.load(Ordering::Acquire) {
@@ -97,7 +97,7 @@ impl PyTrainer {
         ))
     }
 
-    /// All finished episodes, taken out without a copy, for which there may be no memory. It ends the training.
+    /// All finished episodes, moved out without a copy, for which memory might not suffice. This ends the training.
     fn take_episodes<'py>(&self, py: Python<'py>) -> PyResult<FinishedEpisodes<'py>> {
         let mut built = self.lock()?;
         self.over.store(true, Ordering::Release);
@@ -120,8 +120,8 @@ impl PyTrainer {
         Ok(PyArray1::from_vec(py, py.detach(copy)?))
     }
 
-    /// All that is needed beside the tables and the finished episodes to resume the run exactly. Of an environment stepped
-    /// in Python the generator is not part of it, and an unfinished episode is left out.
+    /// The data that resumes the run exactly, together with the tables and the finished episodes. For an environment
+    /// stepped in Python, the generator and an unfinished episode are not included.
     fn checkpoint<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let save = || {
             let mut bytes = Vec::new();
@@ -135,9 +135,9 @@ impl PyTrainer {
         })
     }
 
-    /// Makes a new trainer of the same spec and seed (but for the number of episodes) the one that had these tables, these
-    /// finished episodes and this checkpoint. Returns whether the checkpoint was made within an episode that cannot be
-    /// continued: the next one follows.
+    /// Restores a run from its tables, finished episodes and checkpoint, in a new trainer of the same spec and seed
+    /// (except for the number of episodes). Returns whether the checkpoint was made within an episode that cannot be
+    /// continued: the run then resumes with the next one.
     fn restore(
         &self,
         py: Python<'_>,
@@ -163,28 +163,28 @@ impl PyTrainer {
         py.detach(restore)
     }
 
-    /// How often each action was taken in each row, rows first; None where visits are not counted.
+    /// The number of times each action was taken in each row, rows first; None if visits are not counted.
     fn visits<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray1<i64>>>> {
         self.lock()?.run.visits().map(|visits| array_of(py, visits.iter().copied())).transpose()
     }
 
-    /// Which actions the states have, as each was last seen, rows first; with tile coding those of the last state. None
-    /// without action masks.
+    /// The available actions of each state when it was last seen, rows first; with tile coding, those of the last
+    /// state. None without action masks.
     fn action_masks<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray1<bool>>>> {
         self.lock()?.run.action_masks().map(|masks| array_of(py, masks.iter().copied())).transpose()
     }
 
-    /// How many updates were made from a model; None where that is not counted.
+    /// The number of updates made from a model; None if they are not counted.
     fn planning_updates(&self) -> PyResult<Option<u64>> {
         Ok(self.lock()?.run.planning_updates())
     }
 
-    /// The estimate of the average reward; None where none is learned.
+    /// The estimate of the average reward; None if none is learned.
     fn average_reward(&self) -> PyResult<Option<f64>> {
         Ok(self.lock()?.run.average_reward())
     }
 
-    /// The recorded episodes, oldest first, taken out. It ends the training.
+    /// The recorded episodes, oldest first, moved out. This ends the training.
     fn take_recordings<'py>(&self, py: Python<'py>) -> PyResult<Vec<PyRecording<'py>>> {
         let built = self.lock()?;
         self.over.store(true, Ordering::Release);
@@ -210,14 +210,14 @@ impl PyTrainer {
             Ok(guard) => Ok(guard),
             Err(TryLockError::Poisoned(poisoned)) => Ok(poisoned.into_inner()),
             Err(TryLockError::WouldBlock) => Err(PyRuntimeError::new_err(
-                "this trainer is at work in another thread, or called from its own environment",
+                "this trainer is busy in another thread, or was called from its own environment",
             )),
         }
     }
 }
 
-/// Trains until `episodes` episodes are finished, or until `pauses`, which is asked every fraction of a millisecond. Returns
-/// whether they are finished.
+/// Trains until `episodes` episodes are finished, or until `pauses`, which is called every fraction of a millisecond,
+/// returns true. Returns whether they are finished.
 fn advance_until(run: &mut dyn Run, episodes: usize, pauses: &dyn Fn() -> bool) -> Result<bool, RunError> {
     let is_finished = |run: &dyn Run| run.episodes().returns.len() >= episodes;
     while !is_finished(run) && !pauses() {

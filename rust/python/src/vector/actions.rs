@@ -1,4 +1,4 @@
-//! The actions of a vector step, one for each sub-environment. All of them are checked before any is taken.
+//! The actions of a vector step, one for each sub-environment. All are checked before any is taken.
 
 use numpy::{PyArray1, PyArray2, PyArrayDescrMethods, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyAssertionError, PyTypeError, PyValueError};
@@ -10,15 +10,15 @@ use qtab_core::numeric::Scalar;
 use crate::convert::{LARGEST_FORCE, discrete_action, double, first_item, numpy_scalar, small_array};
 use crate::error::invalid;
 
-/// Up to this many items are read faster one by one than by borrowing the array.
+/// Up to this many items, reading one by one is faster than borrowing the array.
 const READ_ONE_BY_ONE: usize = 8;
 
 /// A type of actions that Python passes in batches.
 pub(crate) trait BatchAction: Copy + Send + Sync + 'static {
-    /// Stands for the action of a sub-environment that does not take one.
+    /// Placeholder for a sub-environment that takes no action.
     const NONE: Self;
 
-    /// Reads one action for each item of `into`. Those of `inactive` sub-environments may be anything.
+    /// Reads one action for each item of `into`. The actions of `inactive` sub-environments may have any value.
     fn read(
         actions: &Bound<'_, PyAny>,
         num_actions: usize,
@@ -29,11 +29,11 @@ pub(crate) trait BatchAction: Copy + Send + Sync + 'static {
     /// The action as Gymnasium's environments store it.
     fn to_python(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>>;
 
-    /// Saves the action, or replaces it by the one that was saved.
+    /// Saves the action, or replaces it by the saved one.
     fn persist(&mut self, num_actions: usize, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError>;
 }
 
-/// Checks the length of a sequence that is no array.
+/// Checks the length of a sequence that is not an array.
 fn check_length(actions: &Bound<'_, PyAny>, shape: &str, expected: usize) -> PyResult<()> {
     match actions.len() {
         Ok(length) if length == expected => Ok(()),
@@ -89,13 +89,13 @@ impl BatchAction for usize {
     }
 }
 
-/// Reads the array if its length fits and all its items are actions, and returns whether they are.
+/// Reads the array, and returns whether its length fits and all its items are valid actions.
 fn read_integers(actions: &Bound<'_, PyArray1<i64>>, num_actions: usize, into: &mut [usize]) -> PyResult<bool> {
     if actions.len() != into.len() {
         return Ok(false);
     }
     let last = num_actions.cast_signed() as i64 - 1;
-    // Negative as soon as one of them was: an action below 0, or above the last one.
+    // Becomes negative if any action is below 0 or above the last one.
     let mut signs = 0;
     let mut put = |item: &mut usize, action: i64| {
         *item = action as usize;
@@ -170,7 +170,7 @@ impl BatchAction for Scalar {
     }
 }
 
-/// Reads an array of as many rows as `into` has items, in its dtype.
+/// Reads an array with as many rows as `into` has items, in the array's dtype.
 fn read_array(actions: &Bound<'_, PyUntypedArray>, into: &mut [Scalar]) -> PyResult<()> {
     if let Ok(single) = actions.cast::<PyArray2<f32>>() {
         let view = single.try_readonly()?;
@@ -181,7 +181,7 @@ fn read_array(actions: &Bound<'_, PyUntypedArray>, into: &mut [Scalar]) -> PyRes
     if !matches!(dtype.kind(), b'i' | b'u') && actions.cast::<PyArray2<f64>>().is_err() {
         return Err(PyTypeError::new_err(format!("actions must have dtype float32 or float64, got {dtype}")));
     }
-    // Integers meet Python floats alone, so they compute as doubles.
+    // Integers are combined only with Python floats, so they are computed as doubles.
     let double = actions.call_method1("astype", ("float64",))?.cast_into::<PyArray2<f64>>()?;
     let view = double.try_readonly()?;
     into.iter_mut().zip(view.as_array()).for_each(|(item, &force)| *item = Scalar::Double(force));

@@ -1,5 +1,5 @@
-//! The infos of sub-environments, batched as `VectorEnv._add_info` batches them: for each name an array, and under the
-//! name with an underscore a mask of the sub-environments that have it.
+//! The infos of sub-environments, batched as in `VectorEnv._add_info`: an array for each name and, under the name with
+//! a leading underscore, a mask of the sub-environments that have the info.
 
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::intern;
@@ -13,22 +13,22 @@ use super::BatchObservation;
 use crate::convert::{array_of, rows_array};
 use crate::error::allocation;
 
-/// What a vector environment needs to know of an environment type besides its dynamics.
+/// The properties of an environment type, besides its dynamics, that a vector environment needs.
 pub(crate) struct EnvInfo<E: Env> {
-    /// From this many sub-environments a thread on, a step takes long enough to be worth starting the thread.
+    /// The number of sub-environments per thread from which a step takes long enough to be worth starting the thread.
     pub(crate) envs_per_thread: usize,
-    /// The infos of its transitions, where it has any.
+    /// The infos of its transitions, if it has any.
     pub(crate) transition: Option<TransitionInfo<E::State>>,
     /// Writes a state, and the action that led to it, into a dict of Gymnasium's attributes.
     pub(crate) snapshot: Snapshot<E>,
-    /// The attribute that is 0 after an episode reached a terminal state.
+    /// The attribute that is 0 after an episode has reached a terminal state.
     pub(crate) terminal_counter: Option<&'static str>,
 }
 
 pub(crate) type Snapshot<E> =
     fn(&Bound<'_, PyDict>, &E, &<E as Env>::State, Option<<E as Env>::Action>) -> PyResult<()>;
 
-/// What the infos of a finite environment say.
+/// The infos of an environment with finitely many states.
 pub(crate) struct TransitionInfo<S> {
     /// The probability of the last transition.
     pub(crate) probability: fn(&S) -> f64,
@@ -37,7 +37,7 @@ pub(crate) struct TransitionInfo<S> {
     pub(crate) action_masks: Option<ActionMasks<S>>,
 }
 
-/// For each state of the table, which actions change it.
+/// For each state of the table, the actions that change it.
 pub(crate) struct ActionMasks<S> {
     pub(crate) masks: Vec<[i8; 6]>,
     /// The index of a state in the table.
@@ -56,13 +56,13 @@ impl<'py> Infos<'py> {
         Self { py, num_envs, dict: PyDict::new(py) }
     }
 
-    /// Adds what all sub-environments report after a step.
+    /// Adds the infos of all sub-environments after a step.
     pub(super) fn add_step<E: Env, S: States<E>>(&self, envs: &VectorEnv<E, S>, info: &EnvInfo<E>) -> PyResult<()> {
         let Some(transition) = &info.transition else { return Ok(()) };
         self.add_transition(&self.dict, transition, envs.states().enumerate(), false)
     }
 
-    /// Adds what the sub-environments of these indices report after a reset.
+    /// Adds the infos of the sub-environments with these indices after a reset.
     pub(super) fn add_reset<E: Env, S: States<E>>(
         &self,
         envs: &VectorEnv<E, S>,
@@ -133,7 +133,7 @@ impl<'py> Infos<'py> {
     }
 }
 
-/// So many copies of a value.
+/// This many copies of a value.
 pub(super) fn repeated<T: Clone>(value: T, count: usize) -> PyResult<Vec<T>> {
     filled(&value, count, &StopFlag::new()).map_err(allocation)
 }

@@ -1,4 +1,4 @@
-//! The sub-environments of one type, and their interface to Python whatever the type is.
+//! The sub-environments of one type, and their type-independent interface to Python.
 
 use pyo3::exceptions::PyAssertionError;
 use pyo3::prelude::*;
@@ -13,15 +13,15 @@ use super::{BatchAction, BatchObservation, SubEnvRng};
 use crate::convert::array_from;
 use crate::error::allocation;
 
-/// How sub-environments are to be stepped.
+/// Options for stepping sub-environments.
 #[derive(Clone, Copy)]
 pub(crate) struct VectorOptions {
     pub(crate) num_envs: usize,
     pub(crate) max_episode_steps: Option<u64>,
     pub(crate) autoreset: Autoreset,
-    /// Whether observations are returned in new arrays each time.
+    /// Whether each step returns its observations in new arrays.
     pub(crate) copy: bool,
-    /// The most threads; None means as many as there are cores.
+    /// The maximum number of threads; None for one per core.
     pub(crate) threads: Option<usize>,
 }
 
@@ -29,7 +29,7 @@ pub(crate) struct VectorOptions {
 pub(crate) type VectorStep<'py> =
     (Bound<'py, PyAny>, Bound<'py, PyAny>, Bound<'py, PyAny>, Bound<'py, PyAny>, Bound<'py, PyDict>);
 
-/// A sub-environment as Gymnasium's class would hold it: its attributes, the steps of its episode so far, whether the
+/// A sub-environment as Gymnasium's class would store it: its attributes, the steps of its episode so far, whether the
 /// episode is done, and the observation.
 pub(crate) type EnvSnapshot<'py> = (Bound<'py, PyDict>, u64, bool, Bound<'py, PyAny>);
 
@@ -48,11 +48,11 @@ pub(crate) trait DynVectorEnv: Send + Sync {
 
     fn snapshot<'py>(&self, py: Python<'py>, index: usize) -> PyResult<EnvSnapshot<'py>>;
 
-    /// Saves the episodes, or restores those that were saved.
+    /// Saves the episodes, or restores the saved ones.
     fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError>;
 }
 
-/// Sub-environments that are copies of `env`, whose states are stored as `S`.
+/// Sub-environments that are copies of `env`, with their states stored as `S`.
 pub(crate) fn native_vector_env<E, S>(
     py: Python<'_>,
     env: E,
@@ -64,7 +64,7 @@ where
     S: States<E> + Send + Sync + 'static,
 {
     let VectorOptions { num_envs, max_episode_steps, autoreset, copy, threads } = options;
-    // Threads start at each step: with fewer sub-environments each of them would make the step slower.
+    // Threads start at each step: with fewer sub-environments, every thread would make the step slower.
     let cores = || std::thread::available_parallelism().map_or(1, usize::from);
     let threads = threads.unwrap_or_else(cores).min(num_envs / info.envs_per_thread);
     let envs = VectorEnv::<E, S>::new(env, num_envs, max_episode_steps, autoreset, threads).map_err(allocation)?;
@@ -87,14 +87,14 @@ where
 struct NativeVectorEnv<E: Env, S> {
     envs: VectorEnv<E, S>,
     info: EnvInfo<E>,
-    /// The last actions, and the actions that are being read.
+    /// The last actions, and a buffer for the actions being read.
     actions: [Vec<E::Action>; 2],
     observations: Vec<E::Observation>,
     rewards: Vec<f64>,
     terminated: Vec<bool>,
     truncated: Vec<bool>,
     autoreset: Autoreset,
-    /// The arrays that hold the observations where they are not copied.
+    /// The arrays that hold the observations if they are not copied.
     out: Option<Py<PyAny>>,
 }
 
@@ -137,7 +137,7 @@ where
         };
         let actions = &self.actions[0];
         if envs.threads() > 1 {
-            // Detached, so that a thread that draws from a generator of Python's can attach itself.
+            // Detached, so that a thread that draws from a Python generator can attach itself.
             py.detach(|| envs.step(actions, rngs, buffers));
         } else {
             envs.step(actions, rngs, buffers);

@@ -7,12 +7,12 @@ use pyo3::types::PyTuple;
 
 use crate::convert::{array_of, rows_array, small_array};
 
-/// A type of observations that are handed to Python in batches.
+/// A type of observations that Python receives in batches.
 pub(crate) trait BatchObservation: Copy + Send + 'static {
     /// The observations in new arrays.
     fn batched<'py>(py: Python<'py>, all: &[Self]) -> PyResult<Bound<'py, PyAny>>;
 
-    /// Writes the observations into arrays that `batched` made.
+    /// Writes the observations into arrays made by `batched`.
     fn write(all: &[Self], out: &Bound<'_, PyAny>) -> PyResult<()>;
 
     /// One observation, as a single environment returns it.
@@ -28,7 +28,7 @@ impl<const N: usize> BatchObservation for [f32; N] {
     fn write(all: &[Self], out: &Bound<'_, PyAny>) -> PyResult<()> {
         let mut out = out.cast::<PyArray2<f32>>()?.try_readwrite()?;
         let out = out.as_slice_mut()?;
-        // Python code has the array too, and may have resized it.
+        // Python code also has the array, and may have resized it.
         if out.len() != all.len() * N {
             return Err(PyValueError::new_err(format!("the array of observations must keep its {} rows", all.len())));
         }

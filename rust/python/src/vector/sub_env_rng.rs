@@ -8,8 +8,8 @@ use qtab_core::random::{Pcg64, Rng};
 use crate::convert::Seed;
 use crate::rng::environment_rng;
 
-/// A sub-environment's `np_random`: a generator in Rust until Python asks for it, then `NumPy`'s own, so that the two never
-/// diverge.
+/// A sub-environment's `np_random`: a generator in Rust until Python reads it, then a `NumPy` generator, so that the
+/// two never diverge.
 pub(crate) enum SubEnvRng {
     Native(Pcg64),
     /// A `numpy.random.Generator`.
@@ -23,7 +23,7 @@ impl SubEnvRng {
     }
 }
 
-/// The number that a method of `NumPy`'s generator returned. The call fails only where memory runs out, which a generator
+/// The number returned by a method of `NumPy`'s generator. The call fails only if memory runs out, which a generator
 /// cannot report.
 fn returned<T: Default + for<'a, 'py> FromPyObject<'a, 'py, Error: Into<PyErr>>>(
     py: Python<'_>,
@@ -57,8 +57,8 @@ impl Rng for SubEnvRng {
     }
 }
 
-/// The position of a generator in Rust, into which one of the same seed is restored. Of a generator of Python's only that it
-/// is one: Python copies and pickles it.
+/// For a generator in Rust, its position, restored into a generator of the same seed. For a Python generator, only that
+/// it is one: Python copies and pickles it.
 impl Persist for SubEnvRng {
     fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
         let mut native = matches!(self, Self::Native(_));

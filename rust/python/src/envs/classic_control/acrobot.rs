@@ -57,7 +57,7 @@ impl ClassicEnv for Acrobot {
         if noise > 0.0 {
             let generator = env.getattr(intern!(py, "np_random"))?;
             torque += generator.call_method1(intern!(py, "uniform"), (-noise, noise))?.extract::<f64>()?;
-            // The noise is drawn, so Gymnasium's code cannot take this step any more.
+            // The noise has been drawn, so this step can no longer fall back to Gymnasium's code.
             return Ok(Some(StepResult::new(py, self, self.transition(state, torque))));
         }
         Ok(StepResult::new(py, self, self.transition(state, torque)).if_finite())

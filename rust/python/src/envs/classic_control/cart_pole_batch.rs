@@ -1,4 +1,4 @@
-//! The physics of Gymnasium's `CartPoleVectorEnv`, whose state is one array of all cart-poles.
+//! The physics of Gymnasium's `CartPoleVectorEnv`, whose state is a single array of all cart-poles.
 
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -10,17 +10,17 @@ use super::dyn_env::read_parameters;
 use super::numpy_uses_libm;
 use crate::error::allocation;
 
-/// `NumPy` warns of what it computes with larger numbers, so it computes with them.
+/// With larger numbers `NumPy` may warn, so `NumPy` takes those steps.
 const LARGEST: f64 = 1e6;
 
 /// The next states, their rewards, whether they are terminal, and the indices of those to reset.
 type NextStates<'py> =
     (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f32>>, Bound<'py, PyArray1<bool>>, Bound<'py, PyArray1<i64>>);
 
-/// One step of all cart-poles, with the parameters that the attributes of `env` have. `state` is a (4, n) array of float64,
-/// `actions` an (n,) array of int64, and `done` an (n,) array of whether the episode ended in the step before: its reward
-/// is then 0, and the caller resets it. Returns None for what Rust would not compute as `NumPy` does, or where `NumPy` would
-/// warn.
+/// One step of all cart-poles, with the parameters in the attributes of `env`. `state` is a (4, n) array of float64,
+/// `actions` an (n,) array of int64, and `done` an (n,) array that tells whether the episode ended in the previous
+/// step: its reward is then 0, and the caller resets it. Returns None if Rust would not compute the numbers of `NumPy`,
+/// or if `NumPy` would warn.
 #[pyfunction]
 pub(crate) fn step_cart_poles<'py>(
     env: &Bound<'py, PyAny>,
@@ -46,7 +46,7 @@ pub(crate) fn step_cart_poles<'py>(
     let (Ok(numbers), Ok(actions), Ok(done)) = (state.as_slice(), actions.as_slice(), done.as_slice()) else {
         return Ok(None);
     };
-    // All bits that occur: without a branch for each action, which would keep the compiler from SIMD code.
+    // The union of all bits, without a branch for each action, which would keep the compiler from using SIMD.
     if actions.iter().fold(0, |bits, action| bits | action) >> 1 != 0 {
         return Ok(None);
     }
@@ -70,7 +70,7 @@ pub(crate) fn step_cart_poles<'py>(
     Ok(Some((state, PyArray1::from_vec(py, rewards), PyArray1::from_vec(py, terminated), PyArray1::from_vec(py, over))))
 }
 
-/// The rewards of Gymnasium's `CartPoleVectorEnv`: those of the book are `-terminated`, so that 0 has a sign.
+/// The rewards of Gymnasium's `CartPoleVectorEnv`. With the book's rewards they are `-terminated`, so 0 has a sign.
 fn rewards(cart_pole: &CartPole, terminated: &[bool]) -> Result<Vec<f32>, AllocationError> {
     collect(terminated.iter().map(
         |&terminated| {

@@ -35,7 +35,7 @@ impl ClassicEnv for ContinuousMountainCar {
         let Some((state, action)) = state.scalars().zip(box_action(action)) else { return Ok(None) };
         let step = self.step(<[Scalar; 2]>::into(state), action, &mut NoRng);
         let mut result = StepResult::new::<_, 2, 2>(env.py(), self, step);
-        // Gymnasium returns its state itself.
+        // Gymnasium returns the state array itself as the observation.
         result.state = StoredState::Python(result.observation.clone().unbind());
         Ok(result.if_finite())
     }

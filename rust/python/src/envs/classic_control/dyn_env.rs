@@ -1,4 +1,4 @@
-//! Every [`ClassicEnv`] as a value whose type is known at run time only.
+//! A [`ClassicEnv`] whose type is known only at run time.
 
 use std::sync::Arc;
 
@@ -61,8 +61,8 @@ impl<E: ClassicEnv> DynClassicEnv for E {
     }
 }
 
-/// Reads the numbers and flags from Gymnasium's environment; returns the name of the first one that Rust cannot take
-/// over, such as a number of another width.
+/// Reads the numbers and flags from Gymnasium's environment. Returns the name of the first one that Rust does not
+/// support, such as a number of another width.
 pub(super) fn read_parameters<P: Parameters>(
     parameters: &mut P,
     env: &Bound<'_, PyAny>,
@@ -83,10 +83,10 @@ pub(super) fn read_parameters<P: Parameters>(
     Ok(None)
 }
 
-/// An environment with all its parameters, and the actions of a continuous one.
+/// An environment with its parameters fixed, and the available actions if its action space is continuous.
 struct ClassicControl<E> {
     env: E,
-    /// In the float32 of Gymnasium's action spaces; empty where the actions are discrete.
+    /// In float32, the dtype of Gymnasium's action spaces; empty for discrete actions.
     actions: Vec<f32>,
 }
 

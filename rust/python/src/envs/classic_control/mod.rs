@@ -1,4 +1,4 @@
-//! Gymnasium's classic control: physics with parameters that a user may assign. One environment a file.
+//! Gymnasium's classic control: physics with parameters that a user may assign. One environment per file.
 
 mod acrobot;
 mod cart_pole;
@@ -34,22 +34,22 @@ use crate::vector::{BatchAction, BatchObservation};
 
 /// The attributes of a Gymnasium class, besides its parameters.
 pub(crate) struct EnvLayout {
-    /// How many numbers the state has.
+    /// The number of components of the state.
     pub(crate) state_len: usize,
-    /// Whether a step leaves the state as a tuple, not as an array.
+    /// Whether a step leaves the state as a tuple instead of an array.
     pub(crate) state_is_tuple: bool,
-    /// How many actions `step` accepts, where it asks the action space.
+    /// The number of actions, for environments whose `step` checks the action against the action space.
     pub(crate) num_actions: Option<usize>,
     /// Whether `step` calls `np.sin` or `np.cos`.
     pub(crate) calls_numpy_trigonometry: bool,
-    /// The attribute that is None during an episode, and 0 once it reached a terminal state.
+    /// The attribute that is None during an episode, and 0 once a terminal state is reached.
     pub(crate) terminal_counter: Option<&'static str>,
     /// The attribute that is None after a reset, and holds the last action after a step.
     pub(crate) last_action: Option<&'static str>,
 }
 
 impl EnvLayout {
-    /// A state of so many numbers, kept in an array, and no attributes besides.
+    /// A state of this many numbers, stored in an array, and no other attributes.
     const fn new(state_len: usize) -> Self {
         Self {
             state_len,
@@ -62,7 +62,7 @@ impl EnvLayout {
     }
 }
 
-/// A classic-control environment: what differs from one to the next. All else follows from it and from the core.
+/// A classic-control environment: the parts in which the environments differ. The rest is shared, or in the core.
 pub(super) trait ClassicEnv:
     Env<State: Send + Sync, Action: BatchAction, Observation: BatchObservation + Sync>
     + Parameters
@@ -79,25 +79,25 @@ pub(super) trait ClassicEnv:
     /// The names of parameters that are neither numbers nor flags.
     const OTHER_PARAMETERS: &'static [&'static str] = &[];
 
-    /// From this many sub-environments a thread on, a step of a vector environment is worth starting the thread: it then
-    /// takes about a quarter of a millisecond.
+    /// The number of sub-environments per thread from which a step of a vector environment takes about a quarter of a
+    /// millisecond, long enough to be worth starting the thread.
     const ENVS_PER_THREAD: usize;
 
-    /// Reads `OTHER_PARAMETERS`, and prepares what training and vector environments need.
+    /// Reads `OTHER_PARAMETERS`, and prepares the data that training and vector environments need.
     fn read_other_parameters(&mut self, _env: &Bound<'_, PyAny>) -> PyResult<()> {
         Ok(())
     }
 
-    /// Whether the environment computes Gymnasium's numbers on this machine, its reset included.
+    /// Whether steps and resets compute the same numbers as Gymnasium on this machine.
     fn matches_numpy(py: Python<'_>) -> PyResult<bool> {
         Ok(!Self::LAYOUT.calls_numpy_trigonometry || numpy_uses_libm(py)?)
     }
 
-    /// The reset of Gymnasium's class, drawing from `generator`; None, and nothing drawn, where Gymnasium's own code must
-    /// do it.
+    /// The reset of Gymnasium's class, with numbers from `generator`. Returns None, and draws nothing, if Gymnasium's
+    /// own code must do it.
     fn reset_python<'py>(&self, generator: &Bound<'py, PyAny>) -> PyResult<Option<ResetResult<'py>>>;
 
-    /// One step of Gymnasium's class; None, and nothing changed, where Gymnasium's own code must take it.
+    /// One step of Gymnasium's class. Returns None, and changes nothing, if Gymnasium's own code must take it.
     fn step_python<'py>(
         &self,
         env: &Bound<'py, PyAny>,
@@ -113,11 +113,11 @@ pub(super) trait ClassicEnv:
         last_action: Option<Self::Action>,
     ) -> PyResult<()>;
 
-    /// Training runs; `actions` are what a learner chooses from where the action space is continuous.
+    /// Training runs. If the action space is continuous, the learner chooses from `actions`.
     fn runs(&self, actions: &[f32], spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>>;
 }
 
-/// A [`ClassicEnv`] whose type is known at run time only.
+/// A [`ClassicEnv`] whose type is known only at run time.
 pub(super) trait DynClassicEnv: Send + Sync {
     fn layout(&self) -> &'static EnvLayout;
 
@@ -126,10 +126,10 @@ pub(super) trait DynClassicEnv: Send + Sync {
     /// The names of all parameters, as Gymnasium spells its attributes.
     fn parameter_names(&self) -> Vec<&'static str>;
 
-    /// The environment with the parameters of Gymnasium's, or the name of the first one that Rust cannot take over.
+    /// This environment with the parameters of `env`, or the name of the first parameter that Rust does not support.
     fn with_parameters(&self, env: &Bound<'_, PyAny>) -> PyResult<Result<Arc<dyn DynClassicEnv>, &'static str>>;
 
-    /// The same for training and vector environments. It is an error where Rust cannot take over a parameter.
+    /// This environment for training and vector environments. A parameter that Rust does not support is an error.
     fn native_env(&self, env: &Bound<'_, PyAny>, actions: Vec<f32>) -> PyResult<Arc<dyn NativeEnv>>;
 
     fn reset_python<'py>(&self, generator: &Bound<'py, PyAny>) -> PyResult<Option<ResetResult<'py>>>;
@@ -142,7 +142,7 @@ pub(super) trait DynClassicEnv: Send + Sync {
     ) -> PyResult<Option<StepResult<'py>>>;
 }
 
-/// Runs that choose from some of an environment's continuous actions.
+/// Runs that choose from a finite set of an environment's continuous actions.
 fn runs_with_discrete_actions<E, const M: usize>(
     env: E,
     actions: &[f32],

@@ -17,7 +17,7 @@ use crate::convert::{StateArray, box_action, numpy_scalar};
 use crate::runs::RunFactory;
 use crate::spec::RunSpec;
 
-/// The last torque, which is rendered.
+/// The last torque, used for rendering.
 const LAST_TORQUE: &str = "last_u";
 
 impl ClassicEnv for Pendulum {
@@ -42,7 +42,7 @@ impl ClassicEnv for Pendulum {
         let step = self.step(<[f64; 2]>::into(state), u, &mut NoRng);
         let Some(mut result) = StepResult::new(py, self, step).if_finite() else { return Ok(None) };
         result.reward = numpy_scalar(py, Scalar::Double(step.reward))?;
-        // Around `__setattr__`, since no parameter changes.
+        // Bypasses `__setattr__`, since no parameter changes.
         let attributes = env.getattr(intern!(py, "__dict__"))?.cast_into::<PyDict>()?;
         attributes.set_item(intern!(py, LAST_TORQUE), numpy_scalar(py, self.torque(u))?)?;
         Ok(Some(result))

@@ -1,4 +1,4 @@
-//! Resets of Gymnasium's classes: the core's reset, with draws from the user's generator.
+//! Resets of Gymnasium's classes: the core's reset, with numbers from the user's generator.
 
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::intern;
@@ -13,7 +13,7 @@ pub(crate) struct ResetResult<'py> {
     pub(crate) observation: Bound<'py, PyArray1<f32>>,
 }
 
-/// The reset of an environment whose initial state Gymnasium keeps in float64, and which draws `draws` floats.
+/// The reset of an environment whose initial state is float64 in Gymnasium and takes `draws` random floats.
 pub(super) fn reset_f64<'py, E, const N: usize, const M: usize>(
     env: &E,
     draws: usize,
@@ -36,13 +36,13 @@ where
     E: Env<Observation = [f32; M]>,
 {
     let py = generator.py();
-    // One call for all numbers is faster than a call for each, and draws the same.
+    // One call for all numbers is faster than one call each, and draws the same numbers.
     let numbers = generator.call_method1(intern!(py, "random"), (draws,))?.cast_into::<PyArray1<f64>>()?.to_vec()?;
     let state = env.reset(&mut PresetDraws(numbers.into_iter()));
     Ok((state, small_array(py, &env.observe(&state))))
 }
 
-/// A generator of numbers that were drawn before.
+/// A generator that returns numbers drawn beforehand.
 struct PresetDraws(std::vec::IntoIter<f64>);
 
 impl Rng for PresetDraws {
@@ -50,7 +50,7 @@ impl Rng for PresetDraws {
         self.0.next().unwrap_or_default()
     }
 
-    /// No initial state of classic control takes integers.
+    /// No initial state of classic control uses integers.
     fn integers(&mut self, _below: u32) -> u32 {
         0
     }

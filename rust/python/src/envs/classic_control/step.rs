@@ -1,5 +1,4 @@
-//! Steps of Gymnasium's classes: the core's step, with the types that Gymnasium returns, and the states as Gymnasium keeps
-//! them.
+//! Steps of Gymnasium's classes: the core's step, with Gymnasium's return types and state types.
 
 use pyo3::intern;
 use pyo3::prelude::*;
@@ -9,18 +8,18 @@ use qtab_core::envs::Step;
 
 use crate::convert::{array_from, small_array};
 
-/// The state of a Gymnasium class, which its steps leave in Rust until Python asks for it.
+/// The state of a Gymnasium class. After a step in Rust it stays in Rust until Python reads it.
 pub(crate) enum StoredState {
     /// Never assigned.
     Unset,
-    /// As a step in Rust left it, followed by zeros: an array of float64, or a tuple, in Gymnasium.
+    /// Left by a step in Rust, padded with zeros. In Gymnasium it is an array of float64, or a tuple.
     Native([f64; 4]),
-    /// Assigned from Python, or handed to it. Python may write to an array, so it is read again at each step.
+    /// Assigned from Python, or returned to Python. Python may write to an array, so each step reads it again.
     Python(Py<PyAny>),
 }
 
 impl StoredState {
-    /// The same state; an array is shared.
+    /// The same state; an array is shared, not copied.
     pub(crate) fn clone_ref(&self, py: Python<'_>) -> Self {
         match self {
             Self::Unset => Self::Unset,
@@ -30,18 +29,18 @@ impl StoredState {
     }
 }
 
-/// What a step returns, and the state after it.
+/// The return values of a step, and the state after it.
 pub(crate) struct StepResult<'py> {
     pub(crate) state: StoredState,
     pub(crate) observation: Bound<'py, PyAny>,
     pub(crate) reward: Bound<'py, PyAny>,
     pub(crate) terminated: bool,
-    /// Whether no number overflowed.
+    /// False if a number overflowed.
     finite: bool,
 }
 
 impl<'py> StepResult<'py> {
-    /// The result of a step whose state Gymnasium keeps in float64 and whose reward is a Python float.
+    /// The result of a step, for an environment with a float64 state in Gymnasium and a Python float as the reward.
     pub(super) fn new<E, const N: usize, const M: usize>(py: Python<'py>, env: &E, step: Step<E::State>) -> Self
     where
         E: Env<Observation = [f32; M], State: Into<[f64; N]>>,
@@ -58,7 +57,7 @@ impl<'py> StepResult<'py> {
         }
     }
 
-    /// None where a number overflowed: Python and `NumPy` then warn or raise, so Gymnasium's own code must take the step.
+    /// None if a number overflowed: Python and `NumPy` then warn or raise, so Gymnasium's own code must take the step.
     pub(super) fn if_finite(self) -> Option<Self> {
         self.finite.then_some(self)
     }

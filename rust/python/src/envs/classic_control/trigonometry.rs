@@ -1,9 +1,9 @@
-//! Whether `NumPy`'s sine and cosine are those of the platform's C library, which Rust calls.
+//! Checks whether `NumPy`'s sine and cosine equal those of the platform's C library, which Rust calls.
 //!
-//! Gymnasium's `CartPole`, `Acrobot` and `Pendulum` call `np.sin` and `np.cos`. Depending on its version and on the CPU,
-//! `NumPy` computes them with vector code whose last bit differs in a large part of all calls. There these environments
-//! step in Gymnasium's own code: equal numbers matter more than speed. `Acrobot`'s initial observation takes the sine and
-//! cosine of float32 angles, for which `NumPy` has vector code of its own.
+//! Gymnasium's `CartPole`, `Acrobot` and `Pendulum` call `np.sin` and `np.cos`. Depending on its version and on the
+//! CPU, `NumPy` computes them with vector code whose last bit differs in a large part of all calls. On such machines
+//! these environments step in Gymnasium's own code: equal numbers matter more than speed. `Acrobot`'s initial
+//! observation takes the sine and cosine of float32 angles, for which `NumPy` has separate vector code.
 
 use std::sync::OnceLock;
 
@@ -15,15 +15,15 @@ use qtab_core::numeric::numpy_f32_cos_sin;
 
 use crate::convert::array_from;
 
-/// How many angles are compared. That finds code that rounds one call in ten thousand differently; vector code does so far
-/// more often. It takes a few milliseconds, once.
+/// The number of angles that are compared. This detects code that rounds one call in ten thousand differently; vector
+/// code does so far more often. It takes a few milliseconds, once.
 const POINTS: u32 = 100_000;
-/// The width of the interval around zero that the angles of the environments fill.
+/// The width of an interval around zero that covers the angles of the environments.
 const WIDTH: f64 = 26.0;
 const WARNING: &str = "NumPy's sin and cos are not the platform's on this machine, so qtab's CartPole, Acrobot and \
                        Pendulum step in Gymnasium's own code: the same numbers, at Gymnasium's speed.";
 
-/// Whether `np.sin` and `np.cos` compute what the platform's C library computes. It is tested once a process; where they
+/// Whether `np.sin` and `np.cos` return the same numbers as the platform's C library. Tested once per process; if they
 /// differ, Gymnasium's logger warns.
 #[pyfunction]
 pub(crate) fn numpy_uses_libm(py: Python<'_>) -> PyResult<bool> {
@@ -42,11 +42,11 @@ pub(crate) fn numpy_uses_libm(py: Python<'_>) -> PyResult<bool> {
 type CosSin = fn(f32) -> [f32; 2];
 
 static F32_COS_SIN: OnceLock<Option<CosSin>> = OnceLock::new();
-/// The width of the interval around zero that Acrobot's initial angles fill.
+/// The width of the interval around zero that covers Acrobot's initial angles.
 const INITIAL_WIDTH: f64 = 0.2;
 
-/// The cosine and the sine of a float32 angle as `NumPy` computes those of Acrobot's initial angles, ±0.1: by its vector
-/// code or, where it has none, by the platform's functions. None where it is neither.
+/// A function for the cosine and sine of Acrobot's initial float32 angles, ±0.1, that matches `NumPy`: either its
+/// vector code or, if it has none, the platform's functions. None if neither matches.
 pub(crate) fn f32_cos_sin(py: Python<'_>) -> PyResult<Option<CosSin>> {
     if let Some(&answer) = F32_COS_SIN.get() {
         return Ok(answer);
@@ -59,7 +59,7 @@ pub(crate) fn f32_cos_sin(py: Python<'_>) -> PyResult<Option<CosSin>> {
     Ok(*F32_COS_SIN.get_or_init(|| answer))
 }
 
-/// The same for an angle of any size; `NumPy` computes what is not known beforehand.
+/// The float32 cosine and sine of an angle of any size; `NumPy` computes those that are not known in advance.
 pub(super) fn f32_cos_sin_of_any_angle(angle: f32) -> [f32; 2] {
     match F32_COS_SIN.get() {
         Some(Some(compute)) if angle.abs() <= INITIAL_WIDTH as f32 / 2.0 => compute(angle),
@@ -67,19 +67,19 @@ pub(super) fn f32_cos_sin_of_any_angle(angle: f32) -> [f32; 2] {
     }
 }
 
-/// At how many angles `NumPy` and the platform differ.
+/// The number of angles at which `NumPy` and the platform differ.
 fn count_differences(py: Python<'_>) -> PyResult<usize> {
     let angles: Vec<f64> = spread(WIDTH).collect();
     let expected = numpy_cos_sin::<f64>(py, &angles)?;
     Ok(angles.iter().zip(expected).filter(|(angle, pair)| (angle.cos(), angle.sin()) != (*pair).into()).count())
 }
 
-/// Angles that fill an interval of this width around zero.
+/// Evenly spread angles in an interval of this width around zero.
 fn spread(width: f64) -> impl Iterator<Item = f64> {
     (0..POINTS).map(move |n| ((f64::from(n) * 0.618_033_988_749_895).fract() - 0.5) * width)
 }
 
-/// `NumPy`'s cosines and sines.
+/// `NumPy`'s cosine and sine of each angle.
 fn numpy_cos_sin<T: numpy::Element + Copy>(py: Python<'_>, angles: &[T]) -> PyResult<Vec<[T; 2]>> {
     let numpy = py.import(intern!(py, "numpy"))?;
     let points = array_from(py, angles)?;

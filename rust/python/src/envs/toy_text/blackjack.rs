@@ -1,4 +1,4 @@
-//! `Blackjack-v1`: rules instead of a table. The Gymnasium-facing class keeps the hands in Python's lists and draws the
+//! `Blackjack-v1`: rules instead of a table. The Gymnasium-facing class stores the hands in Python lists and draws the
 //! cards from the user's generator.
 
 use std::sync::Arc;
@@ -22,7 +22,7 @@ use crate::runs::{OneStepBatching, RunFactory, specialized};
 use crate::spec::RunSpec;
 use crate::vector::{DynVectorEnv, EnvInfo, VectorOptions, native_vector_env};
 
-/// No card that a user could mean is larger.
+/// Larger than any card that a user could mean.
 const LARGEST_CARD: u32 = 1000;
 const SUITS: [&str; 4] = ["C", "D", "H", "S"];
 const FACES: [&str; 3] = ["J", "Q", "K"];
@@ -98,7 +98,7 @@ impl PyBlackjack {
         Self
     }
 
-    /// One step, with the types that Gymnasium returns.
+    /// One step, with Gymnasium's return types.
     fn step<'py>(slf: &Bound<'py, Self>, action: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let py = slf.py();
         let [player, dealer] =
@@ -132,8 +132,8 @@ impl PyBlackjack {
         Ok((observation, reward, terminated, false, PyDict::new(py)).into_pyobject(py)?.into_any())
     }
 
-    /// Deals the first cards, and draws the suit and the name of the open card. Returns what `reset` returns; None, and
-    /// nothing drawn, where the generator is not `NumPy`'s.
+    /// Deals the first cards, and draws the suit and the name of the open card. Returns the result of `reset`; or None,
+    /// drawing nothing, if the generator is not `NumPy`'s.
     #[pyo3(name = "_native_reset")]
     fn native_reset<'py>(slf: &Bound<'py, Self>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let py = slf.py();
@@ -141,7 +141,7 @@ impl PyBlackjack {
         if !is_numpy_generator(&generator) {
             return Ok(None);
         }
-        // One call for all four is faster than four calls, and draws the same.
+        // One call for all four is faster than four calls, and draws the same cards.
         let indices = generator.call_method1(intern!(py, "integers"), (0, DECK.len(), 4))?;
         let indices = indices.cast_into::<PyArray1<i64>>()?.to_vec()?;
         let [one, two, three, four] = <[i64; 4]>::try_from(indices)
@@ -167,7 +167,7 @@ impl PyBlackjack {
     }
 }
 
-/// A list of cards, and the hand that they make; None for anything else.
+/// A list of cards as a hand; None for anything else.
 fn hand(cards: Bound<'_, PyAny>) -> Option<(Bound<'_, PyList>, Hand)> {
     let cards = cards.cast_into_exact::<PyList>().ok()?;
     let mut hand = Hand::default();
@@ -178,7 +178,7 @@ fn hand(cards: Bound<'_, PyAny>) -> Option<(Bound<'_, PyList>, Hand)> {
     (hand.cards > 0).then_some((cards, hand))
 }
 
-/// Whether the action space is `Discrete(2)`. Asking the space itself would take longer than the step.
+/// Whether the action space is `Discrete(2)`. Calling `contains` on the space would take longer than the step.
 fn has_gymnasium_actions(env: &Bound<'_, PyAny>) -> bool {
     static DISCRETE: PyOnceLock<Py<PyType>> = PyOnceLock::new();
     let py = env.py();

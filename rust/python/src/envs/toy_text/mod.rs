@@ -1,4 +1,4 @@
-//! Gymnasium's toy text: transition tables, and Blackjack's rules. One environment a file.
+//! Gymnasium's toy text: transition tables, and Blackjack's rules. One environment per file.
 
 mod blackjack;
 mod sampling;

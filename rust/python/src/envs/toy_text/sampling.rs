@@ -1,5 +1,6 @@
-//! What steps Gymnasium's toy text: its own attributes, read again at each step, so that whatever was assigned or edited
-//! takes effect, and its own generator, called in Python. Whatever differs from Gymnasium's types steps in Gymnasium's code.
+//! Steps of Gymnasium's toy text. Each step reads Gymnasium's attributes again, so that assignments and edits take
+//! effect, and draws from the environment's generator in Python. Values of other types than Gymnasium's step in
+//! Gymnasium's code.
 
 use numpy::{PyArray1, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::intern;
@@ -9,7 +10,7 @@ use pyo3::types::{PyDict, PyInt, PyList, PyTuple};
 use super::super::gymnasium::{attribute_after_reset, generator};
 use crate::convert::{double, small_array};
 
-/// The transition that was drawn, as it is in `P`.
+/// The sampled transition, as it stands in `P`.
 pub(super) struct SampledTransition<'py> {
     pub(super) probability: Bound<'py, PyAny>,
     pub(super) state: Bound<'py, PyAny>,
@@ -17,8 +18,8 @@ pub(super) struct SampledTransition<'py> {
     pub(super) terminated: Bound<'py, PyAny>,
 }
 
-/// Gymnasium's `categorical_sample` of `P[s][action]`. None, and nothing drawn or changed, where an entry is not as
-/// Gymnasium's are, or its next state is not `valid`.
+/// Gymnasium's `categorical_sample` of `P[s][action]`. Returns None, and neither draws nor changes anything, if an
+/// entry has other types than Gymnasium's, or its next state is not `valid`.
 pub(super) fn sample_transition<'py>(
     env: &Bound<'py, PyAny>,
     action: &Bound<'py, PyAny>,
@@ -26,7 +27,7 @@ pub(super) fn sample_transition<'py>(
 ) -> PyResult<Option<SampledTransition<'py>>> {
     let py = env.py();
     let state = attribute_after_reset(env, intern!(py, "s"))?;
-    // What fails here fails in Gymnasium's code too, with Gymnasium's error.
+    // Any failure here also occurs in Gymnasium's code, with Gymnasium's error.
     let found =
         env.getattr(intern!(py, "P")).and_then(|table| table.get_item(state)).and_then(|row| row.get_item(action));
     let Some(outcomes) = found.ok().and_then(|outcomes| outcomes.cast_into_exact::<PyList>().ok()) else {
@@ -59,7 +60,7 @@ pub(super) fn sample_transition<'py>(
     Ok(Some(SampledTransition { probability, state, reward, terminated }))
 }
 
-/// Gymnasium's `categorical_sample` of `initial_state_distrib`, an `np.int64`. None, and nothing drawn, where the
+/// Gymnasium's `categorical_sample` of `initial_state_distrib`, an `np.int64`. Returns None, and draws nothing, if the
 /// distribution is not a float64 array.
 pub(super) fn sample_initial<'py>(env: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyAny>>> {
     let py = env.py();
@@ -79,12 +80,12 @@ pub(super) fn sample_initial<'py>(env: &Bound<'py, PyAny>) -> PyResult<Option<Bo
     small_array(py, &[state]).get_item(0).map(Some)
 }
 
-/// The probability of an outcome; NaN for a type that Python adds differently than floats.
+/// The probability of an outcome; NaN for types that Python adds differently from floats.
 fn probability(outcome: &Bound<'_, PyTuple>) -> PyResult<f64> {
     Ok(double(&outcome.get_item(0)?).unwrap_or(f64::NAN))
 }
 
-/// The reset in Gymnasium's code, after the generator was seeded.
+/// The reset in Gymnasium's code, after seeding the generator.
 pub(super) fn reset_fallback<'py>(env: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     env.call_method0(intern!(env.py(), "_reset_in_python"))
 }

@@ -1,4 +1,4 @@
-//! Environments that are no more than their table `P`: `FrozenLake-v1`, `CliffWalking-v1`, `qtab.TabularEnv`.
+//! Environments fully described by their table `P`: `FrozenLake-v1`, `CliffWalking-v1`, `qtab.TabularEnv`.
 
 use std::sync::Arc;
 
@@ -29,14 +29,14 @@ impl TableEnv {
     }
 }
 
-/// One row for each state of a table, as the spec must say.
+/// One row for each state of a table, which must agree with the spec.
 pub(super) fn identity(table: &TabularMdp, spec: &RunSpec) -> PyResult<Identity> {
     spec.discretizer.check_identity(table.num_states())?;
     let states = u32::try_from(table.num_states());
     states.map(Identity).map_err(|_| PyValueError::new_err("P must have fewer than 2**32 states"))
 }
 
-/// Runs on a table, compiled for the numbers of actions that Gymnasium's tables have.
+/// Runs on a table, compiled for the numbers of actions that occur in Gymnasium's tables.
 pub(super) fn table_runs(table: TabularMdp, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>> {
     let features = identity(&table, spec)?;
     if table.num_actions() == 4 {
@@ -75,7 +75,7 @@ fn snapshot(
     set_snapshot(attributes, state.state, last_action)
 }
 
-/// The base of the Gymnasium-facing classes of environments that are no more than their table.
+/// The base of the Gymnasium-facing classes whose environments are fully described by their table.
 #[pyclass(subclass, frozen, name = "ToyText", module = "qtab._core")]
 pub(crate) struct PyToyText;
 
@@ -87,7 +87,7 @@ impl PyToyText {
         Self
     }
 
-    /// Draws the initial state from the environment's generator; returns what `reset` returns.
+    /// Draws the initial state from the environment's generator; returns the result of `reset`.
     #[pyo3(name = "_native_reset")]
     fn native_reset<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         let py = slf.py();
@@ -100,7 +100,7 @@ impl PyToyText {
         Ok((python_int(state)?, info).into_pyobject(py)?.into_any())
     }
 
-    /// One step, with the types that Gymnasium returns.
+    /// One step, with Gymnasium's return types.
     fn step<'py>(slf: &Bound<'py, Self>, action: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let py = slf.py();
         let Some(sampled) = sample_transition(slf, action, |_| true)? else { return step_fallback(slf, action) };

@@ -31,7 +31,7 @@ const MAP_SHAPE: [usize; 2] = [7, 11];
 /// A taxi, whose table all runs share.
 pub(crate) struct TaxiEnv {
     taxi: Taxi,
-    /// Gymnasium's environment, which knows the action masks.
+    /// Gymnasium's environment, which provides the action masks.
     env: Py<PyAny>,
 }
 
@@ -111,7 +111,7 @@ impl PyTaxi {
         Self
     }
 
-    /// Draws the initial state from the environment's generator; returns what `reset` returns.
+    /// Draws the initial state from the environment's generator; returns the result of `reset`.
     #[pyo3(name = "_native_reset")]
     fn native_reset<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         let py = slf.py();
@@ -132,7 +132,7 @@ impl PyTaxi {
         Ok((python_int(state)?, info).into_pyobject(py)?.into_any())
     }
 
-    /// One step, with the types that Gymnasium returns.
+    /// One step, with Gymnasium's return types.
     fn step<'py>(slf: &Bound<'py, Self>, action: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let py = slf.py();
         let state = slf.getattr_opt(intern!(py, "s"))?;
@@ -183,7 +183,7 @@ impl PyTaxi {
     }
 }
 
-/// The characters of the map; None where they are not as Gymnasium keeps them.
+/// The characters of the map; None if they are not stored as Gymnasium stores them.
 fn map<'py>(taxi: &Bound<'py, PyTaxi>) -> PyResult<Option<Bound<'py, PyBytes>>> {
     let py = taxi.py();
     let map = taxi.getattr(intern!(py, "desc"))?;

@@ -1,4 +1,4 @@
-//! From Gymnasium's `P` to the table in Rust, checked on the way.
+//! Conversion and validation of Gymnasium's `P` as a table in Rust.
 
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::intern;
@@ -11,10 +11,10 @@ use qtab_core::memory::reserve;
 use crate::convert::double;
 use crate::error::allocation;
 
-/// How many states of a table are read between two checks for signals.
+/// The number of states of a table that are read between two checks for signals.
 const STATES_BETWEEN_CHECKS: usize = 1024;
 
-/// The table of an environment. It is an error where `NumPy` would add its probabilities differently than Python floats.
+/// The table of an environment. It is an error if `NumPy` would add its probabilities differently from Python floats.
 pub(in crate::envs) fn table_of(env: &Bound<'_, PyAny>) -> PyResult<TabularMdp> {
     let py = env.py();
     let table = env.getattr(intern!(py, "P"))?;
@@ -69,9 +69,9 @@ fn parse_table(table: &Bound<'_, PyAny>, initial: &[f64], floats_only: bool) -> 
     TabularMdp::new(actions, initial, &rows).map_err(|error| PyValueError::new_err(error.to_string()))
 }
 
-/// The outcomes of a state and an action; `path` says where they are.
+/// The outcomes of a state and an action; `path` names their place in `P`.
 fn parse_outcomes(path: impl Fn() -> String, outcomes: &Bound<'_, PyAny>, floats_only: bool) -> PyResult<Vec<Outcome>> {
-    // An iterator without a length could be read only once, and Python reads the table too.
+    // An iterator without a length could be read only once, and Python reads the table as well.
     let entries = outcomes.len().and_then(|_| outcomes.try_iter());
     let entries = entries.map_err(|_| PyTypeError::new_err(format!("{} must be a list of outcomes", path())))?;
     entries.enumerate().map(|(index, entry)| parse_outcome(&path, index, &entry?, floats_only)).collect()
@@ -96,7 +96,7 @@ fn parse_outcome(
     }
 }
 
-/// A transition table that was checked.
+/// A validated transition table.
 #[pyclass(frozen, eq, name = "TransitionTable", module = "qtab._core")]
 #[derive(PartialEq)]
 pub(crate) struct PyTransitionTable(TabularMdp);
@@ -116,8 +116,8 @@ impl PyTransitionTable {
         known(cliff_walking(is_slippery))
     }
 
-    /// The table of Gymnasium's `FrozenLakeEnv` with a map of these lines, all of the same length, and rewards for reaching
-    /// the goal, a hole and frozen ground; without a success rate, on ice that is not slippery.
+    /// The table of Gymnasium's `FrozenLakeEnv` with a map of these lines, all of the same length, and rewards for
+    /// reaching the goal, a hole and frozen ground. Without a success rate, the ice is not slippery.
     #[staticmethod]
     #[pyo3(signature = (lines, success_rate, rewards))]
     fn frozen_lake(lines: Vec<Vec<u8>>, success_rate: Option<f64>, rewards: [f64; 3]) -> PyResult<Self> {
@@ -125,7 +125,8 @@ impl PyTransitionTable {
         known(frozen_lake(&lines, success_rate, LakeRewards { goal, hole, frozen }))
     }
 
-    /// The table of Gymnasium's `TaxiEnv` with a map of 7 lines of 11 characters; without a probability, in dry weather.
+    /// The table of Gymnasium's `TaxiEnv` with a map of 7 lines of 11 characters. Without a probability, the weather is
+    /// dry.
     #[staticmethod]
     #[pyo3(signature = (lines, rainy_probability))]
     fn taxi(lines: TaxiMap, rainy_probability: Option<f64>) -> PyResult<Self> {

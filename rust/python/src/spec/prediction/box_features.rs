@@ -1,4 +1,4 @@
-//! The features of a Box, whichever discretizer they come from.
+//! The features of a Box, for any discretizer.
 
 use pyo3::prelude::*;
 use qtab_core::Features;
@@ -47,7 +47,7 @@ impl<T: Float, O: AsRef<[T]> + ?Sized> Features<O> for BoxFeatures<T> {
     }
 }
 
-/// Finds the rows of observations of type `O`, with which policies look up their tables.
+/// Finds the rows of observations of type `O`, which policies use to look up their tables.
 pub(crate) trait ReadRows<O> {
     fn rows(&self, observation: &O) -> Result<ActiveTiles, RunError>;
 }

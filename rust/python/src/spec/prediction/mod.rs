@@ -1,4 +1,4 @@
-//! What a run estimates instead of learning to act: the values of given policies, by a method.
+//! The specs of predictions: the values of given policies, estimated by a method.
 
 mod box_features;
 mod observation_policy;

@@ -13,22 +13,22 @@ use crate::convert::{in_c_order, small_array};
 use crate::error::{RunError, invalid};
 use crate::spec::{DiscretizerSpec, Fields, Variant};
 
-/// A policy, before it reads observations.
+/// The description of a policy, before it reads observations.
 #[derive(Clone, Debug)]
 pub(crate) enum ObservationPolicySpec {
-    /// The same probabilities everywhere, or those of the cell of the task's discretizer.
+    /// The same probabilities everywhere, or separate ones for each cell of the task's discretizer.
     Table { probabilities: Arc<[f64]>, is_everywhere: bool },
-    /// The action with the largest sum of the active rows' values, over one table or several.
+    /// The action with the largest sum of the active rows' values, over one or several tables.
     Greedy { discretizer: DiscretizerSpec, tables: Arc<[f64]>, n_tables: usize },
     /// A function of the observation, in Python.
     Function(Arc<FunctionSpec>),
 }
 
-/// A function in Python, and how its answers are read.
+/// A Python function, and the reader of its return values.
 #[derive(Debug)]
 pub(crate) struct FunctionSpec {
     function: Py<PyAny>,
-    /// From an answer and its observation to probabilities.
+    /// Converts a return value and its observation to probabilities.
     read: Py<PyAny>,
     /// The number of the first action.
     first_action: i64,
@@ -60,12 +60,12 @@ fn function(fields: &Fields<'_>) -> PyResult<ObservationPolicySpec> {
 }
 
 impl ObservationPolicySpec {
-    /// Whether it is a function in Python, which is called at each step.
+    /// Whether the policy is a Python function, which is called at each step.
     pub(super) fn calls_python(&self) -> bool {
         matches!(self, Self::Function(_))
     }
 
-    /// The policy for observations of the task's discretizer `own`. `rows` makes what finds the rows of a discretizer.
+    /// The policy, where `own` is the task's discretizer. `rows` makes the row finder of a discretizer.
     pub(super) fn build<G>(
         &self,
         num_actions: usize,
@@ -102,7 +102,7 @@ impl ObservationPolicySpec {
     }
 }
 
-/// Refuses probabilities that are not those of `num_actions` actions in each of some states, or leave a state without one.
+/// Checks that there are probabilities for `num_actions` actions in each state, and that every state has an action.
 pub(super) fn check_probabilities(
     name: &str,
     probabilities: &[f64],
@@ -139,16 +139,16 @@ impl PyObservation for Py<PyAny> {
     }
 }
 
-/// A policy, with what it does at the observation that it read last.
+/// A policy, with its choice for the observation that it read last.
 pub(crate) struct ReadPolicy<G> {
     reader: PolicyReader<G>,
-    /// The action; `None` where it has probabilities.
+    /// The action; `None` if the policy has probabilities.
     action: Option<usize>,
-    /// Those of the actions.
+    /// The probabilities of the actions.
     probabilities: Vec<f64>,
 }
 
-/// How a policy reads observations.
+/// The reader of a policy's observations.
 enum PolicyReader<G> {
     Table {
         probabilities: Arc<[f64]>,
@@ -160,7 +160,7 @@ enum PolicyReader<G> {
         tables: Arc<[f64]>,
         /// The number of values of a table.
         per_table: usize,
-        /// The action values, and those of one table.
+        /// The action values, and the action values of one table.
         scratch: [Vec<f64>; 2],
     },
     Function(Arc<FunctionSpec>),
@@ -197,7 +197,7 @@ impl<G> ReadPolicy<G> {
         Ok(())
     }
 
-    /// The action; or the first one whose sum of probabilities exceeds one `random()`.
+    /// The action if there is one, otherwise the first action whose cumulative probability exceeds one `random()`.
     fn sample(&self, rng: &mut impl Rng) -> usize {
         if let Some(action) = self.action {
             return action;
@@ -221,7 +221,7 @@ impl<G> ReadPolicy<G> {
 }
 
 impl FunctionSpec {
-    /// Asks the function. Returns its action, or `None` where it answers with probabilities, which it writes.
+    /// Calls the function. Returns its action, or writes its probabilities and returns `None`.
     fn call(&self, observation: &Bound<'_, PyAny>, probabilities: &mut [f64]) -> PyResult<Option<usize>> {
         let py = observation.py();
         let answer = self.function.bind(py).call1((observation,))?;
@@ -230,7 +230,7 @@ impl FunctionSpec {
         if let Some(column) = column.filter(|&column| column < probabilities.len()) {
             return Ok(Some(column));
         }
-        // Whatever is no valid number is read, or refused, in Python.
+        // Python reads, or rejects, anything that is not a valid number.
         let read: Vec<f64> = self.read.bind(py).call1((answer, observation))?.extract()?;
         probabilities.copy_from_slice(&read);
         Ok(None)
@@ -254,14 +254,14 @@ fn first_of_largest(values: &[f64]) -> usize {
     (1..values.len()).fold(0, |best, index| if values[index] > values[best] { index } else { best })
 }
 
-/// The policy that acts and, off policy, the one that is evaluated.
+/// The policy that acts and, off policy, the policy that is evaluated.
 pub(crate) struct ObservationPolicies<G> {
     pub(super) behavior: ReadPolicy<G>,
     pub(super) target: Option<ReadPolicy<G>>,
     pub(super) num_actions: usize,
 }
 
-/// How many steps of Q-learning on a grid a call of a function in Python counts as.
+/// The number of Q-learning steps on a grid that a call of a Python function counts as.
 const CALL_WORK: u64 = 127;
 
 impl<O: PyObservation, G: ReadRows<O>> ObservationPolicy<O> for ObservationPolicies<G> {

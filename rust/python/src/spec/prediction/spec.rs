@@ -1,4 +1,4 @@
-//! What is estimated, and by which method: `PredictionSpec` of `qtab/_spec.py`.
+//! The quantity to estimate, and the method: `PredictionSpec` of `qtab/_spec.py`.
 
 use std::sync::Arc;
 
@@ -49,12 +49,12 @@ const METHODS: &[Variant<MethodSpec>] = &[
     ("batch_td", |_| Ok(MethodSpec::BatchTd)),
 ];
 
-/// Where the actions come from, and what is evaluated.
+/// The policy that acts, and the policy that is evaluated.
 #[derive(Clone, Debug)]
 enum PoliciesSpec {
     /// Probabilities for each state.
     OfStates(FixedPolicy),
-    /// Policies that read the observations of a Box. The target policy is missing where it acts itself.
+    /// Policies that read the observations of a Box. Without a target policy, the behavior policy is evaluated.
     OfObservations { behavior: ObservationPolicySpec, target: Option<ObservationPolicySpec> },
 }
 
@@ -63,7 +63,7 @@ enum PoliciesSpec {
 pub(crate) struct PredictionSpec {
     method: MethodSpec,
     policies: PoliciesSpec,
-    /// The features of each cell; `None` where those of an observation are the active rows themselves.
+    /// The features of each cell; `None` if the features of an observation are its active rows.
     features: Option<StateFeatures>,
     initial: Arc<[f64]>,
 }
@@ -110,12 +110,12 @@ impl PredictionSpec {
         Ok(Self { method, policies, features, initial })
     }
 
-    /// Whether the policies read observations, rather than the numbers of states.
+    /// Whether the policies read observations instead of state numbers.
     pub(crate) fn reads_observations(&self) -> bool {
         matches!(self.policies, PoliciesSpec::OfObservations { .. })
     }
 
-    /// Whether a function in Python is called at each step.
+    /// Whether a Python function is called at each step.
     pub(crate) fn calls_python(&self) -> bool {
         match &self.policies {
             PoliciesSpec::OfStates(_) => false,
@@ -125,7 +125,7 @@ impl PredictionSpec {
         }
     }
 
-    /// The policies that read observations. `rows` makes what finds the rows of a discretizer.
+    /// The policies that read observations. `rows` makes the row finder of a discretizer.
     pub(crate) fn policies<G>(
         &self,
         spec: &RunSpec,
@@ -139,7 +139,7 @@ impl PredictionSpec {
         Ok(ObservationPolicies { behavior: build(behavior)?, target, num_actions: spec.num_actions })
     }
 
-    /// Refuses rows for another number of states than the task has.
+    /// Checks that there are rows for the task's number of states.
     pub(crate) fn check_states(&self, states: usize) -> PyResult<()> {
         if self.num_states() == states {
             return Ok(());
@@ -147,7 +147,7 @@ impl PredictionSpec {
         Err(invalid("rows", format!("rows for each of the {states} cells"), self.num_states()))
     }
 
-    /// The number of states; 0 where they have no numbers.
+    /// The number of states; 0 if they are not numbered.
     fn num_states(&self) -> usize {
         self.features.as_ref().map_or(0, StateFeatures::num_states)
     }
@@ -157,13 +157,14 @@ impl PredictionSpec {
         self.initial.len()
     }
 
-    /// A learner before its first episode, in numbered states.
+    /// A learner for numbered states, before its first episode.
     pub(crate) fn of_states(&self, spec: &RunSpec, stop: &StopFlag<'_>) -> PyResult<AnyPredictor<FixedPolicy>> {
         let (behavior, features) = self.numbered()?;
         self.predictor(self.rule(), behavior, features, spec, stop)
     }
 
-    /// The same with a type of its own for TD(0), whose steps are the shortest; `None` for other methods.
+    /// Like [`Self::of_states`], with a separate type for TD(0), whose steps are the shortest; `None` for other
+    /// methods.
     pub(crate) fn td_zero(&self, spec: &RunSpec, stop: &StopFlag<'_>) -> PyResult<Option<Predictor<TdZero>>> {
         let MethodSpec::TdZero = self.method else { return Ok(None) };
         let (behavior, features) = self.numbered()?;
@@ -196,7 +197,7 @@ impl PredictionSpec {
             (PoliciesSpec::OfStates(behavior), Some(features)) => {
                 Ok((behavior.clone(), features.try_clone().map_err(allocation)?))
             }
-            _ => Err(invalid("policies", "those of states here", "those of observations")),
+            _ => Err(invalid("policies", "those of states", "those of observations")),
         }
     }
 
