@@ -1,27 +1,27 @@
-//! Writing and reading a checkpoint, by one description of what it holds.
+//! Writing and reading a checkpoint, with one description of its contents.
 
 use std::fmt::{self, Display, Formatter};
 
-/// A checkpoint that is being written or read. The same calls do both, so that the two cannot disagree: a value that is
-/// passed to it is appended to the bytes, or replaced by what they hold.
+/// A checkpoint that is being written or read. The same calls do both, so that the two cannot disagree: a value passed
+/// to the checkpoint is appended to the bytes, or replaced by the value that they hold.
 #[derive(Debug)]
 pub struct Checkpoint<'a>(Mode<'a>);
 
 #[derive(Debug)]
 enum Mode<'a> {
     Save(&'a mut Vec<u8>),
-    /// What is left to read.
+    /// The bytes left to read.
     Restore(&'a [u8]),
 }
 
-/// Why a checkpoint cannot be written or read.
+/// The reason why a checkpoint cannot be written or read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CheckpointError {
     /// The bytes end too early.
     Truncated,
     /// There are bytes after the end.
     TrailingBytes,
-    /// A number that cannot be right in this run: it says which.
+    /// A value that is invalid in this run; the text names it.
     Invalid(&'static str),
     /// The bytes do not fit into memory.
     OutOfMemory,
@@ -39,12 +39,12 @@ impl Display for CheckpointError {
 }
 
 impl<'a> Checkpoint<'a> {
-    /// Appends to these bytes.
+    /// A checkpoint that appends to these bytes.
     pub fn save(bytes: &'a mut Vec<u8>) -> Self {
         Self(Mode::Save(bytes))
     }
 
-    /// Reads these bytes.
+    /// A checkpoint that reads these bytes.
     pub fn restore(bytes: &'a [u8]) -> Self {
         Self(Mode::Restore(bytes))
     }
@@ -54,7 +54,7 @@ impl<'a> Checkpoint<'a> {
         matches!(self.0, Mode::Restore(_))
     }
 
-    /// Appends these bytes and returns them, or returns as many that are read.
+    /// Appends these bytes and returns them, or reads and returns as many.
     pub(super) fn bytes<const N: usize>(&mut self, value: [u8; N]) -> Result<[u8; N], CheckpointError> {
         match &mut self.0 {
             Mode::Save(bytes) => {
@@ -70,7 +70,7 @@ impl<'a> Checkpoint<'a> {
         }
     }
 
-    /// An index or a count, which must be less than `below` when it is read.
+    /// An index or a count. A value that is read must be less than `below`.
     ///
     /// # Errors
     /// [`CheckpointError::Invalid`] with `what`, or as for any value.
@@ -82,7 +82,7 @@ impl<'a> Checkpoint<'a> {
         Ok(())
     }
 
-    /// The same for a number of 32 bits.
+    /// An index or a count of 32 bits. A value that is read must be less than `below`.
     ///
     /// # Errors
     /// As for `index`.
@@ -93,8 +93,8 @@ impl<'a> Checkpoint<'a> {
         Ok(())
     }
 
-    /// Refuses values that were restored and are not valid; `what` names them. While saving, it refuses nothing: only a
-    /// lack of memory may prevent a run from being saved.
+    /// Rejects restored values that are not valid; `what` names them. While saving, it rejects nothing: only a lack of
+    /// memory may prevent a run from being saved.
     ///
     /// # Errors
     /// [`CheckpointError::Invalid`] with `what`.
@@ -151,6 +151,6 @@ mod tests {
         assert_eq!(index_of(&bytes[..7], &mut index, 4), Err(CheckpointError::Truncated));
         assert_eq!(Checkpoint::restore(&bytes).finish(), Err(CheckpointError::TrailingBytes));
         let not_a_bool = [2_u8];
-        assert_eq!(true.persist(&mut Checkpoint::restore(&not_a_bool)), Err(CheckpointError::Invalid("true or false")));
+        assert_eq!(true.persist(&mut Checkpoint::restore(&not_a_bool)), Err(CheckpointError::Invalid("boolean")));
     }
 }

@@ -1,16 +1,16 @@
-//! Where in an episode a checkpoint was made.
+//! The progress within an episode at a checkpoint.
 
 use super::{Checkpoint, CheckpointError, Persist};
 
-/// Where in an episode a checkpoint was made.
+/// Whether a checkpoint was made between two episodes or within one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EpisodeProgress {
     /// Between two episodes.
     Between,
     /// Within an episode, which is resumed.
     Within,
-    /// Within an episode that is given up, because the task cannot restore its state, or because it failed. The run is
-    /// resumed with the next episode, and differs from an uninterrupted one from then on.
+    /// Within an episode that is abandoned, because the task cannot restore its state, or because it failed. The run
+    /// resumes with the next episode, and differs from an uninterrupted one from then on.
     Abandoned,
 }
 

@@ -1,13 +1,13 @@
-//! The trait of what a checkpoint holds, for numbers and for collections of fixed length.
+//! The trait of all values in a checkpoint, for numbers and for collections of fixed length.
 
 use super::{Checkpoint, CheckpointError};
 
-/// A value that changes during a run, so that a checkpoint must hold it.
+/// A value that changes during a run, and therefore belongs in a checkpoint.
 pub trait Persist {
-    /// Saves the value, or replaces it by the one that was saved.
+    /// Saves the value, or replaces it by the saved one.
     ///
     /// # Errors
-    /// The bytes are damaged, or belong to another run. The value is then unspecified.
+    /// If the bytes are damaged, or belong to another run. The value is then unspecified.
     fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError>;
 }
 
@@ -30,7 +30,7 @@ impl Persist for bool {
         *self = match checkpoint.bytes([u8::from(*self)])? {
             [0] => false,
             [1] => true,
-            _ => return Err(CheckpointError::Invalid("true or false")),
+            _ => return Err(CheckpointError::Invalid("boolean")),
         };
         Ok(())
     }
@@ -48,7 +48,7 @@ impl<T: Persist + Default> Persist for Option<T> {
     }
 }
 
-/// The elements; how many there are must be known.
+/// The elements; their number must be known.
 impl<T: Persist> Persist for [T] {
     fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
         self.iter_mut().try_for_each(|element| element.persist(checkpoint))
@@ -61,14 +61,14 @@ impl<T: Persist, const N: usize> Persist for [T; N] {
     }
 }
 
-/// Nothing.
+/// Saves and restores nothing.
 impl Persist for () {
     fn persist(&mut self, _checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
         Ok(())
     }
 }
 
-/// Several values, one after the other.
+/// Several values, one after another.
 macro_rules! persist_tuple {
     ($($name:ident),*) => {
         impl<$($name: Persist),*> Persist for ($($name,)*) {

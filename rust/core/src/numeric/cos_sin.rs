@@ -26,7 +26,7 @@ use crate::simd::{F64s, Portable, Simd};
 
 /// Larger angles use the platform's functions.
 const MAX_ANGLE: f64 = 0.25;
-/// And so do smaller ones, whose terms may underflow, and whose zeros have a sign.
+/// Smaller angles use them too: their terms may underflow, and their zeros have a sign.
 const MIN_ANGLE: f64 = 1.0 / 1_048_576.0; // 2⁻²⁰
 
 const TWO_POW_MINUS_53: f64 = f64::EPSILON / 2.0;
@@ -47,7 +47,7 @@ pub(crate) fn cos_sin<S: Simd, const K: usize>(simd: S, angles: F64s<S, K>) -> [
         return [angles.map(f64::cos), angles.map(f64::sin)].map(|numbers| F64s::new(simd, numbers));
     }
     let [lower, upper] = bounds(simd, angles);
-    // Between the ends, give or take a rounding. NaN is not in the range.
+    // Between the limits, up to rounding. NaN is not in the range.
     let in_range = (angles.abs() - 0.5 * MAX_ANGLE).abs().less_or_equal(0.5 * MAX_ANGLE - MIN_ANGLE);
     let cosine_is_certain = lower[0].to_bits().equal(upper[0].to_bits());
     let sine_is_certain = lower[1].to_bits().equal(upper[1].to_bits());
@@ -60,7 +60,7 @@ pub(crate) fn cos_sin<S: Simd, const K: usize>(simd: S, angles: F64s<S, K>) -> [
     lower
 }
 
-/// The least cosine and sine that the platform can have, and the largest.
+/// The smallest and the largest cosine and sine that the platform can return.
 #[inline(always)]
 fn bounds<S: Simd, const K: usize>(simd: S, x: F64s<S, K>) -> [[F64s<S, K>; 2]; 2] {
     let square = x * x;
@@ -86,14 +86,14 @@ fn bounds<S: Simd, const K: usize>(simd: S, x: F64s<S, K>) -> [[F64s<S, K>; 2]; 
     [[cosines[0], sines[0]], [cosines[1], sines[1]]]
 }
 
-/// Whether the platform's cosine and sine have the error bounds that [`cos_sin`] relies on: glibc's do. Another C library in
-/// its place would show itself at a few thousand angles.
+/// Whether the platform's cosine and sine satisfy the error bounds that [`cos_sin`] relies on. glibc's do. A different
+/// C library in its place would be detected within a few thousand angles.
 fn is_exact() -> bool {
     static IS_EXACT: OnceLock<bool> = OnceLock::new();
     cfg!(all(target_os = "linux", target_env = "gnu")) && *IS_EXACT.get_or_init(|| is_close(platform))
 }
 
-/// Whether cosine and sine lie between the bounds at angles spread over the range.
+/// Whether cosine and sine lie within the bounds at angles spread over the range.
 fn is_close(cos_sin: impl Fn(f64) -> [f64; 2]) -> bool {
     (-1999..=1999).filter(|&index| index != 0).all(|index| {
         let angle = f64::from(index) * (MAX_ANGLE / 1999.7);
@@ -137,7 +137,7 @@ mod tests {
         }
     }
 
-    /// Compares both forms with the platform: the fused one where this processor has the instructions.
+    /// Compares both forms with the platform: the fused one only if this processor has the instructions.
     fn check(angles: [f64; 4]) {
         let expected = [angles.map(f64::cos), angles.map(f64::sin)];
         for level in SimdLevel::available() {

@@ -93,14 +93,14 @@ static TABLE: [[f64; 4]; 2 * CELLS] = {
     table
 };
 
-/// Whether the platform's cosine has the error bound that [`map_cos`] relies on: glibc's does. Another C library in its
-/// place would show itself at a few thousand angles.
+/// Whether the platform's cosine satisfies the error bound that [`map_cos`] relies on. glibc's does. A different C
+/// library in its place would be detected within a few thousand angles.
 pub(crate) fn is_exact() -> bool {
     static IS_EXACT: OnceLock<bool> = OnceLock::new();
     cfg!(all(target_os = "linux", target_env = "gnu")) && *IS_EXACT.get_or_init(|| is_close(f64::cos))
 }
 
-/// Whether a cosine lies between the bounds at angles spread over all cells.
+/// Whether a cosine lies within the bounds at angles spread over all cells.
 fn is_close(cosine: impl Fn(f64) -> f64) -> bool {
     (-1999..=1999).all(|index| {
         let angle = f64::from(index) * (MAX_ANGLE / 1999.7);
@@ -139,7 +139,7 @@ fn platform_where<const K: usize>(chosen: &[bool; K], angles: &[f64; K]) -> [f64
     std::array::from_fn(|lane| if chosen[lane] { angles[lane].cos() } else { 0.0 })
 }
 
-/// The least and the largest value that the platform's cosine can have.
+/// The smallest and the largest value of `f` for the cosines that the platform can return.
 #[inline(always)]
 fn bounds<S: Simd, const K: usize>(simd: S, angles: F64s<S, K>) -> [F64s<S, K>; 2] {
     let shifted = angles + ROUND_TO_CELL;

@@ -14,7 +14,7 @@ pub trait Float:
     + Send
     + Sync
 {
-    /// The nearest representable number to an integer.
+    /// The representable number nearest to an integer.
     fn from_count(count: u32) -> Self;
 }
 

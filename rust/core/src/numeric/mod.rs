@@ -1,4 +1,4 @@
-//! Arithmetic that rounds as Python, `NumPy` and the platform's C library do, and small numeric helpers.
+//! Arithmetic that rounds like Python, `NumPy` and the platform's C library, and small numeric helpers.
 
 mod argmax;
 mod cos_sin;

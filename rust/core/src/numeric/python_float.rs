@@ -40,7 +40,7 @@ mod tests {
             assert_eq!(squared(*x), x.powf(two));
             squared(*x) != x * x
         });
-        // A platform whose `pow` is correctly rounded has none.
+        // If the platform's `pow` is correctly rounded, none differ.
         assert!(differ.count() < 1000);
     }
 

@@ -29,7 +29,7 @@ impl Scalar {
         }
     }
 
-    /// The same, with the result as a scalar of the common dtype.
+    /// Like `with`, with the result as a scalar of the common dtype.
     #[inline]
     fn combine(self, other: Self, single: impl Fn(f32, f32) -> f32, double: impl Fn(f64, f64) -> f64) -> Self {
         let python = matches!((self, other), (Self::Python(_), Self::Python(_)));

@@ -1,4 +1,4 @@
-//! The Bellman equations for a transition table, which all methods here share.
+//! The Bellman equations for a transition table, shared by all planning methods.
 
 use crate::StopFlag;
 
@@ -20,7 +20,7 @@ pub(super) fn action_value(mdp: &TabularMdp, state: usize, action: usize, discou
     sum
 }
 
-/// Σ p (|r| + γ |v(s′)|): the magnitude of the terms that an action value is the sum of.
+/// Σ p (|r| + γ |v(s′)|): the sum of the magnitudes of an action value's terms.
 pub(super) fn action_size(mdp: &TabularMdp, state: usize, action: usize, discount: f64, values: &[f64]) -> f64 {
     let mut sum = 0.0;
     for (probability, step) in mdp.outcomes(state, action) {
@@ -30,8 +30,8 @@ pub(super) fn action_size(mdp: &TabularMdp, state: usize, action: usize, discoun
     sum
 }
 
-/// The magnitude of the terms of the largest action value of a state, of several the first. Those of other actions, such as
-/// large penalties, do not matter.
+/// The magnitude of the terms of a state's largest action value, of the first one if several are equal. Those of other
+/// actions, such as large penalties, do not matter.
 pub(super) fn best_size(mdp: &TabularMdp, state: usize, discount: f64, values: &[f64]) -> f64 {
     let value = |action: usize| action_value(mdp, state, action, discount, values);
     let best = (1..mdp.num_actions()).fold((0, value(0)), |best, action| {
@@ -41,8 +41,8 @@ pub(super) fn best_size(mdp: &TabularMdp, state: usize, discount: f64, values: &
     action_size(mdp, state, best.0, discount, values)
 }
 
-/// A bound of the error of an action value, given those of the values. Actions tie when their values differ by less
-/// than the errors of both.
+/// A bound on the error of an action value, given the errors of the state values. Actions tie if their values differ by
+/// less than the errors of both.
 pub(super) fn action_error(
     mdp: &TabularMdp,
     state: usize,
@@ -68,7 +68,7 @@ pub(super) fn best_value(mdp: &TabularMdp, state: usize, discount: f64, values: 
 }
 
 /// Σ π(a|s) q(s, a), summed from left to right (Sutton & Barto, equation 4.4). `policy` holds π(a|s), the actions of
-/// state 0 first. Actions that it never takes are left out.
+/// state 0 first. Actions with probability 0 are left out.
 #[inline]
 pub(super) fn expected_value(mdp: &TabularMdp, policy: &[f64], state: usize, discount: f64, values: &[f64]) -> f64 {
     choices(mdp, policy, state)

@@ -1,4 +1,4 @@
-//! The one of several equally good policies that is returned.
+//! The choice among equally good policies.
 
 use crate::StopFlag;
 
@@ -12,15 +12,15 @@ use crate::envs::{Env, Step};
 use crate::memory::{collect, filled};
 use crate::numeric::{argmax, maximum};
 
-/// The discount per step on ending an episode, so that ending sooner is better.
+/// The discount per step on ending an episode, so that ending earlier is better.
 const STEP_DISCOUNT: f64 = 0.999;
 /// Two actions end an episode equally soon if the discounted probabilities differ by less than this fraction.
 const EQUALLY_SOON: f64 = 1e-9;
 
-/// For each state the first optimal action. Without discounting it is the first of those on a shortest way to the end or, if
-/// none ends the episode, to a state to stay in without a reward: many actions can be optimal, and some lead around in
-/// circles forever. Actions are optimal unless they are worse by more than rounding errors, for which `errors` has a bound
-/// for each value.
+/// The first optimal action of each state. Without discounting, only actions on a shortest way to the end count or, if
+/// none ends the episode, to a state in which to stay without a reward: many actions can be optimal, and some lead
+/// around in circles forever. Actions are optimal unless they are worse by more than rounding errors, which `errors`
+/// bounds for each value.
 pub(super) fn best_policy(
     mdp: &TabularMdp,
     discount: f64,
@@ -71,8 +71,8 @@ fn optimal_actions(
     Ok(optimal)
 }
 
-/// For each state the optimal action on a shortest way to the end, or to one of the states for which `goal_action` has an
-/// action, which these take; `None` if no optimal action does.
+/// For each state the optimal action on a shortest way to the end, or to a state for which `goal_action` has an action,
+/// which that state takes; `None` if no optimal action leads there.
 fn shortest_way(
     mdp: &TabularMdp,
     optimal: &[bool],

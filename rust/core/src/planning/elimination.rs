@@ -4,18 +4,18 @@ use crate::StopFlag;
 
 use super::PlanningError;
 
-/// A matrix I - γP after Gaussian elimination: with it, any right-hand side is solved.
+/// A matrix I - γP after Gaussian elimination, which solves the equations for any right-hand side.
 #[derive(Clone, Debug)]
 pub(super) struct Eliminated {
-    /// Row by row: the factors of the rows above, then what is left of the row.
+    /// Row by row: the factors of the rows above, then the remaining entries of the row.
     entries: Vec<f64>,
     count: usize,
 }
 
 impl Eliminated {
-    /// Eliminates a matrix of `count` rows and columns, row by row; `None` if it is singular to rounding. It is diagonally
-    /// dominant, so that no rows need to be exchanged (N. Higham, *Accuracy and Stability of Numerical Algorithms*, 2nd ed.,
-    /// 2002, section 9.5).
+    /// Eliminates a matrix of `count` rows and columns, row by row; `None` if it is singular to rounding. The matrix is
+    /// diagonally dominant, so no rows need to be exchanged (N. Higham, *Accuracy and Stability of Numerical
+    /// Algorithms*, 2nd ed., 2002, section 9.5).
     ///
     /// # Errors
     /// `Stopped` after `stop` was set.
@@ -27,7 +27,7 @@ impl Eliminated {
                 return Ok(None);
             }
             for row in below.chunks_mut(count) {
-                // Most entries are 0, where few states follow each.
+                // Most entries are 0 if each state has few next states.
                 if row[column] != 0.0 {
                     let factor = row[column] / pivots[column];
                     row[column] = factor;

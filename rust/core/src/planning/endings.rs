@@ -1,4 +1,5 @@
-//! How episodes end. Without discounting only policies that end them, or stop to collect rewards, have finite values.
+//! The ends of episodes. Without discounting only policies that end them, or stop to collect rewards, have finite
+//! values.
 
 use crate::StopFlag;
 
@@ -8,21 +9,21 @@ use crate::envs::Env;
 use crate::envs::tabular::TabularMdp;
 use crate::memory::{collect, filled};
 
-/// How episodes end without discounting. The default is that of discounted values, which always exist.
+/// The ends of episodes without discounting. The default is for discounted values, which always exist.
 #[derive(Debug, Default)]
 pub(super) struct Endings {
-    /// For each state that can stay forever among such states without a reward, the first action that does.
+    /// For each state that can stay forever among such states without a reward, the first action that does so.
     staying: Vec<Option<usize>>,
-    /// A policy that ends every episode, or stays where there are no rewards.
+    /// A policy that ends every episode, or stays in states without rewards.
     pub(super) policy: Vec<usize>,
 }
 
 impl Endings {
-    /// With a discount any policy will do. Without, policies may stay without a reward only where no policy can end the
-    /// episode, unless `stays_anywhere`.
+    /// With discounting, any policy will do. Without, a policy may stay without a reward only in states from which no
+    /// policy can end the episode, unless `stays_anywhere`.
     ///
     /// # Errors
-    /// Without discounting `NoProperPolicy` if from some state every policy collects rewards forever; `OutOfMemory`;
+    /// Without discounting `NoProperPolicy` if, from some state, every policy collects rewards forever; `OutOfMemory`;
     /// `Stopped` after `stop` was set.
     pub(super) fn for_discount(
         mdp: &TabularMdp,
@@ -42,15 +43,15 @@ impl Endings {
         Ok(Self { staying, policy: collect(policy.iter().map(|action| action.unwrap_or(0)))? })
     }
 
-    /// The action with which a state stays forever where there are no rewards.
+    /// The action with which a state stays forever without a reward.
     pub(super) fn staying_action(&self, state: usize) -> Option<usize> {
         self.staying.get(state).copied().flatten()
     }
 }
 
-/// For each state an action that may end the episode or lead to a state that has such an action, beginning with `known`
-/// ones; `None` if no action does. Following it ends the episode with probability 1, or reaches a state of the known
-/// ones, or one from which nothing ends it.
+/// For each state an action that may end the episode or lead to a state that has such an action, starting from the
+/// `known` ones; `None` if there is none. Following these actions ends the episode with probability 1, or reaches a
+/// known state, or a state from which no action leads to an end.
 fn ending_actions(
     mdp: &TabularMdp,
     known: Vec<Option<usize>>,
@@ -72,7 +73,7 @@ fn ending_actions(
     Ok(ending)
 }
 
-/// For each state of `within` that can stay forever among such states without a reward, the first action that does.
+/// For each state of `within` that can stay forever among such states without a reward, the first action that does so.
 fn staying_actions(
     mdp: &TabularMdp,
     stop: &StopFlag<'_>,

@@ -1,4 +1,4 @@
-//! Planning by expected updates of single state-action pairs, and how they are distributed (Sutton & Barto, section 8.6).
+//! Planning by expected updates of single state-action pairs, and their distribution (Sutton & Barto, section 8.6).
 
 use std::iter::once;
 
@@ -17,12 +17,12 @@ use crate::policies::{AnyPolicy, Policy, TieBreaking};
 use crate::random::Pcg64;
 use crate::schedules::Schedule;
 
-/// Which state-action pairs are updated.
+/// The distribution of updates over state-action pairs.
 #[derive(Clone, Debug, PartialEq)]
 pub enum UpdateDistribution {
     /// All pairs in turn, the actions of state 0 first.
     Uniform,
-    /// Those that occur in simulated episodes under the ε-greedy policy with this ε. Ties are broken at random.
+    /// The pairs that occur in simulated episodes under the ε-greedy policy with this ε. Ties are broken at random.
     OnPolicy(f64),
 }
 
@@ -38,7 +38,7 @@ pub struct ExpectedUpdates {
     rng: Pcg64,
 }
 
-/// Where the next pair comes from.
+/// The source of the next pair.
 #[derive(Clone, Debug)]
 enum Source {
     /// The pair to update next.
@@ -48,7 +48,7 @@ enum Source {
 }
 
 impl ExpectedUpdates {
-    /// Planning before its first update, with values of 0.
+    /// Planning before its first update, with all values 0.
     ///
     /// # Errors
     /// `OutOfMemory`; `Stopped` after `stop` was set.
@@ -76,10 +76,10 @@ impl ExpectedUpdates {
         &self.q_values
     }
 
-    /// Makes so many updates.
+    /// Makes this many updates.
     ///
     /// # Errors
-    /// `Overflow`; `Stopped` after `stop` was set. The updates before are kept.
+    /// `Overflow`; `Stopped` after `stop` was set. The updates made before are kept.
     pub fn advance(&mut self, updates: u64, stop: &StopFlag<'_>) -> Result<(), PlanningError> {
         let mut checks = StopChecks::new(&self.mdp, stop);
         let num_actions = self.mdp.num_actions();
@@ -110,7 +110,7 @@ impl ExpectedUpdates {
         Ok(())
     }
 
-    /// The expected return of the greedy policy from the initial states: of several best actions it takes the first.
+    /// The expected return of the greedy policy from the initial states. Ties go to the first action.
     ///
     /// # Errors
     /// Without discounting `NoProperPolicy` if the policy collects rewards forever; `NotConverged`; `Overflow`;

@@ -30,10 +30,10 @@ pub struct FiniteHorizon {
     pub sweeps: u64,
 }
 
-/// A change of the policy: with this many steps to go or more, another action is best in a state.
+/// A change of the policy: from this number of steps to go on, another action is best in a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PolicyChange {
-    /// The number of steps to go from which the action is best.
+    /// The number of steps to go from which on the action is best.
     pub steps_to_go: u64,
     /// The state.
     pub state: usize,
@@ -42,7 +42,8 @@ pub struct PolicyChange {
 }
 
 /// The optimal policy over `steps` steps. Among tied actions it keeps the one that is best with fewer steps to go, so
-/// that nothing is postponed, and otherwise takes the first. Actions tie if rounding may be all that makes one better.
+/// that nothing is postponed, and otherwise takes the first. Actions tie if their difference may be due to rounding
+/// alone.
 ///
 /// # Errors
 /// `Overflow`; `OutOfMemory`; `Stopped` after `stop` was set.
@@ -54,7 +55,7 @@ pub fn finite_horizon(
 ) -> Result<FiniteHorizon, PlanningError> {
     let zeros = || filled(&0.0, mdp.num_states(), stop);
     let (mut values, mut returns, mut next_values, mut next_returns) = (zeros()?, zeros()?, zeros()?, zeros()?);
-    // Bounds of the errors of the values.
+    // Bounds on the errors of the values.
     let (mut errors, mut next_errors) = (zeros()?, zeros()?);
     let mut row = filled(&0.0, mdp.num_actions(), stop)?;
     let mut policy = filled(&usize::MAX, mdp.num_states(), stop)?;
@@ -89,7 +90,7 @@ pub fn finite_horizon(
         swap(&mut values, &mut next_values);
         swap(&mut errors, &mut next_errors);
         swap(&mut returns, &mut next_returns);
-        // Once the values repeat, they repeat for any number of further steps.
+        // Once the values repeat, they repeat for any further number of steps.
         converged = values == next_values && returns == next_returns;
     }
     // With all steps to go, the next state has one step fewer.
@@ -98,8 +99,8 @@ pub fn finite_horizon(
     Ok(FiniteHorizon { values, q_values, policy, changes, expected_return, sweeps })
 }
 
-/// The expected undiscounted return of a policy within `steps` steps. It has one action per state; or one for each number of
-/// steps taken and each state, those of the first step first.
+/// The expected undiscounted return of a policy within `steps` steps. The policy has one action per state, or one per
+/// step and state, those of the first step first.
 ///
 /// # Errors
 /// `Overflow`; `OutOfMemory`; `Stopped` after `stop` was set.

@@ -1,4 +1,4 @@
-//! The Markov chain that a policy makes of a transition table, and its linear equations.
+//! The Markov chain of a policy on a transition table, and its linear equations.
 
 use crate::StopFlag;
 
@@ -9,30 +9,30 @@ use super::{MAX_SWEEPS, PlanningError};
 use crate::envs::tabular::TabularMdp;
 use crate::memory::{filled, reserve, with_capacity};
 
-/// So many sweeps are made before a direct method: most chains end, or are discounted, sooner.
+/// The number of sweeps before a direct method is used: most chains end, or are discounted, earlier.
 const SWEEPS_BEFORE_ELIMINATION: u64 = 1000;
-/// A direct method solves for up to so many states: in a matrix of 32 MB, within seconds.
+/// The largest number of states that a direct method solves for: a matrix of 32 MB, within seconds.
 const MAX_ELIMINATED: usize = 2000;
 
-/// From each state the discounted probabilities of the next ones, and the expected reward.
+/// The discounted probabilities of the next states, and the expected reward, of each state.
 #[derive(Clone, Debug)]
 pub(super) struct MarkovChain {
-    /// Where the transitions of each state begin, and behind the last one the number of all.
+    /// The index of each state's first transition, followed by the number of transitions.
     starts: Vec<usize>,
     /// The next state of each transition, and its probability times the discount.
     transitions: Vec<(u32, f64)>,
     /// The expected reward of a step from each state.
     pub(super) rewards: Vec<f64>,
-    /// The same for the magnitudes of the rewards.
+    /// The expected magnitude of the reward of a step from each state.
     reward_sizes: Vec<f64>,
-    /// How many outcomes each state has. Terminal ones have no transition.
+    /// The number of outcomes of each state. Terminal outcomes have no transition.
     outcomes: Vec<u32>,
     /// Whether an episode can end with the step from each state.
     may_end: Vec<bool>,
 }
 
 impl MarkovChain {
-    /// `choices` gives the actions that the policy takes in a state, and their probabilities.
+    /// `choices` returns the actions that the policy takes in a state, with their probabilities.
     ///
     /// # Errors
     /// `OutOfMemory`; `Stopped` after `stop` was set.
@@ -85,7 +85,7 @@ impl MarkovChain {
         self.transitions[range].iter().map(|&(next, weight)| (next as usize, weight))
     }
 
-    /// The states that never leave each other and collect no reward. Without discounting their value is 0.
+    /// The states that only lead to each other and collect no reward. Without discounting their value is 0.
     pub(super) fn staying(&self, stop: &StopFlag<'_>) -> Result<Vec<bool>, PlanningError> {
         let mut staying: Vec<bool> = with_capacity(self.num_states())?;
         staying.extend(self.reward_sizes.iter().map(|&size| size == 0.0));
@@ -109,7 +109,7 @@ impl MarkovChain {
         Ok(reaching)
     }
 
-    /// The states that are reached from a distribution, each after one that leads to it.
+    /// The states that are reachable from a distribution, each after one that leads to it.
     pub(super) fn reachable(&self, initial: &[f64], stop: &StopFlag<'_>) -> Result<Vec<usize>, PlanningError> {
         let mut checks = self.checks(stop);
         let mut reached = filled(&false, self.num_states(), stop)?;
@@ -134,7 +134,7 @@ impl MarkovChain {
         Ok(states)
     }
 
-    /// The same transitions backwards. Nothing else is kept.
+    /// The transitions reversed, without any other data.
     pub(super) fn transposed(&self, stop: &StopFlag<'_>) -> Result<Self, PlanningError> {
         let num_states = self.num_states();
         let mut starts = filled(&0, num_states + 1, stop)?;
@@ -177,25 +177,26 @@ impl MarkovChain {
     }
 }
 
-/// The linear equations x(s) = c(s) + Σ γ p x(s′) for some states of a chain, whatever the constants c.
+/// The linear equations x(s) = c(s) + Σ γ p x(s′) for some states of a chain, for any constants c.
 pub(super) struct Equations<'a> {
     chain: &'a MarkovChain,
     unknown: Vec<usize>,
-    /// What elimination left of them, once sweeps took long, and the place of each state among the unknown ones;
+    /// The eliminated equations, once sweeps took long, and the index of each state among the unknown ones;
     /// `usize::MAX` for the others.
     eliminated: Option<(Eliminated, Vec<usize>)>,
 }
 
 impl<'a> Equations<'a> {
-    /// `unknown` are the states.
+    /// The equations of the states in `unknown`.
     pub(super) fn new(chain: &'a MarkovChain, unknown: Vec<usize>) -> Self {
         Self { chain, unknown, eliminated: None }
     }
 
-    /// Solves them. `solution` holds a first guess, and the numbers of the other states, which stay.
+    /// Solves the equations. `solution` holds an initial guess, and the values of the other states, which stay fixed.
     ///
     /// # Errors
-    /// `NotConverged` for more states than a direct method takes, or if they are singular to rounding; `Overflow`;
+    /// `NotConverged` if there are too many states for a direct method, or the equations are singular to rounding;
+    /// `Overflow`;
     /// `OutOfMemory`; `Stopped` after `stop` was set.
     pub(super) fn solve(
         &mut self,
@@ -207,7 +208,7 @@ impl<'a> Equations<'a> {
             let (unknown, chain) = (&self.unknown, self.chain);
             let count = unknown.len();
             let most = if count <= MAX_ELIMINATED { SWEEPS_BEFORE_ELIMINATION } else { MAX_SWEEPS };
-            // Backwards and forwards: a corridor is solved at once, whichever way its states are numbered.
+            // Backwards and forwards: a corridor is solved at once, in whichever direction its states are numbered.
             let order = |sweep, index| unknown[if sweep % 2 == 1 { count - 1 - index } else { index }];
             let sum = |state: usize, values: &[f64]| chain.sum(state, constants[state], values);
             if converge(solution, count, most, chain.checks(stop), order, sum)? {
@@ -253,8 +254,8 @@ impl<'a> Equations<'a> {
         Ok(Eliminated::new(matrix, count, stop)?.map(|eliminated| (eliminated, places)))
     }
 
-    /// A bound of the error of each value, from what is left of its equation, and from how it may have been rounded: the
-    /// expected sum of these over the states that follow.
+    /// A bound on the error of each value: the expected sum, over the following states, of the residuals of the
+    /// equations and of their rounding errors.
     pub(super) fn errors(&mut self, values: &[f64], stop: &StopFlag<'_>) -> Result<Vec<f64>, PlanningError> {
         let chain = self.chain;
         let mut residuals = filled(&0.0, chain.num_states(), stop)?;

@@ -4,17 +4,17 @@ use crate::envs::Env;
 use crate::envs::tabular::{InvalidMdp, Outcome, TabularMdp};
 use crate::envs::toy_text::{Blackjack, Hand, Taxi};
 
-/// A Markov decision process and what an agent observes of it. Its states hold all that the dynamics depend on, so
-/// several of them can look the same to an agent.
+/// A Markov decision process with its observations. Its states include everything that the dynamics depend on, so
+/// several states can look the same to an agent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mdp {
     /// The transition table.
     pub table: TabularMdp,
-    /// For each state the row of the agent's Q table that its observation activates.
+    /// For each state, the row of the agent's Q table that its observation activates.
     pub rows: Vec<usize>,
 }
 
-/// Every state is observed as it is.
+/// Every state is its own observation.
 impl From<TabularMdp> for Mdp {
     fn from(table: TabularMdp) -> Self {
         let rows = (0..table.num_states()).collect();
@@ -22,8 +22,9 @@ impl From<TabularMdp> for Mdp {
     }
 }
 
-/// With fickle passengers the table is doubled: first the states in which the passenger may still change the destination,
-/// then those after the taxi has moved with them. An agent that remembers whether it did can tell them apart.
+/// With fickle passengers the table is doubled: first the states in which the passenger may still change the
+/// destination, then those after the taxi has moved with them. An agent that remembers this move can tell the two
+/// apart.
 impl TryFrom<&Taxi> for Mdp {
     type Error = InvalidMdp;
 
@@ -136,7 +137,7 @@ mod tests {
 
     static NO_STOP: StopFlag<'static> = StopFlag::new();
 
-    /// The mean return of a policy over the rows of a Q table, and its standard error, from simulated episodes.
+    /// The mean return of a policy over the rows of a Q table, with its standard error, from simulated episodes.
     fn simulated_return<E: Env<Action = usize>>(
         env: &E,
         row: impl Fn(&E::State) -> usize,

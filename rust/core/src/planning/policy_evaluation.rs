@@ -1,5 +1,5 @@
-//! Policy evaluation: the values of a given policy (Sutton & Barto, section 4.1), and how often it visits each state
-//! (section 9.2).
+//! Policy evaluation: the values of a given policy (Sutton & Barto, section 4.1), and its expected number of visits of
+//! each state (section 9.2).
 
 use crate::StopFlag;
 
@@ -10,23 +10,23 @@ use crate::envs::Env;
 use crate::envs::tabular::TabularMdp;
 use crate::memory::{collect, filled};
 
-/// The values of a policy, and how far rounding may have moved them.
+/// The values of a policy, with bounds on their errors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PolicyEvaluation {
     /// The value of each state: the expected discounted return.
     pub values: Vec<f64>,
-    /// A bound of the error of each value: the expected (discounted) sum, over the steps to the end, of what is left of the
-    /// Bellman equation and of the rounding errors. It depends only on the states that can follow, so that values which are
-    /// large elsewhere do not matter.
+    /// A bound on the error of each value: the expected (discounted) sum, over the steps to the end, of the residuals
+    /// of the Bellman equation and of the rounding errors. It depends only on the states that can follow, so large
+    /// values of other states do not matter.
     pub errors: Vec<f64>,
 }
 
-/// The solution of v(s) = Σ π(a|s) Σ p (r + γ v(s′)) (equation 4.4), by sweeps in place, or directly where these take long.
-/// `policy` holds π(a|s), the actions of state 0 first. Without discounting, states that never leave each other and
-/// collect no reward have the value 0.
+/// The solution of v(s) = Σ π(a|s) Σ p (r + γ v(s′)) (equation 4.4), by sweeps in place, or directly if these take
+/// long. `policy` holds π(a|s), the actions of state 0 first. Without discounting, states that only lead to each other
+/// and collect no reward have the value 0.
 ///
 /// # Errors
-/// Without discounting `NoProperPolicy` if from some state the policy collects rewards forever; `NotConverged`;
+/// Without discounting `NoProperPolicy` if, from some state, the policy collects rewards forever; `NotConverged`;
 /// `Overflow`; `OutOfMemory`; `Stopped` after `stop` was set.
 ///
 /// # Panics
@@ -42,7 +42,7 @@ pub fn policy_evaluation(
     evaluate(&chain, discount, filled(&0.0, mdp.num_states(), stop)?, stop)
 }
 
-/// Evaluates the policy of a chain in all states, beginning with a guess of their values.
+/// Evaluates the policy of a chain in all states, starting from a guess of their values.
 ///
 /// # Errors
 /// As [`policy_evaluation`].
@@ -57,9 +57,10 @@ pub(super) fn evaluate(
     Ok(PolicyEvaluation { values, errors })
 }
 
-/// Replaces a first guess of the values of some states, which are not left, by the values. Returns their equations.
+/// Replaces an initial guess of the values of some states, which never lead to other states, by the values. Returns the
+/// equations of these states.
 ///
-/// Without discounting, states that never leave each other and collect no reward have the value 0, and no equation.
+/// Without discounting, states that only lead to each other and collect no reward have the value 0, and no equation.
 ///
 /// # Errors
 /// As [`policy_evaluation`].
@@ -111,7 +112,7 @@ mod tests {
     use super::*;
     use crate::envs::tabular::Outcome;
 
-    /// A random walk over so many states, with a reward of 1 at the right end.
+    /// A random walk over `states` states, with a reward of 1 at the right end.
     fn walk(states: usize) -> TabularMdp {
         let step = |state: usize, right: bool| {
             let (end, next) =

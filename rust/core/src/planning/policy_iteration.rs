@@ -45,7 +45,7 @@ pub fn policy_iteration(mdp: &TabularMdp, discount: f64, stop: &StopFlag<'_>) ->
     Ok(Solution { values: evaluation.values, q_values, policy })
 }
 
-/// A policy that no change of an action improves.
+/// A policy that no change of a single action improves.
 pub(super) struct Improved {
     policy: Vec<usize>,
     evaluation: PolicyEvaluation,
@@ -53,8 +53,8 @@ pub(super) struct Improved {
 }
 
 impl Improved {
-    /// Replaces the policy by the one of several equally good ones that does not depend on how it was found, and
-    /// evaluates that.
+    /// Replaces the policy by a canonical one of the equally good policies, which does not depend on the search, and
+    /// evaluates it.
     pub(super) fn settled(
         self,
         mdp: &TabularMdp,
@@ -73,7 +73,7 @@ impl Improved {
 }
 
 /// Improves a policy until no action is better by more than rounding errors, so that equally good policies do not
-/// alternate forever (the book's exercise 4.4). `guess` is the first guess of its values.
+/// alternate forever (the book's exercise 4.4). `guess` is an initial guess of the policy's values.
 ///
 /// # Errors
 /// Without discounting `NoProperPolicy` if the first policy collects rewards forever, and `UnboundedReturn` if a better
@@ -100,8 +100,8 @@ pub(super) fn improve(
     Err(PlanningError::NotConverged { sweeps: MAX_SWEEPS })
 }
 
-/// One step of policy iteration: the values of a policy, and a better policy; `None` if no action is better by more than
-/// rounding errors. Of several best actions, the first is taken.
+/// One step of policy iteration: the values of a policy, and a better policy; `None` if no action is better by more
+/// than rounding errors. Ties go to the first action.
 ///
 /// # Errors
 /// Without discounting `NoProperPolicy` if the policy collects rewards forever; `NotConverged`; `Overflow`;
@@ -133,7 +133,7 @@ fn evaluate_actions(
     evaluate(&chain, discount, guess, stop)
 }
 
-/// The policy with all actions that are better by more than the errors of both action values.
+/// The policy after every change to an action that is better by more than the errors of both action values.
 fn improvement(
     mdp: &TabularMdp,
     discount: f64,
@@ -147,8 +147,8 @@ fn improvement(
         let (best, taken) = (argmax(row), policy[state]);
         let error_of = |action| action_error(mdp, state, action, discount, values, errors);
         match endings.staying_action(state) {
-            // All states that are worth less than staying without a reward begin to stay together, as they may lead to each
-            // other.
+            // All states that are worth less than staying without a reward start to stay in the same step, as they may
+            // lead to each other.
             Some(staying) if values[state] < -errors[state] => better[state] = staying,
             _ if row[best] > row[taken] && row[best] - row[taken] > error_of(best) + error_of(taken) => {
                 better[state] = best;

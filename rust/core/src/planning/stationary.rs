@@ -9,12 +9,13 @@ use crate::memory::filled;
 /// The discounts whose policies are tried.
 const DISCOUNTS: [f64; 15] =
     [1.0, 0.9999, 0.9995, 0.999, 0.998, 0.995, 0.99, 0.98, 0.97, 0.95, 0.9, 0.8, 0.7, 0.5, 0.2];
-/// Backward induction takes so many sweeps for each step before the time limit, fewer where that takes too long.
+/// The number of sweeps of backward induction per step of the time limit; fewer if these take too long.
 const SWEEPS_PER_STEP: u64 = 4;
 const LEAST_SWEEPS: u64 = 100;
-/// Nothing is searched for a table with more state-action pairs times steps.
+/// Tables with more state-action pairs times steps are not searched.
 const MAX_PAIR_UPDATES: u64 = 20_000_000;
-/// How many outcomes backward induction may look at, and then the changes of single actions: less than a second each.
+/// The number of outcomes that backward induction may read, and then the changes of single actions: less than a second
+/// each.
 const MAX_UPDATES: u64 = 50_000_000;
 /// A change of a single action must improve the return by more than this fraction of it.
 const TOLERANCE: f64 = 1e-12;
@@ -26,15 +27,15 @@ pub struct StationaryPolicy {
     pub policy: Vec<usize>,
     /// Its undiscounted expected return.
     pub expected_return: f64,
-    /// Whether no policy at all returns more.
+    /// Whether no policy at all has a larger return.
     pub proven: bool,
 }
 
-/// Searches for the stationary policy with the largest undiscounted return within `steps` steps; `None` if the table is too
-/// large to be searched in seconds.
+/// Searches for the stationary policy with the largest undiscounted return within `steps` steps; `None` if the table is
+/// too large to be searched within seconds.
 ///
-/// The policies of several discounts are compared; the best one is then improved by changes of the action of one row until
-/// none helps. `num_rows` is the number of rows, which the first states show.
+/// The search compares the policies of several discounts, then improves the best one by changing the action of one row
+/// at a time until no change helps. `num_rows` is the number of rows, which the first states show.
 ///
 /// # Errors
 /// `Overflow`; `OutOfMemory`; `Stopped` after `stop` was set.
@@ -92,7 +93,7 @@ impl Candidate {
 struct Search<'a> {
     mdp: &'a Mdp,
     steps: u64,
-    /// The action of each state, under the policy that is evaluated.
+    /// The action of each state under the policy being evaluated.
     by_state: Vec<usize>,
     stop: &'a StopFlag<'a>,
 }
@@ -108,7 +109,7 @@ impl Search<'_> {
         return_error(&self.mdp.table, &self.by_state, self.steps, self.stop)
     }
 
-    /// Takes every change of a single action that helps, in turn, until none does or `most` were tried.
+    /// Makes every change of a single action that helps, in turn, until none helps or `most` were tried.
     fn improve(&mut self, best: &mut Candidate, num_actions: usize, mut most: u64) -> Result<(), PlanningError> {
         let (mut row, mut unchanged) = (0, 0);
         while unchanged < best.policy.len() {

@@ -1,13 +1,13 @@
-//! When planning looks at the stop flag.
+//! Checks of the stop flag during planning.
 
 use super::PlanningError;
 use crate::StopFlag;
 use crate::envs::tabular::TabularMdp;
 
-/// How many outcomes are read between two looks at the flag: a fraction of a millisecond.
+/// The number of outcomes that are read between two checks of the flag: a fraction of a millisecond.
 const OUTCOMES_BETWEEN_CHECKS: usize = 1 << 16;
 
-/// Counts the work on a table's states, so that a sweep over a large table can be stopped as well.
+/// Counts the work on a table's states, so that even a sweep over a large table can be stopped.
 pub(super) struct StopChecks<'a> {
     stop: &'a StopFlag<'a>,
     /// The mean number of outcomes of a state.
@@ -16,17 +16,17 @@ pub(super) struct StopChecks<'a> {
 }
 
 impl<'a> StopChecks<'a> {
-    /// Counts for a table.
+    /// Counts the work on a table.
     pub(super) fn new(mdp: &TabularMdp, stop: &'a StopFlag<'a>) -> Self {
         Self::with_outcomes(mdp.num_outcomes(), mdp.num_states(), stop)
     }
 
-    /// Counts for so many outcomes of so many states.
+    /// Counts the work on `num_states` states with `num_outcomes` outcomes in total.
     pub(super) fn with_outcomes(num_outcomes: usize, num_states: usize, stop: &'a StopFlag<'a>) -> Self {
         Self { stop, outcomes: 1 + num_outcomes / num_states, counted: 0 }
     }
 
-    /// Visits all states again and again until a sweep changes nothing. `visit` returns whether it changed something.
+    /// Visits all states repeatedly until a sweep changes nothing. `visit` returns whether it changed something.
     ///
     /// # Errors
     /// `Stopped` after the flag was set.
@@ -39,7 +39,8 @@ impl<'a> StopChecks<'a> {
         while changed {
             changed = false;
             for index in 0..num_states {
-                // In both directions, so that a corridor takes few sweeps, whichever way its states are numbered.
+                // In both directions, so that a corridor takes few sweeps, in whichever direction its states are
+                // numbered.
                 changed |= visit(if forwards { index } else { num_states - 1 - index });
                 self.state()?;
             }
@@ -62,7 +63,7 @@ impl<'a> StopChecks<'a> {
         self.now()
     }
 
-    /// Looks at the flag.
+    /// Checks the flag.
     ///
     /// # Errors
     /// `Stopped` after the flag was set.

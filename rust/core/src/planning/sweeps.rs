@@ -1,5 +1,5 @@
-//! Sweeps of dynamic programming over all states (Sutton & Barto, chapter 4): one, for those who look at its steps, or as many
-//! as the values need to settle.
+//! Sweeps of dynamic programming over all states (Sutton & Barto, chapter 4): a single one, to show its steps, or as
+//! many as the values need to settle.
 
 use crate::StopFlag;
 
@@ -9,20 +9,20 @@ use super::stop_checks::StopChecks;
 use crate::envs::tabular::TabularMdp;
 use crate::memory::collect;
 
-/// A sweep has found the solution when it changes no value by more than this fraction of the terms that the value is
-/// the sum of: its last bits.
+/// A sweep has found the solution when it changes no value by more than this fraction of the magnitude of its terms:
+/// the last bits.
 const LAST_BITS: f64 = 4.0 * f64::EPSILON;
 
-/// Replaces the value of each state by its update target: with `policy`, which holds π(a|s), the actions of state 0 first,
-/// the expected one (equation 4.5), otherwise the largest one (equation 4.10).
+/// Replaces the value of each state by its update target: the expected one (equation 4.5) if `policy` holds π(a|s), the
+/// actions of state 0 first, otherwise the largest one (equation 4.10).
 ///
-/// In place, a state takes the new values of the states before it; otherwise the old values of all states.
+/// In place, a state uses the new values of the states before it; otherwise the old values of all states.
 ///
 /// # Errors
 /// `Overflow`; `OutOfMemory`; `Stopped` after `stop` was set. The values are then those of an unfinished sweep.
 ///
 /// # Panics
-/// If `values` or `policy` has another length than the table.
+/// If `values` or `policy` does not fit the table.
 pub fn sweep(
     mdp: &TabularMdp,
     policy: Option<&[f64]>,
@@ -48,10 +48,10 @@ pub fn sweep(
     Ok(())
 }
 
-/// Sweeps over `count` states, of which `order(sweep, index)` gives the next one, and replaces each value in place, until the
-/// changes are in the last bits of the terms and no longer shrink. `backup(state, values)` gives the new value and the
-/// magnitude of its terms, which is only read where the value changes. Returns whether the values settled within `most`
-/// sweeps.
+/// Sweeps over `count` states, with `order(sweep, index)` as the next one, and replaces each value in place, until the
+/// changes are in the last bits of the terms and no longer shrink. `backup(state, values)` returns the new value and
+/// the magnitude of its terms, which is read only if the value changes. Returns whether the values settled within
+/// `most` sweeps.
 ///
 /// # Errors
 /// `Overflow`; `Stopped` after `stop` was set.
@@ -92,7 +92,7 @@ mod tests {
     use super::*;
     use crate::envs::tabular::Outcome;
 
-    /// Two states in a row with a reward of 1 for each step, and the end behind them.
+    /// Two states in a row with a reward of 1 for each step, followed by the end.
     fn corridor() -> TabularMdp {
         let step = |state, terminated| vec![Outcome { probability: 1.0, state, reward: 1.0, terminated }];
         TabularMdp::new(1, &[0.0, 1.0], &[step(0, true), step(0, false)]).expect("a valid table")

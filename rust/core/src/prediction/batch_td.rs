@@ -8,40 +8,42 @@ use crate::memory::{AllocationError, RunMemory};
 use crate::tasks::Next;
 
 /// A value has settled when the sum of its errors in a presentation is at most this fraction of the largest sum of the
-/// magnitudes of their terms since the last episode. Each row has such a sum, so large values of other rows do not matter.
+/// magnitudes of their terms since the last episode. Each row has its own sum, so large values of other rows do not
+/// matter.
 const SETTLED: f64 = 1e-12;
-/// How many transitions are read in the time that counts as a work of 1.
+/// The number of transitions that are read in the time of one unit of work.
 const TRANSITIONS_PER_WORK: u64 = 4;
 
 /// The reward and the next row, which is `None` at a terminal state.
 type Outcome = (f64, Option<u32>);
 
-/// After each episode, until the values settle: v(s) ← v(s) + the mean of R + γ v(S′) - v(s) over all visits of s so far.
+/// After each episode, until the values settle: v(s) ← v(s) + the mean of R + γ v(S′) - v(s) over all visits of s so
+/// far.
 ///
-/// The book sums the errors times a small α instead. Both settle at the same values, those of the maximum-likelihood model
-/// of the data. Equal transitions are counted, and read once a presentation.
+/// The book instead sums the errors, multiplied by a small α. Both settle at the same values, those of the
+/// maximum-likelihood model of the data. Equal transitions are counted, and read once per presentation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BatchTd {
-    /// Each transition with the number of its occurrences, in the order of the first ones.
+    /// Each transition with the number of its occurrences, in the order of first occurrence.
     transitions: Vec<(u32, Outcome, f64)>,
-    /// Where each transition is in the list: by its row, the bits of its reward, and its next row plus 1, or 0.
+    /// The index of each transition in the list, by its row, the bits of its reward, and its next row plus 1, or 0.
     places: HashMap<(u32, u64, u64), usize>,
-    /// How often each row was visited.
+    /// The number of visits of each row.
     visits: Vec<f64>,
     /// The sum of the errors of each row in this presentation.
     errors: Vec<f64>,
     /// The sum of the magnitudes of the terms of these errors.
     sizes: Vec<f64>,
-    /// The largest of these sums since the last episode: values that fall to 0 settle, too.
+    /// The largest of these sums since the last episode, so that values that fall to 0 settle, too.
     largest_sizes: Vec<f64>,
-    /// Whether these transitions were found to lead to an end.
+    /// Whether every row is known to lead to an end.
     leads_to_end: bool,
     /// The presentations since the last episode.
     settling: StepInParts,
 }
 
 impl BatchTd {
-    /// Without an episode. `rows` is the number of rows.
+    /// Batch TD before the first episode. `rows` is the number of rows.
     pub fn new(rows: usize) -> Self {
         Self {
             transitions: Vec::new(),
@@ -81,8 +83,8 @@ impl BatchTd {
         settled || values.diverged()
     }
 
-    /// Whether a path of transitions leads from each row to an end: a terminal state, or a row without transitions, whose
-    /// value does not change. Without a discount the values grow forever otherwise.
+    /// Whether a path of transitions leads from each row to an end: a terminal state, or a row without transitions,
+    /// whose value does not change. Otherwise, without discounting, the values grow forever.
     fn every_row_leads_to_an_end(&self) -> bool {
         let mut leads: Vec<bool> = self.visits.iter().map(|&visits| visits == 0.0).collect();
         let mut found = true;
@@ -126,7 +128,7 @@ impl PredictionRule for BatchTd {
         1 + self.settling.work()
     }
 
-    /// With continuous rewards each step is a transition of its own.
+    /// With continuous rewards, each step is a different transition.
     fn reserve(&mut self, steps: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
         let steps = usize::try_from(steps).unwrap_or(usize::MAX);
         memory.reserve(&mut self.transitions, steps)?;
@@ -206,7 +208,7 @@ mod tests {
         assert_eq!(learner.values.weights, [-4.0, -3.0, -2.0, -1.0, -1e13]);
     }
 
-    /// Example 6.4: eight episodes. Batch TD finds V(A) = 3/4, where the average of the returns is 0.
+    /// Example 6.4: eight episodes. Batch TD finds V(A) = 3/4, whereas the average of the returns is 0.
     #[test]
     fn you_are_the_predictor() {
         let mut learner = predictor(&[0.0, 0.0], BatchTd::new(2));

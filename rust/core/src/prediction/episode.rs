@@ -21,15 +21,16 @@ pub(super) struct Episode {
     pub(super) visits: Vec<EpisodeVisit>,
     /// G of each step, once the episode is over.
     pub(super) returns: Vec<f64>,
-    /// For each state the number of the episode, from 1, that visited it last.
+    /// For each state, the number of the last episode that visited it, counted from 1.
     last_visits: Vec<u64>,
     number: u64,
-    /// The number of steps of the last finished episode, if no step followed.
+    /// The number of steps of the last finished episode, if no step has followed.
     finished: u64,
 }
 
 impl Episode {
-    /// Without a step. `states` is their number; 0 for states without numbers, whose visits are all first ones.
+    /// An episode without steps. `states` is the number of states; 0 if they are not numbered, so that all visits are
+    /// first visits.
     pub(super) fn new(states: usize) -> Self {
         Self { last_visits: vec![0; states], number: 1, ..Self::default() }
     }
@@ -44,15 +45,15 @@ impl Episode {
         step.is_last()
     }
 
-    /// Computes the λ-returns G of all steps, from the last one to the first, with the values as they are (Sutton & Barto,
-    /// equations 12.2 and 12.3): G = R + γ [(1 - λ) v(S′) + λ G′]. With λ = 1 they are the returns themselves. The return
-    /// of an episode that its time limit cut off ends with the value of the last state.
+    /// Computes the λ-returns G of all steps, from the last one to the first, with the current values (Sutton & Barto,
+    /// equations 12.2 and 12.3): G = R + γ [(1 - λ) v(S′) + λ G′]. With λ = 1 these are the returns. If the time limit
+    /// cuts off the episode, the return ends with the value of the last state.
     pub(super) fn compute_returns(&mut self, values: &LinearValues, next: Next<u32>, trace_decay: f64) {
         let bootstrap = values.next_value(next);
         let (mut following, mut value) = (bootstrap, bootstrap);
         self.returns.resize(self.visits.len(), 0.0);
         let steps = self.visits.iter().zip(&mut self.returns).rev();
-        // A loop of its own: Monte Carlo prediction takes 3 % fewer instructions.
+        // A separate loop: Monte Carlo prediction takes 3 % fewer instructions.
         if trace_decay == 1.0 {
             for (visit, target) in steps {
                 following = visit.reward + values.discount * following;
@@ -68,7 +69,7 @@ impl Episode {
         }
     }
 
-    /// Forgets the steps, for the next episode.
+    /// Discards the steps, for the next episode.
     #[inline]
     pub(super) fn clear(&mut self) {
         self.finished = self.visits.len() as u64;
@@ -82,7 +83,7 @@ impl Episode {
         1 + self.finished
     }
 
-    /// Makes room for so many more steps.
+    /// Reserves memory for this many more steps.
     pub(super) fn reserve(&mut self, steps: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
         let (steps, count) = (usize::try_from(steps).unwrap_or(usize::MAX), self.visits.len());
         memory.reserve(&mut self.visits, steps)?;

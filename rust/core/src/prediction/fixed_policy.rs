@@ -10,11 +10,11 @@ use crate::random::Rng;
 pub struct FixedPolicy {
     num_actions: usize,
     probabilities: Arc<[f64]>,
-    /// For each state the sums of the probabilities from left to right, with infinity from the last possible action on.
+    /// For each state, the cumulative probabilities, with infinity from the last possible action on.
     thresholds: Arc<[f64]>,
-    /// The action of each state, if none has two.
+    /// The action of each state; `None` if any state has several.
     actions: Option<Arc<[u32]>>,
-    /// The probabilities of the policy that is evaluated; empty where it is this one.
+    /// The probabilities of the policy that is evaluated; empty if it is this policy.
     target: Arc<[f64]>,
 }
 
@@ -42,14 +42,14 @@ impl FixedPolicy {
         Self { num_actions, probabilities, thresholds: thresholds.into(), actions, target: Arc::new([]) }
     }
 
-    /// The same policy, from whose actions another one is evaluated, which is given in the same form.
+    /// This policy as a behavior policy, with the probabilities of the target policy in the same form.
     #[must_use]
     pub fn evaluating(self, target: Arc<[f64]>) -> Self {
         Self { target, ..self }
     }
 
-    /// Samples an action: the first whose sum of probabilities exceeds one `random()`. A policy that is deterministic in
-    /// every state draws nothing.
+    /// Samples an action: the first whose cumulative probability exceeds one `random()`. A policy that is deterministic
+    /// in every state draws nothing.
     #[inline]
     pub fn choose(&self, state: u32, rng: &mut impl Rng) -> usize {
         if let Some(actions) = &self.actions {
@@ -79,7 +79,7 @@ impl<R> Behavior<R> for FixedPolicy {
         self.choose(state, rng)
     }
 
-    /// It cannot panic, so that nothing is computed for a method that needs no ratios.
+    /// Cannot panic, so that the compiler can drop it for methods that need no ratios.
     #[inline]
     fn ratio(&self, state: u32, _active: &R, action: usize) -> f64 {
         if self.target.is_empty() {

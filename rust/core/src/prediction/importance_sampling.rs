@@ -4,8 +4,8 @@ use super::episode::Episode;
 use super::{LinearValues, PredictionRule, PredictionStep};
 use crate::memory::{AllocationError, RunMemory};
 
-/// At the end of an episode, for its steps from the last to the first, with the importance-sampling ratio
-/// ρ = Π π(A|S) / b(A|S) from that step on:
+/// Updates at the end of an episode, for its steps from the last to the first, with the importance-sampling ratio ρ = Π
+/// π(A|S) / b(A|S) from that step on:
 ///
 /// - ordinary: C ← C + 1, v(S) ← v(S) + (ρ G - v(S)) / C
 /// - weighted: C ← C + ρ, v(S) ← v(S) + ρ / C (G - v(S))
@@ -19,7 +19,8 @@ pub struct ImportanceSampling {
 }
 
 impl ImportanceSampling {
-    /// Estimates the values of a target policy from episodes of another one. `shape` is the number of states and of rows.
+    /// Estimates the values of a target policy from episodes of a behavior policy. `shape` is the number of states and
+    /// of rows.
     pub fn new(weighted: bool, first_visit: bool, (states, rows): (usize, usize)) -> Self {
         Self { weighted, first_visit, weights: vec![0.0; rows], episode: Episode::new(states) }
     }
@@ -41,7 +42,7 @@ impl PredictionRule for ImportanceSampling {
             let row = values.features.first(visit.state);
             let error = if self.weighted {
                 if ratio == 0.0 {
-                    break; // all ratios before it are 0, too
+                    break; // the ratios of all earlier steps are 0, too
                 }
                 self.weights[row] += ratio;
                 ratio / self.weights[row] * (target - values.weights[row])

@@ -4,7 +4,7 @@ use super::StateFeatures;
 use crate::schedules::{LearningRate, StepSize};
 use crate::tasks::Next;
 
-/// v(s) = Σ w over the active rows of s, from left to right. With one row for each state it is a table.
+/// v(s) = Σ w over the active rows of s, from left to right. With one row per state it is a table.
 #[derive(Debug, PartialEq)]
 pub struct LinearValues {
     /// The weights w.
@@ -22,7 +22,7 @@ impl LinearValues {
     /// The values before the first episode.
     ///
     /// # Panics
-    /// If there is not a weight for each row.
+    /// If the number of weights differs from the number of rows.
     pub fn new(weights: Vec<f64>, features: StateFeatures, learning_rate: LearningRate, discount: f64) -> Self {
         assert_eq!(weights.len(), features.n_weights(), "there must be a weight for each row");
         Self { weights, features, learning_rate, discount, diverged: false }
@@ -65,19 +65,19 @@ impl LinearValues {
         }
     }
 
-    /// The step size that all weights share. The methods with traces need one.
+    /// The step size shared by all weights, which the methods with traces need.
     #[inline]
     pub fn step_size(&self) -> f64 {
         self.learning_rate.at(0)
     }
 
-    /// Notes an error that is no finite number.
+    /// Records a divergence if an error is not a finite number.
     #[inline]
     pub fn check_finite(&mut self, error: f64) {
         self.diverged |= !error.is_finite();
     }
 
-    /// Notes that the values will never settle.
+    /// Records that the values will never settle.
     pub fn give_up(&mut self) {
         self.diverged = true;
     }

@@ -13,13 +13,13 @@ use crate::tasks::Next;
 #[derive(Clone, Debug, PartialEq)]
 pub struct NStepTd {
     n: usize,
-    /// The states that await their updates and the rewards that followed, oldest first, at most n.
+    /// The states waiting for their updates, and the rewards that followed, oldest first, at most n.
     visits: VecDeque<(u32, f64)>,
     work: u64,
 }
 
 impl NStepTd {
-    /// Returns of `n` rewards.
+    /// n-step TD with returns of `n` rewards.
     ///
     /// # Panics
     /// If `n` is 0.

@@ -1,13 +1,13 @@
-//! The off-line λ-return algorithm (Sutton & Barto, equations 12.2 to 12.4), which with λ = 1 is Monte Carlo prediction (the
-//! boxes in sections 5.1 and 9.3, and equation 6.1).
+//! The off-line λ-return algorithm (Sutton & Barto, equations 12.2 to 12.4). With λ = 1 it is Monte Carlo prediction
+//! (the boxes in sections 5.1 and 9.3, and equation 6.1).
 
 use super::episode::Episode;
 use super::{LinearValues, PredictionRule, PredictionStep};
 use crate::memory::{AllocationError, RunMemory};
 
 /// w ← w + α [Gₜ - v(Sₜ)] ∇v(Sₜ) at the end of an episode, for its steps from the first to the last, where Gₜ is the
-/// λ-return from the values before these updates, or with λ = 1 the return. With a learning rate of 1 / n at the n-th visit,
-/// the values of a table are then the averages of the returns.
+/// λ-return from the values before these updates, or with λ = 1 the return. With a learning rate of 1 / n at the n-th
+/// visit, the values of a table are then the averages of the returns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OfflineLambdaReturn {
     trace_decay: f64,
@@ -16,7 +16,7 @@ pub struct OfflineLambdaReturn {
 }
 
 impl OfflineLambdaReturn {
-    /// `trace_decay` is λ, and `states` the number of states; 0 for states without numbers.
+    /// `trace_decay` is λ, and `states` the number of states; 0 if they are not numbered.
     pub fn new(trace_decay: f64, states: usize) -> Self {
         Self { trace_decay, first_visit: false, episode: Episode::new(states) }
     }

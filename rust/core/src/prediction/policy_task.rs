@@ -1,4 +1,4 @@
-//! A task in which a given policy acts by reading the observations.
+//! A task with a given policy that reads the observations.
 
 use super::Behavior;
 use crate::checkpoint::{Checkpoint, CheckpointError};
@@ -7,7 +7,7 @@ use crate::features::Features;
 use crate::random::Rng;
 use crate::tasks::{NativeTask, Next, Task, Transition};
 
-/// A task whose observations can be read, beside their active rows.
+/// A task that provides observations besides their active rows.
 pub trait ObservableTask: Task {
     /// An observation.
     type Observation;
@@ -27,23 +27,23 @@ impl<E: Env<Action = usize>, F: Features<E::Observation>> ObservableTask for Nat
 
 /// A policy that does not change, and chooses by the observation.
 pub trait ObservationPolicy<O> {
-    /// Why it can fail.
+    /// The error of a failed choice.
     type Error;
 
-    /// Samples an action A, and gives its importance-sampling ratio π(A|S) / b(A|S): 1 where this policy is evaluated.
-    /// `active` are the active rows of the observation in the task.
+    /// Samples an action A, and returns it with its importance-sampling ratio π(A|S) / b(A|S): 1 if this policy is
+    /// evaluated. `active` are the active rows of the observation in the task.
     ///
     /// # Errors
-    /// Whatever a policy in Python raises, or an observation without a row.
+    /// An exception of a policy in Python, or an observation without a row.
     fn choose(&mut self, observation: &O, active: &[u32], rng: &mut impl Rng) -> Result<(usize, f64), Self::Error>;
 
-    /// The work of a choice, as [`Budget`](crate::Budget) counts it, beside that of a step.
+    /// The work of a choice, as counted by [`Budget`](crate::Budget), in addition to that of a step.
     fn work(&self) -> u64 {
         0
     }
 }
 
-/// The active rows of a state, with the action that a policy took there.
+/// The active rows of a state, with the action that a policy took in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WithAction<R> {
     active: R,
@@ -56,7 +56,7 @@ impl<R> WithAction<R> {
         Self { active, action: action as u32, ratio }
     }
 
-    /// Where no action is taken: the episode is over.
+    /// No action, as the episode is over.
     fn none(active: R) -> Self {
         Self::new(active, (0, 1.0))
     }
@@ -77,7 +77,7 @@ impl<'a, R: TryFrom<&'a [u32]>> TryFrom<&'a [u32]> for WithAction<R> {
     }
 }
 
-/// The behavior policy of a [`PolicyTask`]: it took the action before.
+/// The behavior policy of a [`PolicyTask`], which has already chosen the action.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ActionFromTask;
 
@@ -97,8 +97,8 @@ impl<R> Behavior<WithAction<R>> for ActionFromTask {
 
 /// A task with the policy that acts in it and the agent's generator.
 ///
-/// Rows alone do not determine what such a policy does. So the task asks the policy, and its active rows bring the action
-/// along, which the learner returns.
+/// The rows alone do not determine the choice of such a policy. So the task asks the policy, and passes the action with
+/// the active rows to the learner, which returns it.
 #[derive(Clone, Debug)]
 pub struct PolicyTask<W, P, D> {
     /// The task.

@@ -22,19 +22,19 @@ pub struct PredictionStep {
 }
 
 impl PredictionStep {
-    /// Whether the episode ends here, in a terminal state or by its time limit.
+    /// Whether this is the last step of the episode, because of a terminal state or the time limit.
     #[inline]
     pub fn is_last(&self) -> bool {
         !matches!(self.next, Next::NonTerminal(_))
     }
 }
 
-/// How a method changes the values. It draws no random numbers.
+/// The update rule of a prediction method. It draws no random numbers.
 pub trait PredictionRule {
     /// Learns from one step.
     fn learn(&mut self, values: &mut LinearValues, step: PredictionStep);
 
-    /// The work of the last call, as [`Budget`](crate::Budget) counts it. At least 1.
+    /// The work of the last call, as counted by [`Budget`](crate::Budget). At least 1.
     fn work(&self) -> u64 {
         1
     }
@@ -47,7 +47,7 @@ pub trait PredictionRule {
     /// Continues to learn from the last step.
     fn resume(&mut self, _values: &mut LinearValues) {}
 
-    /// How many states before the last one are still needed; `None` for all of the episode.
+    /// The number of states before the last one that are still needed; `None` for all states of the episode.
     fn look_back(&self) -> Option<usize> {
         None
     }
@@ -55,7 +55,7 @@ pub trait PredictionRule {
     /// Called after the last step of every episode.
     fn end_episode(&mut self) {}
 
-    /// Makes room for what so many steps store.
+    /// Reserves memory for the data of this many steps.
     ///
     /// # Errors
     /// `OutOfMemory`, `LimitReached`.
@@ -66,17 +66,18 @@ pub trait PredictionRule {
 
 /// The behavior policy b. `R` holds the active rows of a state.
 pub trait Behavior<R> {
-    /// Whether it is a policy over states that the task numbers: its active row is the number of a state.
+    /// Whether it is a policy over numbered states: the active row in the task is then the number of a state.
     const OF_STATES: bool;
 
-    /// Samples an action in a state, of which the number is given, too.
+    /// Samples an action in a state, which is given by its number and by its active rows.
     fn action(&self, state: u32, active: &R, rng: &mut impl Rng) -> usize;
 
     /// π(A|S) / b(A|S) of an action.
     fn ratio(&self, state: u32, active: &R, action: usize) -> f64;
 }
 
-/// A prediction method as a [`Learner`]: its actions come from a policy that does not change, and its table has one column.
+/// A prediction method as a [`Learner`]. The actions come from a policy that does not change, and the table has one
+/// column.
 #[derive(Debug)]
 pub struct Predictor<U: ?Sized, B = FixedPolicy> {
     /// The estimated values.
@@ -84,7 +85,7 @@ pub struct Predictor<U: ?Sized, B = FixedPolicy> {
     behavior: B,
     /// The method.
     pub(super) rule: Box<U>,
-    /// The number of the state visited last, where the task does not number them.
+    /// The number of the state visited last, if the task does not number its states.
     state: u32,
 }
 
@@ -153,7 +154,7 @@ impl<R: AsRef<[u32]> + Copy, U: PredictionRule + ?Sized, B: Behavior<R>> Learner
         self.rule.is_unfinished()
     }
 
-    /// Only the last step of an episode is ever unfinished, so no action follows.
+    /// Only the last step of an episode can be unfinished, so no action follows.
     fn resume(&mut self, _next: Next<R>, _rng: &mut impl Rng) -> usize {
         self.rule.resume(&mut self.values);
         0

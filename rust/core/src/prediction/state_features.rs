@@ -2,39 +2,39 @@
 
 use crate::memory::{AllocationError, RunMemory, collect, reserve};
 
-/// A method that looks back further than this keeps the rows of the whole episode.
+/// A method that looks back further than this stores the rows of the whole episode.
 const MOST_KEPT: usize = 1024;
 
-/// The active rows of states, as many for each. A method knows a state by a number.
+/// The active rows of states, the same number for each. A method identifies a state by its number.
 #[derive(Debug, PartialEq)]
 pub struct StateFeatures {
     rows: Vec<u32>,
     n_active: usize,
     n_weights: usize,
-    /// `None` for states that the task numbers: its active row is the number of a state.
+    /// `None` for states that the task numbers: the active row in the task is then the number of a state.
     visits: Option<Visits>,
 }
 
-/// States without numbers are numbered in the order in which an episode visits them.
+/// The visits of an episode, which number states that have no numbers of their own.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Visits {
-    /// How many states are kept; `None` for the whole episode.
+    /// The number of states stored; `None` for the whole episode.
     kept: Option<u32>,
     /// The number of the state visited last.
     last: u32,
 }
 
 impl StateFeatures {
-    /// Of numbered states: a table, state aggregation, tile coding. `rows` holds `n_active` rows for each state, those of
-    /// state 0 first, each less than `n_weights`; `None` if it does not.
+    /// The features of numbered states: a table, state aggregation, tile coding. `rows` holds `n_active` rows for each
+    /// state, those of state 0 first, each less than `n_weights`; `None` if it does not.
     pub fn of_states(rows: Vec<u32>, n_active: usize, n_weights: usize) -> Option<Self> {
         let fits =
             n_active > 0 && rows.len().is_multiple_of(n_active) && rows.iter().all(|&row| (row as usize) < n_weights);
         fits.then_some(Self { rows, n_active, n_weights, visits: None })
     }
 
-    /// Of states without numbers: those of the observations of an episode. Keeps the rows of the last state, the next one,
-    /// and `look_back` before them; of all where it is `None`.
+    /// The features of states without numbers: those of the observations of an episode. Stores the rows of the last
+    /// state, the next one, and `look_back` states before them; `None` stores all.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -54,7 +54,7 @@ impl StateFeatures {
         Ok(Self { rows: collect(self.rows.iter().copied())?, ..*self })
     }
 
-    /// The number of states; 0 where they have no numbers.
+    /// The number of states; 0 if they are not numbered.
     pub fn num_states(&self) -> usize {
         if self.visits.is_some() { 0 } else { self.rows.len() / self.n_active }
     }
@@ -76,7 +76,7 @@ impl StateFeatures {
         &self.rows[state as usize * self.n_active..][..self.n_active]
     }
 
-    /// The row of a state that has one active row; the first one otherwise.
+    /// The row of a state with one active row; the first row otherwise.
     #[inline]
     pub fn first(&self, state: u32) -> usize {
         self.rows[state as usize * self.n_active] as usize
@@ -91,7 +91,7 @@ impl StateFeatures {
         }
     }
 
-    /// The number of the next state of the episode, for which the task gives these active rows.
+    /// The number of the next state of the episode, given its active rows in the task.
     pub(super) fn visit(&mut self, active: &[u32]) -> u32 {
         let Some(Visits { kept, last }) = &mut self.visits else { return active[0] };
         *last = last.wrapping_add(1);
@@ -104,7 +104,7 @@ impl StateFeatures {
         *last
     }
 
-    /// Makes room for so many more states.
+    /// Reserves memory for this many more states.
     ///
     /// # Errors
     /// `OutOfMemory`, `LimitReached`.

@@ -1,6 +1,6 @@
 //! Eligibility traces of state values, for TD(λ) and true online TD(λ).
 
-/// The traces z of all weights, and which of them may not be zero.
+/// The traces z of all weights, and the indices of those that may be nonzero.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct StateTraces {
     pub(super) values: Vec<f64>,
@@ -46,7 +46,7 @@ impl StateTraces {
         }
     }
 
-    /// The work of a pass.
+    /// The work of one pass over the traces.
     #[inline]
     pub(super) fn work(&self) -> u64 {
         1 + self.eligible.len() as u64 / 4

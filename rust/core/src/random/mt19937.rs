@@ -12,7 +12,7 @@ const WORDS: usize = 624;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mt19937 {
     engine: Mt,
-    /// Words that the engine has drawn and that are not used yet, the next one last. Only a restored generator has them.
+    /// Words that the engine has drawn but not used yet, the next one last. Only a restored generator has any.
     drawn: Vec<u32>,
 }
 
@@ -59,7 +59,7 @@ impl Rng for Mt19937 {
     }
 }
 
-/// The next words, as many as the state has: they determine all others.
+/// The next 624 words, the size of the state, which determine all later ones.
 impl Persist for Mt19937 {
     fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
         let mut same = self.clone();

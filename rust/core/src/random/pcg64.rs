@@ -39,8 +39,8 @@ impl Pcg64Engine {
         (low ^ high).rotate_right((high >> 58) as u32)
     }
 
-    /// Skips so many words, modulo 2¹²⁸, in at most 128 squarings (F. B. Brown, "Random number generation with arbitrary
-    /// strides", 1994).
+    /// Skips this many words, modulo 2¹²⁸, in at most 128 squarings (F. B. Brown, "Random number generation with
+    /// arbitrary strides", 1994).
     pub(super) fn advance(&mut self, words: u128) {
         let (mut multiplier, mut increment) = (MULTIPLIER, self.increment);
         let mut left = words;
@@ -145,7 +145,7 @@ pub(crate) fn lemire_bounded(below: u32, mut next: impl FnMut() -> u32) -> u32 {
     (product >> 32) as u32
 }
 
-/// The position: a generator of the same seed is advanced to it.
+/// The position, to which a generator of the same seed is advanced.
 impl Persist for Pcg64 {
     fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
         let mut words_drawn = self.words_drawn;

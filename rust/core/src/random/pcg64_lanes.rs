@@ -15,7 +15,7 @@ const LOWER_HALF: u64 = 0xffff_ffff;
 pub(crate) struct Pcg64Lanes<S: Simd, const K: usize> {
     /// The lower and the upper 64 bits of the states.
     state: [U64s<S, K>; 2],
-    /// Those of the increments.
+    /// The lower and the upper 64 bits of the increments.
     increment: [U64s<S, K>; 2],
     buffered_u32: U64s<S, K>,
     has_buffered_u32: Mask<S, K>,
@@ -30,9 +30,9 @@ pub(crate) struct Decisions<S: Simd, const K: usize> {
     pub(crate) random: U64s<S, K>,
 }
 
-/// The least draw of `random_u53` that explores if `random()` is to be at least `greedy_below`, which must not be negative.
-/// `random()` is an integer `n` times 2⁻⁵³, so `random() >= greedy_below` says that `n` is at least 2⁵³ × `greedy_below`,
-/// which is exact, or the next integer above it.
+/// The smallest draw of `random_u53` that explores if `random()` must be at least `greedy_below`, which must not be
+/// negative. `random()` is an integer `n` times 2⁻⁵³, so `random() >= greedy_below` means that `n` is at least 2⁵³ ×
+/// `greedy_below`, which is exact, or the next integer above it.
 pub(crate) fn explore_from(greedy_below: f64) -> u64 {
     (greedy_below * TWO_POW_53).ceil() as u64
 }
@@ -88,9 +88,9 @@ impl<S: Simd, const K: usize> Pcg64Lanes<S, K> {
         random
     }
 
-    /// The decision of every lane. `below` must be greater than 1. A lane that does not explore draws one word, one that
-    /// does draws another unless it has a buffered half. Both words are computed, and the state after the last one used is
-    /// kept.
+    /// The decision of every lane. `below` must be greater than 1. A lane that does not explore draws one word; a lane
+    /// that does draws another unless it has a buffered half. Both words are computed, and the state after the last one
+    /// used is kept.
     #[inline(always)]
     pub(crate) fn explore(&mut self, simd: S, explore_from: U64s<S, K>, below: u32) -> Decisions<S, K> {
         let first = self.next_states(self.state);
@@ -122,7 +122,8 @@ impl<S: Simd, const K: usize> Pcg64Lanes<S, K> {
         }
     }
 
-    /// The states after these. 64-bit products are sums of products of 32-bit halves, which vector instructions have.
+    /// The states that follow. The 64-bit products are sums of products of 32-bit halves, for which there are vector
+    /// instructions.
     #[inline(always)]
     fn next_states(&self, [low, high]: [U64s<S, K>; 2]) -> [U64s<S, K>; 2] {
         const LOW: u64 = MULTIPLIER as u64;
@@ -156,7 +157,7 @@ mod tests {
 
     const LANES: usize = 5;
 
-    /// The thresholds and the numbers of actions of some draws, and the generators that they begin with.
+    /// The thresholds and the numbers of actions of some draws, and the initial generators.
     #[derive(Clone, Copy)]
     struct Draws<'a>(&'a [([f64; LANES], u32)], [&'a Pcg64; LANES]);
 

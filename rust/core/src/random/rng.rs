@@ -23,7 +23,7 @@ pub trait Rng {
     }
 }
 
-/// A generator for code that draws nothing: every draw is 0.
+/// A generator for code that draws no numbers: every draw is 0.
 #[derive(Clone, Copy, Debug)]
 pub struct NoRng;
 

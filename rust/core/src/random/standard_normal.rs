@@ -7,20 +7,20 @@ use super::{Pcg64, Rng};
 
 /// The number of layers of the ziggurat.
 const LAYERS: usize = 256;
-/// Where the tail begins: the right end of the lowest layer.
+/// The start of the tail: the right end of the lowest layer.
 const TAIL: f64 = 3.654_152_885_361_009;
 /// 1 / `TAIL`, as `NumPy` rounds it.
 const TAIL_INVERSE: f64 = 0.273_661_237_329_758_3;
-/// The area of a layer, as far as it can be told from `NumPy`'s tables.
+/// The area of a layer, as precisely as `NumPy`'s tables determine it.
 const AREA: f64 = 0.004_928_673_233_974_652;
 /// 2⁵², the number of values that a coordinate can have.
 const TWO_POW_52: f64 = 4_503_599_627_370_496.0;
 
-/// The layers, from the tail to the top: layer 0 has the tail, layer i > 0 ends at `xᵢ`.
+/// The layers, from the tail to the top: layer 0 includes the tail, and layer i > 0 ends at `xᵢ`.
 struct Ziggurat {
     /// `xᵢ` / 2⁵², and then -`xᵢ` / 2⁵²: a branch on the sign would be mispredicted every other time.
     widths: [f64; 2 * LAYERS],
-    /// The part of a layer, in units of its 2⁻⁵², that lies below the density.
+    /// The part of a layer, in units of 2⁻⁵² of it, that lies below the density.
     inner: [u64; LAYERS],
     /// exp(-`xᵢ`² / 2)
     heights: [f64; LAYERS],
@@ -29,8 +29,8 @@ struct Ziggurat {
 static ZIGGURAT: LazyLock<Ziggurat> = LazyLock::new(Ziggurat::new);
 
 impl Ziggurat {
-    /// `NumPy`'s tables. They were computed with floats, not exactly: each operation here is one of those, and `exp` and
-    /// `ln` are rounded correctly, so that the tables do not depend on the platform.
+    /// `NumPy`'s tables. They were computed with floats, not exactly: each operation here is one of those, and `exp`
+    /// and `ln` are rounded correctly, so that the tables do not depend on the platform.
     fn new() -> Self {
         let mut ends = [TAIL; LAYERS];
         let mut heights = [exp(-0.5 * TAIL * TAIL).0; LAYERS];
@@ -40,7 +40,7 @@ impl Ziggurat {
             ends[layer] = (-2.0 * ln(AREA / end + height)).sqrt();
             heights[layer] = exp(-0.5 * ends[layer] * ends[layer]).0;
             if layer == 38 {
-                // Almost halfway between two floats. NumPy's table has the other one.
+                // Almost halfway between two floats, of which NumPy's table has the other one.
                 heights[layer] = heights[layer].next_up();
             }
             inner[layer + 1] = (ends[layer] / end * TWO_POW_52).round_ties_even() as u64;
@@ -69,7 +69,7 @@ impl Pcg64 {
         if coordinate < ziggurat.inner[layer] { x } else { self.beyond_inner_part(layer, coordinate, x) }
     }
 
-    /// What is left in one draw of a hundred: the tail, the part of a layer above the density, or another try.
+    /// The cases of one draw in a hundred: the tail, the part of a layer above the density, or another attempt.
     #[cold]
     fn beyond_inner_part(&mut self, layer: usize, coordinate: u64, x: f64) -> f64 {
         if layer == 0 {

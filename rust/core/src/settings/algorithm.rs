@@ -1,4 +1,4 @@
-//! Which learner is trained, with its own options.
+//! The algorithm of a learner, with its options.
 
 use std::marker::PhantomData;
 
@@ -8,7 +8,7 @@ use crate::learners::{AnyAlgorithm, TargetPolicy, TraceKind, TraceOptions};
 /// Reads the options of an algorithm.
 type Reader<S> = fn(&S) -> Result<AnyAlgorithm, <S as SettingSource>::Error>;
 
-/// Every algorithm by its name, with what reads its options from settings `S`.
+/// Every algorithm by its name, with the function that reads its options from settings `S`.
 pub struct AlgorithmRows<S>(PhantomData<S>);
 
 impl<S: SettingSource> AlgorithmRows<S> {
@@ -27,7 +27,7 @@ impl<S: SettingSource> AlgorithmRows<S> {
         ("watkins_q_lambda", |settings| traces(settings).map(AnyAlgorithm::WatkinsQLambda)),
         ("dyna_q", |settings| {
             let planning_steps = planning_steps(settings)?;
-            // The playground has the deterministic model alone, and leaves it out.
+            // The playground has only the deterministic model, and omits the setting.
             let models = [("deterministic", false), ("stochastic", true)];
             Ok(if settings.has("model") && settings.word("model", &models)? {
                 AnyAlgorithm::StochasticDynaQ { planning_steps }
@@ -39,7 +39,7 @@ impl<S: SettingSource> AlgorithmRows<S> {
             let (planning_steps, time_weight) = (planning_steps(settings)?, not_negative(settings, "time_weight")?);
             Ok(AnyAlgorithm::DynaQPlus { planning_steps, time_weight })
         }),
-        // The settings of a run that some of them need besides are filled in afterwards.
+        // The other settings of a run that some of these need are filled in afterwards.
         ("monte_carlo", |_| Ok(AnyAlgorithm::MonteCarlo { max_episode_steps: 0 })),
         ("monte_carlo_es", |_| Ok(AnyAlgorithm::MonteCarloEs { max_episode_steps: 0 })),
         ("off_policy_monte_carlo", |_| {
@@ -79,13 +79,13 @@ impl<S: SettingSource> AlgorithmRows<S> {
 }
 
 impl AnyAlgorithm {
-    /// The algorithm that the settings name, with its options and its learning rate, for a run of so many episodes.
+    /// The algorithm that the settings name, with its options and its learning rate, for a run of `episodes` episodes.
     ///
-    /// The learning rate is at most `largest_rate`, except that of preferences, which has no limit. Monte Carlo methods
+    /// The learning rate is at most `largest_rate`, except for preferences, which have no limit. Monte Carlo methods
     /// also need the time limit, and the off-policy one the learning rate.
     ///
     /// # Errors
-    /// If a setting is missing or does not fit.
+    /// If a setting is missing or invalid.
     pub fn parse<S: SettingSource>(
         settings: &S,
         episodes: u64,
@@ -121,7 +121,7 @@ fn not_negative<S: SettingSource>(settings: &S, name: &'static str) -> Result<f6
     settings.number(name, 0.0, f64::MAX)
 }
 
-/// Up to 2: with tile coding it is divided among the tilings.
+/// Up to 2, as tile coding divides it among the tilings.
 fn value_learning_rate<S: SettingSource>(settings: &S) -> Result<f64, S::Error> {
     settings.number("value_learning_rate", 0.0, 2.0)
 }

@@ -1,18 +1,18 @@
-//! How actions are chosen.
+//! The policy of a learner.
 
 use super::{ABOVE_ZERO, ScheduleSpec, SettingSource};
 use crate::StopFlag;
 use crate::memory::AllocationError;
 use crate::policies::{AnyPolicy, TieBreaking, Ucb};
 
-/// One of the policies with its settings.
+/// A policy with its settings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PolicySpec {
-    /// A random action with probability ε, else a greedy one.
+    /// A random action with probability ε, otherwise a greedy one.
     EpsilonGreedy {
-        /// ε.
+        /// The exploration rate ε.
         epsilon: ScheduleSpec,
-        /// Which of several greedy actions.
+        /// The choice among several greedy actions.
         ties: TieBreaking,
     },
     /// Each action with probability proportional to exp(Q / temperature).
@@ -24,7 +24,7 @@ pub enum PolicySpec {
     Ucb {
         /// The weight c of the bound.
         confidence: f64,
-        /// Which of several such actions.
+        /// The choice among several such actions.
         ties: TieBreaking,
     },
 }
@@ -37,10 +37,10 @@ enum PolicyKind {
 }
 
 impl PolicySpec {
-    /// The policy of a run of so many episodes.
+    /// The policy of a run of `episodes` episodes.
     ///
     /// # Errors
-    /// If a setting is missing or does not fit.
+    /// If a setting is missing or invalid.
     pub fn parse<S: SettingSource>(settings: &S, episodes: u64) -> Result<Self, S::Error> {
         let kinds =
             [("epsilon_greedy", PolicyKind::EpsilonGreedy), ("softmax", PolicyKind::Softmax), ("ucb", PolicyKind::Ucb)];

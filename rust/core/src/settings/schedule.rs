@@ -1,4 +1,4 @@
-//! How the learning rate and the exploration rate change during training.
+//! The schedules of the learning rate and the exploration rate.
 
 use super::SettingSource;
 use crate::StopFlag;
@@ -19,7 +19,7 @@ pub enum ScheduleSpec {
         value: f64,
         /// The rate at the end of the run.
         minimum: f64,
-        /// The episodes before it begins to fall.
+        /// The number of episodes before it begins to fall.
         warm_up: u64,
     },
     /// Falls by a factor after each episode.
@@ -30,7 +30,7 @@ pub enum ScheduleSpec {
         minimum: f64,
         /// The factor.
         decay: f64,
-        /// The episodes before it begins to fall.
+        /// The number of episodes before it begins to fall.
         warm_up: u64,
     },
 }
@@ -38,7 +38,7 @@ pub enum ScheduleSpec {
 /// A learning rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LearningRateSpec {
-    /// By the episode.
+    /// A rate that depends only on the episode.
     Schedule(ScheduleSpec),
     /// `value` / n at the n-th visit of a state-action pair, but not below `minimum`.
     Visits {
@@ -49,7 +49,7 @@ pub enum LearningRateSpec {
     },
 }
 
-/// Every schedule of the learning rate by its name; the exploration rate has all but the last.
+/// Every schedule of the learning rate by its name; the exploration rate supports all but the last.
 pub const SCHEDULES: [(&str, ScheduleKind); 4] = [
     ("constant", ScheduleKind::Constant),
     ("linear", ScheduleKind::Linear),
@@ -71,16 +71,16 @@ pub enum ScheduleKind {
 }
 
 impl ScheduleSpec {
-    /// The exploration rate ε of a run of so many episodes.
+    /// The exploration rate ε of a run of `episodes` episodes.
     ///
     /// # Errors
-    /// If a setting is missing or does not fit.
+    /// If a setting is missing or invalid.
     pub(super) fn epsilon<S: SettingSource>(settings: &S, episodes: u64) -> Result<Self, S::Error> {
         let names = ["epsilon", "min_epsilon", "epsilon_decay", "epsilon_warm_up"];
         Self::parse(settings, settings.word("epsilon_schedule", &SCHEDULES[..3])?, names, 1.0, episodes)
     }
 
-    /// The schedule of the settings with these names: the rate, the minimum, the decay, the warm-up.
+    /// The schedule from the settings with these names: rate, minimum, decay and warm-up.
     fn parse<S: SettingSource>(
         settings: &S,
         kind: ScheduleKind,
@@ -100,7 +100,7 @@ impl ScheduleSpec {
         Ok(Self::Exponential { value, minimum, decay: settings.number(decay, 0.0, 1.0)?, warm_up })
     }
 
-    /// The schedule of a run of so many episodes.
+    /// The schedule of a run of `episodes` episodes.
     pub fn build(&self, episodes: u64) -> Schedule {
         match *self {
             Self::Constant { value } => Schedule::constant(value),
@@ -113,10 +113,10 @@ impl ScheduleSpec {
 }
 
 impl LearningRateSpec {
-    /// The learning rate of a run of so many episodes, which is at most `most`.
+    /// The learning rate of a run of `episodes` episodes, at most `most`.
     ///
     /// # Errors
-    /// If a setting is missing or does not fit.
+    /// If a setting is missing or invalid.
     pub(super) fn parse<S: SettingSource>(settings: &S, most: f64, episodes: u64) -> Result<Self, S::Error> {
         let names = ["learning_rate", "min_learning_rate", "learning_rate_decay", "learning_rate_warm_up"];
         let kind = settings.word("learning_rate_schedule", &SCHEDULES)?;

@@ -1,4 +1,4 @@
-//! Lanes in two registers of AVX2 each.
+//! Lanes in pairs of AVX2 registers.
 
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
@@ -18,7 +18,7 @@ impl Simd for V3 {
     type F64s<const K: usize> = [__m256d; 2];
     type F32s<const K: usize> = [__m128; 2];
     type U64s<const K: usize> = [__m256i; 2];
-    /// All bits of a lane, or none.
+    /// All bits of a lane set, or none.
     type Mask<const K: usize> = [__m256i; 2];
 
     operations! {
@@ -41,7 +41,8 @@ impl Simd for V3 {
         f32s_to_f64s(a: F32s) -> F64s = self.avx._mm256_cvtps_pd(a[half]);
         u64s_add(a: U64s, b: U64s) -> U64s = self.avx2._mm256_add_epi64(a[half], b[half]);
         u64s_sub(a: U64s, b: U64s) -> U64s = self.avx2._mm256_sub_epi64(a[half], b[half]);
-        /// By halves of numbers: the upper half of the product is the sum of two products' lower halves and one's upper half.
+        /// From products of 32-bit halves: the upper half is the sum of the lower halves of two products and the upper
+        /// half of one.
         u64s_mul(a: U64s, b: U64s) -> U64s = {
             let first = self.avx2._mm256_mul_epu32(self.avx2._mm256_srli_epi64::<32>(a[half]), b[half]);
             let second = self.avx2._mm256_mul_epu32(a[half], self.avx2._mm256_srli_epi64::<32>(b[half]));
@@ -59,7 +60,7 @@ impl Simd for V3 {
             let left = self.avx2._mm256_sllv_epi64(a[half], others);
             self.avx2._mm256_or_si256(right, left)
         };
-        /// As signed integers of the same order.
+        /// Compares as signed integers of the same order.
         u64s_less(a: U64s, b: U64s) -> Mask = {
             let least = self.avx._mm256_set1_epi64x(i64::MIN);
             self.avx2._mm256_cmpgt_epi64(self.avx2._mm256_xor_si256(b[half], least), self.avx2._mm256_xor_si256(a[half], least))
@@ -76,7 +77,7 @@ impl Simd for V3 {
         mask_or(a: Mask, b: Mask) -> Mask = self.u64s_or::<K>(a, b);
         mask_xor(a: Mask, b: Mask) -> Mask = self.u64s_xor::<K>(a, b);
         mask_not(a: Mask) -> Mask = self.u64s_xor::<K>(a, [self.avx._mm256_set1_epi64x(-1); 2]);
-        /// A mask is -1 as a number.
+        /// As a number, a true mask is -1.
         u64s_increment(m: Mask, a: U64s) -> U64s = self.u64s_sub::<K>(a, m);
     }
 
@@ -95,10 +96,10 @@ impl Simd for V3 {
         [self.avx._mm256_set1_pd(number); 2]
     }
 
-    /// Pairs of columns together: a row's pair of numbers is half a register.
+    /// Two columns at a time: a row's pair of numbers is half a register.
     #[inline(always)]
     fn f64s_columns<const N: usize, const K: usize>(self, rows: [&[f64; N]; K]) -> [[__m256d; 2]; N] {
-        // Lanes that are not in use have the numbers of the first one.
+        // Unused lanes have the numbers of the first one.
         let rows = widened(rows, rows[0]);
         let mut columns = [[self.avx._mm256_setzero_pd(); 2]; N];
         let (pairs, last) = columns.as_chunks_mut::<2>();

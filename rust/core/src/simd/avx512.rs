@@ -1,4 +1,4 @@
-//! Lanes in a register of AVX-512 each.
+//! Lanes in single AVX-512 registers.
 
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
@@ -23,7 +23,7 @@ impl Simd for V4 {
     type F64s<const K: usize> = __m512d;
     type F32s<const K: usize> = __m256;
     type U64s<const K: usize> = __m512i;
-    /// A bit for each lane; those of lanes that are not in use are arbitrary.
+    /// A bit for each lane; those of unused lanes are arbitrary.
     type Mask<const K: usize> = u8;
 
     operations! {
@@ -79,10 +79,10 @@ impl Simd for V4 {
         self.avx512f._mm512_set1_pd(number)
     }
 
-    /// Pairs of columns together: a row's pair of numbers is a quarter of a register. Gathers would take longer.
+    /// Two columns at a time: a row's pair of numbers is a quarter of a register. Gathers would take longer.
     #[inline(always)]
     fn f64s_columns<const N: usize, const K: usize>(self, rows: [&[f64; N]; K]) -> [__m512d; N] {
-        // Lanes that are not in use have the numbers of the first one.
+        // Unused lanes have the numbers of the first one.
         let rows = widened(rows, rows[0]);
         let mut columns = [self.avx512f._mm512_setzero_pd(); N];
         let (pairs, last) = columns.as_chunks_mut::<2>();

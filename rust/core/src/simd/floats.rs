@@ -7,7 +7,7 @@ use std::ops::{Add, Div, Mul, Sub};
 use super::lane_type::{InLanes, lane_type};
 use super::{Mask, Simd, U64s, map};
 
-/// An f64 for each lane. `lanes * number` and the like use the number in each.
+/// An f64 for each lane. In `lanes * number` and similar expressions, all lanes use the same number.
 #[derive(Clone, Copy, Debug)]
 pub struct F64s<S: Simd, const K: usize>(pub(super) S, pub(super) S::F64s<K>);
 
@@ -23,7 +23,7 @@ impl<S: Simd, const K: usize> F64s<S, K> {
         Self(simd, simd.f64s_splat(number))
     }
 
-    /// The numbers at `[0]` of each row, at `[1]`, and so on.
+    /// The columns of a matrix, given its rows: the numbers at index 0 of each row, then at index 1, and so on.
     #[inline(always)]
     pub(crate) fn columns<const N: usize>(simd: S, rows: [&[f64; N]; K]) -> [Self; N] {
         map(simd.f64s_columns(rows), |column| Self(simd, column))

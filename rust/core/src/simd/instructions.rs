@@ -7,20 +7,21 @@ use std::fmt::Debug;
 
 use super::LANES;
 
-/// The operations of an instruction set on numbers in `K` lanes. A value is the proof that this processor has the set.
+/// The operations of an instruction set on numbers in `K` lanes. A value proves that this processor has the instruction
+/// set.
 ///
 /// Comparisons with NaN are false. `larger` is `if a > b { a } else { b }`, and `smaller` is `if a < b { a } else { b }`.
 pub trait Simd: Copy + Debug {
     /// Whether `mul_add` is one instruction. Otherwise it can be a slow function of the C library.
     const HAS_FMA: bool;
 
-    /// A register, or several, of f64.
+    /// One or more registers of f64.
     type F64s<const K: usize>: Copy + Debug;
-    /// Of f32.
+    /// One or more registers of f32.
     type F32s<const K: usize>: Copy + Debug;
-    /// Of u64.
+    /// One or more registers of u64.
     type U64s<const K: usize>: Copy + Debug;
-    /// Of truth values.
+    /// One or more registers of truth values.
     type Mask<const K: usize>: Copy + Debug;
 
     fn f64s<const K: usize>(self, array: [f64; K]) -> Self::F64s<K>;
@@ -40,7 +41,7 @@ pub trait Simd: Copy + Debug {
     fn f64s_to_bits<const K: usize>(self, a: Self::F64s<K>) -> Self::U64s<K>;
     fn f64s_from_bits<const K: usize>(self, a: Self::U64s<K>) -> Self::F64s<K>;
     fn f64s_to_f32s<const K: usize>(self, a: Self::F64s<K>) -> Self::F32s<K>;
-    /// The columns of a matrix whose rows are anywhere in memory.
+    /// The columns of a matrix whose rows may lie anywhere in memory.
     fn f64s_columns<const N: usize, const K: usize>(self, rows: [&[f64; N]; K]) -> [Self::F64s<K>; N];
 
     fn f32_array<const K: usize>(self, a: Self::F32s<K>) -> [f32; K];
@@ -63,7 +64,7 @@ pub trait Simd: Copy + Debug {
     fn u64s_shift_right<const BITS: i32, const K: usize>(self, a: Self::U64s<K>) -> Self::U64s<K>;
     fn u64s_rotate_right<const K: usize>(self, a: Self::U64s<K>, bits: Self::U64s<K>) -> Self::U64s<K>;
     fn u64s_less<const K: usize>(self, a: Self::U64s<K>, b: Self::U64s<K>) -> Self::Mask<K>;
-    /// One more where the mask is true.
+    /// Adds one where the mask is true.
     fn u64s_increment<const K: usize>(self, m: Self::Mask<K>, a: Self::U64s<K>) -> Self::U64s<K>;
     fn u64s_equal<const K: usize>(self, a: Self::U64s<K>, b: Self::U64s<K>) -> Self::Mask<K>;
     fn u64s_select<const K: usize>(self, m: Self::Mask<K>, yes: Self::U64s<K>, no: Self::U64s<K>) -> Self::U64s<K>;
@@ -74,11 +75,11 @@ pub trait Simd: Copy + Debug {
     fn mask_or<const K: usize>(self, a: Self::Mask<K>, b: Self::Mask<K>) -> Self::Mask<K>;
     fn mask_xor<const K: usize>(self, a: Self::Mask<K>, b: Self::Mask<K>) -> Self::Mask<K>;
     fn mask_not<const K: usize>(self, a: Self::Mask<K>) -> Self::Mask<K>;
-    /// A bit for each lane. Those beyond are arbitrary.
+    /// A bit for each lane. The bits beyond are arbitrary.
     fn mask_bits<const K: usize>(self, a: Self::Mask<K>) -> u8;
     #[inline(always)]
     fn mask_any<const K: usize>(self, a: Self::Mask<K>) -> bool {
-        // The shift drops the bits beyond.
+        // The shift drops the bits beyond the lanes.
         self.mask_bits::<K>(a) << (LANES - K) != 0
     }
 }

@@ -22,7 +22,7 @@ impl<S: Simd, const K: usize> U64s<S, K> {
         Self(simd, simd.u64s_splat(number))
     }
 
-    /// One more in the lanes where the mask is true.
+    /// Adds one in the lanes where the mask is true.
     #[inline(always)]
     pub(crate) fn incremented_where(self, mask: Mask<S, K>) -> Self {
         Self(self.0, self.0.u64s_increment(mask.1, self.1))

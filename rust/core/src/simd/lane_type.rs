@@ -1,14 +1,14 @@
-//! What the types of lanes have in common.
+//! The common parts of the lane types.
 
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
-/// What an operation in lanes takes: `L`, or a number that is the same in all lanes.
+/// An operand in lanes: `L`, or a number that is the same in all lanes.
 pub(crate) trait InLanes<S, L> {
     fn in_lanes(self, simd: S) -> L;
 }
 
-/// Defines how a type of lanes is made of an array and read, and its operators. It takes the type, that of a lane, the
-/// operations from and to an array, and the operations of the operators.
+/// Defines the conversions of a lane type from and to an array, and its operators. It takes the type, the type of one
+/// lane, the operations from and to an array, and the operations of the operators.
 macro_rules! lane_type {
     ($lanes:ident, $lane:ty, $from_array:ident, $to_array:ident, $($trait:ident $method:ident $operation:ident),+) => {
         impl<S: Simd, const K: usize> $lanes<S, K> {
@@ -22,7 +22,7 @@ macro_rules! lane_type {
                 self.0.$to_array(self.1)
             }
 
-            /// Replaces what one lane holds.
+            /// Replaces the value of one lane.
             #[inline(always)]
             pub(crate) fn set(&mut self, lane: usize, new: $lane) {
                 let mut array = self.to_array();
@@ -54,7 +54,7 @@ macro_rules! lane_type {
 pub(super) use lane_type;
 
 /// `array.map(f)`, always inlined. The compiler may call the standard one instead, which is then not compiled for the
-/// instruction set of its caller. For lanes: of single numbers the standard one makes faster code.
+/// instruction set of its caller. Only for lanes: for single numbers, the standard one compiles to faster code.
 #[inline(always)]
 pub(crate) fn map<T: Copy, U: Copy, const N: usize>(array: [T; N], f: impl Fn(T) -> U) -> [U; N] {
     const { assert!(N > 0, "the array must not be empty") };

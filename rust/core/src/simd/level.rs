@@ -1,4 +1,4 @@
-//! Which vector instructions SIMD code is compiled for, chosen at run time.
+//! The vector instructions that SIMD code is compiled for, chosen at run time.
 
 use std::sync::atomic::{AtomicU8, Ordering};
 
@@ -7,15 +7,15 @@ use super::{Portable, Simd};
 /// Set once by [`SimdLevel::restrict`].
 static LIMIT: AtomicU8 = AtomicU8::new(SimdLimit::Avx512 as u8);
 
-/// Up to which vector instructions [`SimdLevel::detect`] returns: tests compare them.
+/// The widest vector instructions that [`SimdLevel::detect`] may return: tests compare them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum SimdLimit {
-    /// Those that every processor of the target has.
+    /// The instructions that every processor of the target has.
     Plain,
     /// AVX2 and fused multiply-adds.
     Avx2,
-    /// All.
+    /// All instructions.
     Avx512,
 }
 
@@ -29,9 +29,9 @@ impl SimdLimit {
     }
 }
 
-/// Code that is compiled for each [`SimdLevel`]. All that it calls must be inlined.
+/// Code that is compiled for each [`SimdLevel`]. All functions that it calls must be inlined.
 pub(crate) trait SimdCode {
-    /// Whether registers of AVX-512 are worth a further copy of the code.
+    /// Whether AVX-512 registers are worth another copy of the code.
     #[cfg_attr(not(target_arch = "x86_64"), expect(dead_code, reason = "other targets have no AVX-512"))]
     const USES_AVX512: bool = false;
 
@@ -46,12 +46,12 @@ pub struct SimdLevel(Level);
 
 #[derive(Clone, Copy, Debug)]
 enum Level {
-    /// Those that every processor of the target has.
+    /// The instructions that every processor of the target has.
     Plain,
-    /// AVX2 and fused multiply-adds. The value is the proof that this processor has them.
+    /// AVX2 and fused multiply-adds. The value proves that this processor has them.
     #[cfg(target_arch = "x86_64")]
     Avx2(pulp::x86::V3),
-    /// And AVX-512 as well, in code that gains from it.
+    /// AVX-512 as well, in code that gains from it.
     #[cfg(target_arch = "x86_64")]
     Avx512(pulp::x86::V4),
 }
@@ -80,7 +80,7 @@ impl SimdLevel {
         Self::PLAIN
     }
 
-    /// These instructions, without those of AVX-512.
+    /// These instructions without AVX-512.
     #[inline]
     pub(crate) fn without_avx512(self) -> Self {
         match self.0 {
@@ -90,7 +90,7 @@ impl SimdLevel {
         }
     }
 
-    /// All that this processor has, the widest one last.
+    /// All levels that this processor supports, the widest one last.
     #[cfg(test)]
     pub(crate) fn available() -> Vec<Self> {
         #[cfg_attr(not(target_arch = "x86_64"), expect(unused_mut, reason = "other targets have one level"))]
@@ -108,7 +108,7 @@ impl SimdLevel {
         LIMIT.store(limit as u8, Ordering::Relaxed);
     }
 
-    /// Runs the code that was compiled for these instructions.
+    /// Runs the code as compiled for these instructions.
     #[inline]
     pub(crate) fn run<C: SimdCode>(self, code: C) -> C::Output {
         match self.0 {

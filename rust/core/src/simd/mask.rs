@@ -14,26 +14,26 @@ pub struct Mask<S: Simd, const K: usize>(pub(super) S, pub(super) S::Mask<K>);
 lane_type!(Mask, bool, mask, bool_array, BitAnd bitand mask_and, BitOr bitor mask_or, BitXor bitxor mask_xor);
 
 impl<S: Simd, const K: usize> Mask<S, K> {
-    /// A bit for each lane. Those beyond are arbitrary.
+    /// A bit for each lane. The bits beyond are arbitrary.
     #[inline(always)]
     pub(crate) fn bits(self) -> u8 {
         self.0.mask_bits(self.1)
     }
 
-    /// Whether it is true in any lane.
+    /// Whether the mask is true in any lane.
     #[inline(always)]
     pub(crate) fn any(self) -> bool {
         self.0.mask_any(self.1)
     }
 
-    /// `yes` in the lanes where it is true, `no` in the others.
+    /// `yes` in the lanes where the mask is true, `no` in the others.
     #[inline(always)]
     pub(crate) fn select<L: Select<S, K>>(self, yes: L, no: L) -> L {
         L::select(self, yes, no)
     }
 }
 
-/// Numbers in lanes between which a mask can choose.
+/// Numbers in lanes that a mask can select.
 pub(crate) trait Select<S: Simd, const K: usize> {
     fn select(mask: Mask<S, K>, yes: Self, no: Self) -> Self;
 }

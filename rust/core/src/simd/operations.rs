@@ -1,7 +1,8 @@
-//! The methods of [`Simd`](super::Simd), one a line.
+//! A macro for the methods of [`Simd`](super::Simd), one per line.
 
-/// Defines operations in `K` lanes: `name(operand: Type, …) -> Type = value;`, where `Type` is one of [`Simd`](super::Simd)'s.
-/// With `$each |index|`, `value` is that of one register or lane, of which the macro `$each` makes all.
+/// Defines operations in `K` lanes: `name(operand: Type, …) -> Type = value;`, where `Type` is a type of
+/// [`Simd`](super::Simd). With `$each |index|`, `value` is for one register or lane, and the macro `$each` computes all
+/// of them.
 macro_rules! operations {
     ($self:ident, $each:ident |$index:ident|;
      $($(#[$doc:meta])* $name:ident($($operand:ident: $type:ident),+) -> $result:ident = $value:expr;)+) => {

@@ -1,4 +1,4 @@
-//! Lanes as arrays, which the compiler puts into registers as it can.
+//! Lanes as arrays, which the compiler may put into registers.
 
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
@@ -9,13 +9,13 @@ use super::operations::operations;
 #[derive(Clone, Copy, Debug)]
 pub struct Portable;
 
-/// All bits if `condition` holds, otherwise none.
+/// All bits set if `condition` holds, otherwise none.
 #[inline(always)]
 pub(super) fn all_bits(condition: bool) -> u64 {
     if condition { u64::MAX } else { 0 }
 }
 
-/// `yes` where a mask has all bits, `no` where it has none.
+/// `yes` if all bits of the mask are set, `no` if none is.
 #[inline(always)]
 fn select(mask: u64, yes: u64, no: u64) -> u64 {
     (yes & mask) | (no & !mask)
@@ -41,7 +41,7 @@ impl Simd for Portable {
     type F64s<const K: usize> = [f64; K];
     type F32s<const K: usize> = [f32; K];
     type U64s<const K: usize> = [u64; K];
-    /// All bits of a number, or none.
+    /// All bits of a number set, or none.
     type Mask<const K: usize> = [u64; K];
 
     operations! {
@@ -56,7 +56,7 @@ impl Simd for Portable {
         f64s_less(a: F64s, b: F64s) -> Mask = all_bits(a[lane] < b[lane]);
         f64s_less_or_equal(a: F64s, b: F64s) -> Mask = all_bits(a[lane] <= b[lane]);
         f64s_equal(a: F64s, b: F64s) -> Mask = all_bits(a[lane] == b[lane]);
-        /// By bits: a select between f64 would be an unpredictable branch where there are no vector registers.
+        /// Selects by bits: without vector registers, a select between f64 would be an unpredictable branch.
         f64s_select(m: Mask, yes: F64s, no: F64s) -> F64s = {
             f64::from_bits(select(m[lane], yes[lane].to_bits(), no[lane].to_bits()))
         };
@@ -84,7 +84,7 @@ impl Simd for Portable {
         mask_and(a: Mask, b: Mask) -> Mask = self.u64s_and(a, b);
         mask_or(a: Mask, b: Mask) -> Mask = self.u64s_or(a, b);
         mask_xor(a: Mask, b: Mask) -> Mask = self.u64s_xor(a, b);
-        /// A mask is -1 as a number.
+        /// As a number, a true mask is -1.
         u64s_increment(m: Mask, a: U64s) -> U64s = self.u64s_sub(a, m);
     }
 

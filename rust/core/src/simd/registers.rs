@@ -1,4 +1,4 @@
-//! Arrays of up to [`LANES`] numbers as registers hold them.
+//! Conversions between arrays of up to [`LANES`] numbers and registers.
 
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
@@ -9,11 +9,12 @@ use pulp::x86::V3;
 
 use super::LANES;
 
-/// The number of lanes of a register of AVX2.
+/// The number of f64 lanes of an AVX2 register.
 pub(super) const WIDTH: usize = LANES / 2;
 
-/// A result for each of two registers. If one is enough, it is computed twice, which the compiler sees. A macro, because the
-/// compiler may call a closure, which is not compiled for AVX2, instead of inlining it.
+/// A result for each of two registers. If one register is enough, its result is computed twice, which the compiler
+/// detects. This is a macro because the compiler may call a closure, which is not compiled for AVX2, instead of
+/// inlining it.
 macro_rules! both {
     ($lanes:ident, |$half:ident| $result:expr) => {
         [
@@ -31,7 +32,7 @@ macro_rules! both {
 
 pub(super) use both;
 
-/// An array for all lanes of the registers, with `unused` where a lane is not in use.
+/// An array for all lanes of the registers, with `unused` in the unused lanes.
 #[inline(always)]
 pub(super) fn widened<T: Copy, const K: usize>(array: [T; K], unused: T) -> [T; LANES] {
     const { assert!(K <= LANES, "there are no more lanes") };
@@ -57,7 +58,7 @@ pub(super) fn narrowed<T: Copy, const K: usize>(all: [T; LANES]) -> [T; K] {
 /// The lowest bits.
 #[inline(always)]
 pub(super) fn bools<const K: usize>(bits: u8) -> [bool; K] {
-    // The product copies the lower seven bits to every seventh position on, where bit `i` of copy `i` begins byte `i`.
+    // The product copies the lower seven bits to every seventh position, so that bit `i` of copy `i` begins byte `i`.
     const EVERY_SEVENTH: u64 = 0x0002_0408_1020_4081;
     const LOWEST_OF_BYTES: u64 = 0x0101_0101_0101_0101;
     let spread = ((u64::from(bits & 0x7f) * EVERY_SEVENTH) & LOWEST_OF_BYTES) | (u64::from(bits >> 7) << 56);

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 
 use super::{F64s, LANES, Mask, Simd, SimdCode, SimdLevel, U64s};
 
-/// Numbers of some lanes. The results of all operations on them are compared by their bits.
+/// The operands of some lanes. The results of all operations on them are compared bit by bit.
 #[derive(Clone, Copy, Debug)]
 struct Operands<const K: usize> {
     a: [f64; K],
@@ -13,13 +13,13 @@ struct Operands<const K: usize> {
     n: [u64; K],
 }
 
-/// The bits of NaN, whose sign and payload operations may choose, are those of [`f64::NAN`].
+/// The bits of a number, with those of [`f64::NAN`] for any NaN, whose sign and payload may vary.
 fn bits(number: f64) -> u64 {
     if number.is_nan() { f64::NAN } else { number }.to_bits()
 }
 
 impl<const K: usize> Operands<K> {
-    /// What the operations return in one lane, computed without lanes.
+    /// The results of the operations in one lane, computed without lanes.
     fn expected(self, lane: usize) -> Vec<u64> {
         let Self { a, b, m, n } = self;
         let (a, b, m, n) = (a[lane], b[lane], m[lane], n[lane]);
@@ -53,8 +53,8 @@ impl<const K: usize> Operands<K> {
 impl<const K: usize> SimdCode for Operands<K> {
     const USES_AVX512: bool = true;
 
-    /// The results of each lane, in the order of `expected`; those of `mul_add`, if it is one instruction; and whether any
-    /// a is less than its b, and which.
+    /// The results of each lane, in the order of `expected`; those of `mul_add`, if it is one instruction; whether any
+    /// a is less than its b; and a bit for each lane where it is.
     type Output = ([Vec<u64>; K], Option<[f64; K]>, bool, u8);
 
     #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
@@ -132,7 +132,7 @@ fn check<const K: usize>(operands: Operands<K>) {
     }
 }
 
-/// Columns of a table with `N` of them, and the row of each lane.
+/// The columns of a table with `N` columns, and the row of each lane.
 struct Columns<'a, const N: usize, const K: usize>(&'a [[f64; N]], [usize; K]);
 
 impl<const N: usize, const K: usize> SimdCode for Columns<'_, N, K> {
@@ -155,7 +155,7 @@ fn check_columns<const N: usize, const K: usize>(rows: [usize; K]) {
     }
 }
 
-/// Sets each lane alone.
+/// Sets each lane separately.
 struct Setting;
 
 impl SimdCode for Setting {

@@ -26,7 +26,7 @@ const LIMIT: u64 = 40;
 
 type Run<F, L> = Trainer<NativeTask<MountainCar, F>, L, AgentRng>;
 
-/// Where a run is saved, and how it is made.
+/// The construction of a run, and the step at which it is saved.
 #[derive(Clone, Debug)]
 struct Setup {
     steps: u64,
@@ -35,7 +35,7 @@ struct Setup {
     seed: u32,
     mt19937: bool,
     visits: bool,
-    /// Which bytes of the checkpoint are damaged, and what they become. Then the run need not be restored.
+    /// The bytes of the checkpoint to damage, with their new values. The run then need not be restored.
     damage: Vec<(prop::sample::Index, u8)>,
 }
 
@@ -82,7 +82,7 @@ impl Setup {
         let advance = |run: &mut Run<F, L>, steps| {
             run.advance(Budget { episodes: EPISODES, work: steps }).expect("all observations have rows");
         };
-        // In parts, for which some learners make room.
+        // In parts, for which some learners allocate memory.
         let finish = |run: &mut Run<F, L>| {
             while run.episodes().returns.len() < EPISODES {
                 advance(run, 1 << 16);
@@ -108,7 +108,7 @@ impl Setup {
         assert_eq!(states[0], states[1]);
     }
 
-    /// Restores a run from damaged bytes, or finds that they are damaged. Neither panics, and the run can be advanced.
+    /// Restores a run from damaged bytes, or detects the damage. Neither panics, and the run can still be advanced.
     fn check_damaged<F, L>(&self, new_run: impl Fn() -> Run<F, L>)
     where
         F: Features<[f32; 2]>,
@@ -162,13 +162,14 @@ impl Setup {
         }
     }
 
-    /// The learners of tables, those of all features among them.
+    /// The learners that need a table, besides those that work with any features.
     fn check_tables<F: Features<[f32; 2], Active = [u32; 1]> + Clone>(&self, grid: &F) {
         let rows = grid.len();
         self.check_all(grid, 1);
         let (agent, stop) = (|| self.agent(rows, 1), StopFlag::new());
         let model = || Model::new(rows, ACTIONS, &stop).expect("a small model");
-        // More planning than is done in one call, so that a run can stop within a step. It takes long: a few steps do.
+        // More planning than one call does, so that a run can stop within a step. As this is slow, only a few steps are
+        // made.
         let (planner, planning) = if self.damage.is_empty() {
             (Self { limit: LIMIT / 10, steps: 1000 * self.steps, ..self.clone() }, 9000)
         } else {
@@ -215,7 +216,7 @@ proptest! {
         setup.check_tables(&rounding());
     }
 
-    /// Not even bytes that somebody made up cause a panic.
+    /// Even arbitrary bytes cause no panic.
     #[test]
     fn any_bytes_are_restored_or_refused(
         setup in setup(),

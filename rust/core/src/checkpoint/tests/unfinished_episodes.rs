@@ -1,4 +1,4 @@
-//! Checkpoints within an episode: at its time limit, and where it is lost.
+//! Checkpoints within an episode: at its time limit, and in tasks that cannot resume it.
 
 use super::{ACTIONS, LIMIT, Setup};
 use crate::checkpoint::{Checkpoint, CheckpointError, EpisodeProgress, Persist};
@@ -12,11 +12,11 @@ use crate::{Budget, Learner, StopFlag, Trainer};
 
 const SETUP: Setup = Setup { steps: 0, limit: LIMIT, seed: 7, mt19937: false, visits: false, damage: Vec::new() };
 
-/// A time limit whose episodes take several calls to be learned from.
+/// A time limit so long that learning from an episode takes several calls.
 const LONG: u64 = 9000;
 
-/// Saves a run at its time limit, while the learner is still learning from the episode. Each step has separate rows, and the
-/// environment never ends an episode.
+/// Saves a run at its time limit, while the learner is still learning from the episode. Each step has separate rows,
+/// and the environment never ends an episode.
 fn check_at_the_limit<L: Learner<[u32; 1]>>(learner: impl Fn(usize) -> L) {
     let grid = Rounding::new([Axis::new(-1.2_f32, 0.6, 1.0), Axis::new(-0.07_f32, 0.07, 10.0)]);
     let (rows, seed) = (Features::<[f32; 2]>::len(&grid), SeedSequence::new(&[7]));
@@ -69,7 +69,7 @@ fn a_run_resumes_while_the_last_step_before_the_limit_is_learned_from() {
     });
 }
 
-/// Two states, one action; it fails at the given step.
+/// A task with two states and one action, which fails at the given step.
 #[derive(Clone)]
 struct Failing {
     steps: u64,

@@ -1,7 +1,9 @@
-//! The shortest known routes: a beam search over the exact dynamics, for tasks where every step but the last costs the same.
+//! The shortest known routes: a beam search over the exact dynamics, for tasks in which every step but the last has the
+//! same cost.
 //!
-//! From an initial state it tries all actions, step by step, and keeps the most promising states after each step. The first
-//! step that ends the episode completes a route, which can be driven. The route is not proven to be shortest.
+//! From an initial state the search tries all actions, step by step, and keeps the most promising states after each
+//! step. The first step that ends the episode completes a route. The exact dynamics reproduce it, but it is not proven
+//! to be shortest.
 
 use std::mem::swap;
 
@@ -10,7 +12,7 @@ use super::{GridTask, GridValues};
 use crate::StopFlag;
 use crate::memory::{collect, reserve};
 
-/// States within the same cell count as equal. The cell is this fraction of the range of each axis.
+/// States within the same cell count as equal. Along each axis, the cell size is this fraction of the range.
 const CELL: f64 = 1e-4;
 
 /// The shortest sequence of actions found from an initial state to a terminal one; `None` if none is found within
@@ -49,7 +51,7 @@ pub fn beam_search<T: GridTask<D>, const D: usize>(
                 next_layer.push(Node { state, value, cell, parent });
             }
         }
-        // The sorts are stable: of equal nodes the first stays first.
+        // The sorts are stable: of equal nodes, the first stays first.
         next_layer.sort_by(|a, b| a.cell.cmp(&b.cell).then(b.value.total_cmp(&a.value)));
         next_layer.dedup_by_key(|node| node.cell);
         next_layer.sort_by(|a, b| b.value.total_cmp(&a.value));
@@ -61,13 +63,13 @@ pub fn beam_search<T: GridTask<D>, const D: usize>(
     Ok(None)
 }
 
-/// The lower bound of each axis, and the size of its cells.
+/// The lower bound and the cell size of each axis.
 fn cell_sizes<T: GridTask<D>, const D: usize>(task: &T) -> ([f64; D], [f64; D]) {
     let bounds = task.bounds();
     (bounds.map(|(low, _)| low), bounds.map(|(low, high)| (high - low) * CELL))
 }
 
-/// The index of the parent in the layer before, and the action taken there.
+/// The index of the parent in the previous layer, and the action taken from it.
 type Parent = (u32, u8);
 
 /// A state in the beam.
@@ -120,7 +122,7 @@ mod tests {
         })
     }
 
-    /// The fewest steps to the goal, by trying all sequences of up to `max_steps` actions.
+    /// The fewest steps to the goal, found by trying all sequences of up to `max_steps` actions.
     fn fewest_steps(car: &MountainCar, state: [f64; 2], max_steps: usize) -> Option<usize> {
         if max_steps == 0 {
             return None;
@@ -145,7 +147,7 @@ mod tests {
             assert!(steps <= greedy.steps);
             sum += steps;
         }
-        // The sum was 4,883 when this was written. Published agents need more steps.
+        // At the time of writing, the sum was 4,883. Published agents need more steps.
         assert!(sum <= 50 * 98, "{sum}");
     }
 

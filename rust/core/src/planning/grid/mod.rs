@@ -1,4 +1,4 @@
-//! Values on a grid over the states of classic control, and the policies that follow from them.
+//! Values on a grid over the states of classic control, and the policies derived from them.
 
 mod beam_search;
 mod rollout;

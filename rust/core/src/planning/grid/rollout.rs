@@ -1,4 +1,4 @@
-//! Episodes of the greedy policy for values on a grid, and of given actions.
+//! Episodes of the policy that is greedy for values on a grid, and of given actions.
 
 use super::super::PlanningError;
 use super::{GridTask, GridValues};
@@ -13,7 +13,7 @@ pub struct Rollout {
     pub steps: u64,
 }
 
-/// An episode of at most `max_steps` steps of the greedy policy from each state. The policy sees float32 observations.
+/// From each state, an episode of at most `max_steps` steps of the greedy policy, which sees float32 observations.
 ///
 /// # Errors
 /// `Stopped` after `stop` was set.
@@ -31,7 +31,7 @@ pub fn rollouts<T: GridTask<D>, const D: usize>(
     starts.iter().map(rollout).collect()
 }
 
-/// The episode of some actions from a state.
+/// The episode that follows these actions from a state.
 pub fn replay<T: GridTask<D>, const D: usize>(task: &T, start: [f64; D], actions: &[u8]) -> Rollout {
     let mut actions = actions.iter();
     let max_steps = actions.len() as u64;

@@ -1,4 +1,4 @@
-//! What value iteration on a grid needs to know of an environment, and the grids of classic control.
+//! The properties of an environment that value iteration on a grid needs, and the grids of classic control.
 
 use std::f64::consts::PI;
 
@@ -11,39 +11,39 @@ use crate::random::NoRng;
 
 /// A deterministic environment whose state is `D` numbers, with a grid over them.
 pub trait GridTask<const D: usize>: Copy {
-    /// The number of grid points along each axis of the finest grid. One less must be divisible by the coarsest stride.
+    /// The number of grid points along each axis of the finest grid, minus one, must be divisible by the coarsest
+    /// stride.
     const POINTS: [usize; D];
-    /// The coarsest grid has every so many-th point only: a power of two.
+    /// The coarsest grid has only every n-th point for this n, a power of two.
     const COARSEST_STRIDE: usize;
-    /// The iteration ends when a sweep changes no value by as much.
+    /// The iteration ends when a sweep changes no value by this much or more.
     const CONVERGED: f64;
     /// The discount γ of the values.
     const DISCOUNT: f64 = 1.0;
     /// The number of actions.
     const ACTIONS: usize;
 
-    /// The range of each axis. The values of states outside it are those of the nearest one inside.
+    /// The range of each axis. A state outside it has the value of the nearest state inside.
     fn bounds(&self) -> [(f64, f64); D];
 
     /// One step from a state.
     fn transition(&self, state: [f64; D], action: usize) -> Step<[f64; D]>;
 
-    /// The state as far as its float32 observation shows it.
+    /// The state as shown by its float32 observation.
     fn observed(&self, state: [f64; D]) -> [f64; D] {
         state.map(|number| f64::from(number as f32))
     }
 
-    /// The lowest value of a state, where an episode has at most `max_steps` steps.
+    /// The lowest value of a state, if an episode has at most `max_steps` steps.
     fn lowest_value(&self, max_steps: u64) -> f64;
 }
 
-/// The bounds of `MountainCar`'s horizon. A time limit below them would only hide routes to the goal, one above them costs
-/// time.
+/// The bounds of `MountainCar`'s horizon. A lower one would only hide routes to the goal; a higher one costs time.
 const HORIZON_BOUNDS: (f64, f64) = (200.0, 1000.0);
 
 /// Sutton & Barto's Figure 10.1 shows the surface.
 impl GridTask<2> for MountainCar {
-    /// With half as many, the routes of the beam search are a tenth of a step longer.
+    /// With half as many points, the routes of the beam search are a tenth of a step longer.
     const POINTS: [usize; 2] = [1441, 561];
     const COARSEST_STRIDE: usize = 16;
     const CONVERGED: f64 = 1e-2;
@@ -58,20 +58,20 @@ impl GridTask<2> for MountainCar {
         Step { state: [step.state.position, step.state.velocity], reward: step.reward, terminated: step.terminated }
     }
 
-    /// States from which the goal is not reached within the horizon have the negative of it.
+    /// States from which the goal is not reached within the horizon have minus the horizon as their value.
     fn lowest_value(&self, max_steps: u64) -> f64 {
         -(max_steps as f64).clamp(HORIZON_BOUNDS.0, HORIZON_BOUNDS.1)
     }
 }
 
-/// The largest speeds of `CartPole`'s grid, of the cart and of the pole.
+/// The largest speeds of `CartPole`'s grid, for the cart and for the pole.
 const CART_POLE_SPEED: f64 = 3.0;
 
 impl GridTask<4> for CartPole {
     const POINTS: [usize; 4] = [17, 17, 17, 17];
     const COARSEST_STRIDE: usize = 4;
     const CONVERGED: f64 = 1e-3;
-    /// Without a discount, all policies that never fall would be as good as each other.
+    /// Without a discount, all policies that never fall would be equally good.
     const DISCOUNT: f64 = 0.99;
     const ACTIONS: usize = 2;
 
@@ -92,7 +92,7 @@ impl GridTask<4> for CartPole {
     }
 }
 
-/// The largest speeds of `Acrobot`'s grid. Swinging up needs less than these.
+/// The largest speeds of `Acrobot`'s grid. Swinging up needs lower speeds.
 const ACROBOT_SPEEDS: [f64; 2] = [5.0, 8.0];
 
 impl GridTask<4> for Acrobot {
@@ -144,7 +144,7 @@ impl GridTask<2> for Pendulum {
         [sine.atan2(cosine), f64::from(theta_dot as f32)]
     }
 
-    /// The cost of a step hanging down at full speed, in every step.
+    /// The cost of hanging down at full speed, in every step.
     fn lowest_value(&self, max_steps: u64) -> f64 {
         let Pendulum { max_speed, max_torque, .. } = self;
         -(max_steps as f64) * (PI * PI + 0.1 * max_speed * max_speed + 0.001 * max_torque * max_torque)

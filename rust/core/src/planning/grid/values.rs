@@ -24,8 +24,8 @@ pub struct GridValues<T, const D: usize> {
     lowest: f64,
 }
 
-/// A reward and the state that follows: the index of the lowest grid point around it, and the fractions of the way to the
-/// next point along each axis. It is compact because there are millions of them.
+/// A reward and the next state: the index of the lowest grid point around it, and the fractions of the way to the next
+/// point along each axis. It is compact because there are millions of successors.
 #[derive(Clone, Copy)]
 struct Successor<const D: usize> {
     reward: f64,
@@ -33,15 +33,16 @@ struct Successor<const D: usize> {
     fractions: [f32; D],
 }
 
-/// How many grid points are stepped from between two looks at the stop flag: about a millisecond.
+/// The number of grid points between two checks of the stop flag: about a millisecond of work.
 const POINTS_BETWEEN_CHECKS: usize = 1024;
 
 /// The point of a terminal state, whose value is 0.
 const TERMINAL: u32 = u32::MAX;
 
 impl<T: GridTask<D>, const D: usize> GridValues<T, D> {
-    /// Iterates until convergence, from coarse grids to the finest one: every `finest_stride`-th point along each axis. A
-    /// stride of 1 is the task's full grid; a larger one takes a fraction of the time, and is off by more at the edges.
+    /// Iterates until convergence, from coarse grids to the finest one: every `finest_stride`-th point along each axis.
+    /// A stride of 1 is the task's full grid; a larger one takes a fraction of the time, but is less accurate at the
+    /// edges.
     ///
     /// # Errors
     /// `Stopped` after `stop` was set; `OutOfMemory`; `NotConverged` if the values of a grid do not settle.
@@ -77,7 +78,7 @@ impl<T: GridTask<D>, const D: usize> GridValues<T, D> {
         }
     }
 
-    /// What follows each action at each grid point, in C order, actions last.
+    /// The successor of each action at each grid point, in C order, actions last.
     fn successors(&self, stop: &StopFlag<'_>) -> Result<Vec<Successor<D>>, PlanningError> {
         let mut successors = Vec::new();
         reserve(&mut successors, self.values.len() * T::ACTIONS)?;
@@ -104,7 +105,8 @@ impl<T: GridTask<D>, const D: usize> GridValues<T, D> {
             // Forwards and backwards, so that changes spread in both directions.
             for point in (0..=last).chain((0..=last).rev()) {
                 let possible = successors[point * T::ACTIONS..][..T::ACTIONS].iter();
-                // A sweep reads rewards in float32, as the fractions are. That is what the best known values were found with.
+                // A sweep reads rewards in float32, like the fractions. The best known values were found with float32
+                // rewards.
                 let outcomes =
                     possible.map(|&outcome| Successor { reward: f64::from(outcome.reward as f32), ..outcome });
                 let best = outcomes.map(|outcome| self.outcome_value(&outcome)).fold(self.lowest, f64::max);
@@ -132,7 +134,7 @@ impl<T: GridTask<D>, const D: usize> GridValues<T, D> {
         self.interpolate(point, fractions)
     }
 
-    /// Whether a state has more than the lowest value.
+    /// Whether the value of a state is above the lowest value.
     pub fn is_above_lowest(&self, state: [f64; D]) -> bool {
         self.value(state) > self.lowest
     }
@@ -143,7 +145,7 @@ impl<T: GridTask<D>, const D: usize> GridValues<T, D> {
         step.reward + if step.terminated { 0.0 } else { T::DISCOUNT * self.value(step.state) }
     }
 
-    /// The action of the highest value, the first one of several.
+    /// The action with the highest value, the first one if several are equal.
     pub fn best_action(&self, state: [f64; D]) -> usize {
         let mut best = (0, f64::NEG_INFINITY);
         for action in 0..T::ACTIONS {
@@ -170,7 +172,7 @@ impl<T: GridTask<D>, const D: usize> GridValues<T, D> {
         &self.action_values
     }
 
-    /// The value of a state-action pair: its reward, and the value of what follows it.
+    /// The value of a state-action pair: its reward, and the value of the next state.
     #[inline]
     fn outcome_value(&self, outcome: &Successor<D>) -> f64 {
         outcome.reward + T::DISCOUNT * self.interpolate(outcome.point, outcome.fractions)
@@ -191,7 +193,7 @@ impl<T: GridTask<D>, const D: usize> GridValues<T, D> {
         state
     }
 
-    /// Where a state lies between the grid points.
+    /// The position of a state between the grid points.
     fn position(&self, state: [f64; D]) -> (u32, [f32; D]) {
         let (bounds, mut point, mut fractions) = (self.task.bounds(), 0, [0.0; D]);
         for axis in 0..D {
@@ -225,7 +227,7 @@ impl<T: GridTask<D>, const D: usize> GridValues<T, D> {
     }
 }
 
-/// How far each of the points around a state is from the lowest one. The last axis is the lowest bit of a corner's number.
+/// The offset of each point around a state from the lowest one. The last axis is the lowest bit of a corner's number.
 fn corners<const D: usize>(points: [usize; D]) -> [usize; MAX_CORNERS] {
     std::array::from_fn(|corner| {
         let mut stride = 1;
@@ -242,7 +244,7 @@ mod tests {
     use super::*;
     use crate::envs::Step;
 
-    /// Each step is worth 1 and leads back: without an end the values grow forever.
+    /// A task in which each step is worth 1 and leads back: as no episode ends, the values grow forever.
     #[derive(Clone, Copy, Debug, PartialEq)]
     struct NeverEnding;
 

@@ -1,4 +1,4 @@
-//! The methods on tables with known solutions; on random tables in `random_tables`.
+//! The methods on tables with known solutions. Random tables are in `random_tables`.
 
 use super::*;
 use crate::StopFlag;
@@ -113,7 +113,7 @@ fn states_without_an_end_and_without_rewards_are_worth_nothing() {
     }
 }
 
-/// From state 0 to state 1 with a reward of 1 and back with -1, where only state 0 has an exit, worth 0.5.
+/// From state 0 to state 1 with a reward of 1 and back with -1; only state 0 has an exit, worth 0.5.
 fn there_and_back(first: usize) -> TabularMdp {
     let second = 1 - first;
     let to = |state: usize, reward, terminated| deterministic((state as u64).cast_signed(), reward, terminated);
@@ -159,7 +159,7 @@ fn rounding_does_not_postpone() {
         [deterministic(5, 0.1, true), deterministic(5, 0.1, true)],
     ];
     let horizon = finite_horizon(&table(2, &rows.concat()), 1.0, 4, &NO_STOP).expect("a solution");
-    // With three steps to go, the second way is too long, and with four it is as good.
+    // With three steps to go, the second way is too long; with four, it is as good.
     assert_eq!(horizon.policy[0], 0);
     assert_eq!(horizon.changes.iter().filter(|change| change.state == 0).count(), 2);
 }
@@ -216,7 +216,7 @@ fn the_stop_flag_stops_every_method() {
 
 #[test]
 fn a_policy_may_depend_on_the_steps_taken() {
-    // Left first, then right as long as it takes.
+    // Left first, then right for the remaining steps.
     let policy = [vec![0; 3], vec![1; 9]].concat();
     assert_eq!(policy_return(&corridor(), &policy, 4, &NO_STOP), Ok(-4.0));
     let repeated = vec![1; 12];

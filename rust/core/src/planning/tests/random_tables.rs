@@ -1,4 +1,4 @@
-//! The methods on random tables, compared with each other and with every history tried.
+//! The methods on random tables, compared with each other and with a search over all histories.
 
 use proptest::prelude::*;
 
@@ -80,7 +80,7 @@ proptest! {
 
     #[test]
     fn without_discounting_both_iterations_agree_on_costs(mdp in mdps()) {
-        // Every reward is negative, so that never ending costs without bound.
+        // Every reward is negative, so never ending costs without bound.
         let cost = |(probability, step): (f64, Step<u32>)| Outcome {
             probability,
             state: step.state.into(),
