@@ -1,4 +1,4 @@
-"""The extension module: what Rust does. Its users are the other modules of this package."""
+"""The extension module, written in Rust, for use by the other modules of this package."""
 
 from collections.abc import Callable, Sequence
 from typing import Any, Literal, final

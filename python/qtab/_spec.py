@@ -1,7 +1,7 @@
-"""What the extension module takes: the description of a run, complete and checked, every union tagged by ``type``.
+"""The input of the extension module: the complete, validated description of a run, with every union tagged by ``type``.
 
-The extension parses it once into its own enums. The words of each union stand there a second time (``_core.ALGORITHMS``
-and its like); a test holds the two lists together.
+The extension parses it once into its own enums, which repeat the words of each union (``_core.ALGORITHMS`` and
+similar); a test compares the two lists.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -27,14 +27,14 @@ class NativeEnvSpec(TypedDict):
 
 
 class PythonEnvSpec(TypedDict):
-    """An environment that is stepped in Python."""
+    """An environment stepped in Python."""
 
     type: Literal["python"]
     env: Any
     first_action: int
-    """The environment's number of the first action, where its space is Discrete."""
+    """The environment's number of the first action, if its space is Discrete."""
     actions: Sequence[Any]
-    """The actions themselves, as ``step`` takes them; empty for a Discrete space."""
+    """The actions themselves, as arguments of ``step``; empty for a Discrete space."""
     action_mask: "MaskSourceSpec"
 
 
@@ -45,11 +45,11 @@ class ConventionalMaskSource(TypedDict):
 
 
 class FunctionMaskSource(TypedDict):
-    """Masks by a function."""
+    """Masks from a function."""
 
     type: Literal["function"]
     function: Callable[[Any], Any]
-    """From an observation to its mask."""
+    """Maps an observation to its mask."""
 
 
 MaskSourceSpec: TypeAlias = ConventionalMaskSource | FunctionMaskSource
@@ -59,7 +59,7 @@ EnvironmentSpec: TypeAlias = NativeEnvSpec | PythonEnvSpec
 
 
 class UnknownMasksSpec(TypedDict):
-    """Every state has all actions (none), or the environment gives the masks (observed)."""
+    """Every state has all actions (none), or the environment provides the masks (observed)."""
 
     type: Literal["none", "observed"]
 
@@ -76,7 +76,7 @@ ActionMasksSpec: TypeAlias = UnknownMasksSpec | KnownMasksSpec
 
 
 class RunSpec(TypedDict):
-    """A run, but for its seed."""
+    """A run without its seed."""
 
     env: EnvironmentSpec
     discretizer: DiscretizerSpec
@@ -84,7 +84,7 @@ class RunSpec(TypedDict):
     max_episode_steps: int
     action_masks: ActionMasksSpec
     settings: Mapping[str, Any]
-    """Those of the config, of which the extension reads what the algorithm, the exploration and the schedules have."""
+    """The settings of the config, from which the extension reads those of the algorithm, exploration and schedules."""
 
 
 # Prediction
@@ -105,15 +105,15 @@ class ObservationPolicySpec(TypedDict, total=False):
 
     type: Required[Literal["table", "greedy", "function"]]
     probabilities: NDArray[np.float64]
-    """(cells, actions), or (1, actions) for the same everywhere, of a table."""
+    """The probabilities of a table, (cells, actions), or (1, actions) for the same everywhere."""
     discretizer: DiscretizerSpec
-    """Of a greedy policy."""
+    """The discretizer of a greedy policy."""
     tables: NDArray[np.float64]
-    """(tables, rows, actions): the action values of a greedy policy, which are added."""
+    """The action values of a greedy policy, (tables, rows, actions); the tables are added."""
     function: Callable[[Any], Any]
-    """From an observation to the number of an action or to probabilities."""
+    """Maps an observation to the number of an action, or to probabilities."""
     read: Callable[[Any, Any], Sequence[float]]
-    """From any other answer of the function, and the observation, to probabilities; or it raises an error."""
+    """Converts any other return value of the function, with the observation, to probabilities, or raises an error."""
     first_action: int
     """The number of the first action."""
 
@@ -127,42 +127,42 @@ class ObservationPoliciesSpec(TypedDict):
 
 
 class PredictionSpec(TypedDict):
-    """What is estimated, beside the run whose task it is."""
+    """A prediction: the quantity to estimate and the method, besides the run that defines the task."""
 
     method: MethodSpec
     target: NDArray[np.float64] | None
-    """(states, actions): the policy that is evaluated; None with ``policies``."""
+    """The policy that is evaluated, (states, actions); None with ``policies``."""
     behavior: NDArray[np.float64] | None
-    """(states, actions): the policy that chooses the actions; None with ``policies``."""
+    """The policy that chooses the actions, (states, actions); None with ``policies``."""
     policies: ObservationPoliciesSpec | None
     """Policies that read the observations of a Box."""
     rows: NDArray[np.uint32] | None
-    """(states, n_active); None where the features of an observation are the active rows of the discretizer."""
+    """The active rows of each state, (states, n_active); None if they are the rows of the discretizer."""
     initial_weights: NDArray[np.float64]
-    """(n_weights,)"""
+    """The initial weights, (n_weights,)."""
 
 
 # Results
 
 
 class Results(TypedDict):
-    """The arrays into which many runs write their results: a row for each run."""
+    """The arrays for the results of many runs, with one row per run."""
 
     returns: NDArray[np.float64]
-    """(runs, episodes)"""
+    """The return of each episode, (runs, episodes)."""
     lengths: NDArray[np.int64]
-    """(runs, episodes)"""
+    """The length of each episode, (runs, episodes)."""
     terminated: NDArray[np.bool_]
-    """(runs, episodes)"""
+    """Whether each episode ended in a terminal state, (runs, episodes)."""
     tables: NDArray[np.float64]
-    """(runs, values), or (runs, 0) where tables are not kept."""
+    """The final tables, (runs, values), or (runs, 0) if tables are not kept."""
     finished: NDArray[np.bool_]
-    """(runs,)"""
+    """Whether each run is finished, (runs,)."""
     masks: NDArray[np.bool_]
-    """(runs, values) or (runs, 0): the action masks of runs that are stepped in Python, beside the tables."""
+    """The action masks of runs stepped in Python, (runs, values) or (runs, 0)."""
 
 
 Solution: TypeAlias = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64]]
 """State values, action values and the policy."""
 PolicyChanges: TypeAlias = tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]
-"""From how many remaining steps on, in which state, which action is best."""
+"""Changes of the policy: the number of remaining steps from which on the action is best, the state, the action."""

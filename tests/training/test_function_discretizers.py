@@ -95,7 +95,7 @@ def test_a_saved_run_asks_for_its_function(tmp_path: Path) -> None:
     observation = np.array([-0.5, 0.0], np.float32)
     for use in (lambda: without.predict(observation), lambda: qtab.verify(without), lambda: qtab.evaluate(without)):
         with pytest.raises(
-            ValueError, match=r"is the function 'cells', .*: qtab.load\(path, discretizer=...\) takes it"
+            ValueError, match=r"is the function 'cells', .*: qtab.load\(path, discretizer=...\) restores it"
         ):
             use()
     assert without.q_table.tobytes() == run.q_table.tobytes()

@@ -1,4 +1,4 @@
-"""The settings of a run: what may be given, what it means, and what stands where nothing is given."""
+"""The settings of a run: names, meanings, checks, defaults and presets."""
 
 from qtab.config.config import DEFAULTS, Config
 

@@ -1,4 +1,4 @@
-"""The setting ``action_mask``: where the masks of a run come from, and what a mask must be."""
+"""The setting ``action_mask``: the source of a run's masks, and the check of a mask."""
 
 from collections.abc import Callable
 from typing import Any, TypeAlias
@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 from qtab._utils.shown import shown
 
 Mask: TypeAlias = bool | str | Callable[[Any], Any]
-"""Whether the environment gives masks, or a function that does; ``STORED`` in the config of a run from a file."""
+"""Whether the environment provides masks, or a function that does; ``STORED`` in the config of a run from a file."""
 
 STORED = "function"
-"""What stands for a function in a file, which cannot hold one."""
+"""Placeholder for a function in a file, which cannot store functions."""
 FORGOTTEN = (
-    "action_mask must be given: the run was trained with a function, which its file does not hold; "
-    "qtab.load(path, action_mask=f) gives it back"
+    "action_mask must be given: the run was trained with a function, which its file cannot store; "
+    "qtab.load(path, action_mask=f) restores it"
 )
 
 

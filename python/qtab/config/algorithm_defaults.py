@@ -1,4 +1,4 @@
-"""The defaults that an algorithm has instead of the common ones: the book's settings."""
+"""The defaults of algorithms that differ from the common ones: the book's settings."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -6,7 +6,7 @@ from typing import Any
 from qtab.config.options import FIXED, is_set
 
 _AVERAGES: Mapping[str, Any] = {"learning_rate": 1.0, "learning_rate_schedule": "visits"}
-"""Values are averages of returns."""
+"""Averages of returns as values."""
 
 _DEFAULTS: Mapping[str, Mapping[str, Any]] = {
     "monte_carlo": _AVERAGES,
@@ -18,9 +18,9 @@ _DEFAULTS: Mapping[str, Mapping[str, Any]] = {
 
 
 def algorithm_defaults(preset: Mapping[str, Any], asked: Mapping[str, Any]) -> dict[str, Any]:
-    """Returns the settings that the algorithm asked for brings along, over those of a preset for another algorithm.
+    """Returns the settings that come with the requested algorithm, over those of a preset for another algorithm.
 
-    A learning rate that is asked for stays constant, except where the algorithm needs averages.
+    A requested learning rate stays constant, unless the algorithm needs averages.
     """
     algorithm = asked.get("algorithm")
     if not isinstance(algorithm, str) or preset.get("algorithm") == algorithm:

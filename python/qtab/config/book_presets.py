@@ -16,7 +16,7 @@ CLIFF_WALKING: SharedSettings = {
     "episodes": 500,
 }
 
-# Figure 6.5. State A has two actions; -inf stands for the others.
+# Figure 6.5. State A has two actions; -inf marks missing ones.
 MAXIMIZATION_BIAS: SharedSettings = {
     "learning_rate": 0.1,
     "discount": 1.0,
@@ -39,8 +39,8 @@ K_ARMED_BANDIT: SharedSettings = {
     "episodes": 1000,
 }
 
-# Figure 13.1. The first policy goes right with probability 0.05, as the figure's first returns show; the book does not
-# state it.
+# Figure 13.1. The initial policy goes right with probability 0.05, as the figure's first returns show; the book does
+# not state it.
 SHORT_CORRIDOR: SharedSettings = {
     "algorithm": "reinforce",
     "learning_rate": 2.0**-13,
@@ -63,7 +63,7 @@ DYNA_MAZE: SharedSettings = {
 }
 
 # Figures 8.4 and 8.5: Dyna-Q+ for 3,000 and for 6,000 steps. The book states no settings; docs/book/chapter_8.md
-# says how these were chosen.
+# explains how these were chosen.
 CHANGING_MAZE: SharedSettings = {
     **DYNA_MAZE,
     "algorithm": "dyna_q_plus",
@@ -73,8 +73,8 @@ CHANGING_MAZE: SharedSettings = {
 BLOCKING_MAZE: SharedSettings = {**CHANGING_MAZE, "episodes": 300}
 SHORTCUT_MAZE: SharedSettings = {**CHANGING_MAZE, "episodes": 600}
 
-# Figure 10.5. Its 2,000,000 steps are one episode in the book, as the task never ends; here 200, so that there are
-# returns to look at.
+# Figure 10.5. In the book its 2,000,000 steps are one episode, as the task never ends; here they are 200, so that there
+# are returns to plot.
 ACCESS_CONTROL_QUEUE: SharedSettings = {
     "algorithm": "differential_sarsa",
     "learning_rate": 0.01,

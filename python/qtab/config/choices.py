@@ -1,4 +1,4 @@
-"""The names that settings choose from: the only list of the algorithms, schedules and discretizers in Python."""
+"""The possible values of settings: the only list of the algorithms, schedules and discretizers in Python."""
 
 from collections.abc import Mapping
 from typing import Literal, TypeAlias, get_args
@@ -53,7 +53,7 @@ ALGORITHM_NAMES: Mapping[str, str] = {
     "actor_critic": "one-step actor-critic",
     "actor_critic_lambda": "actor-critic with eligibility traces",
 }
-"""How Sutton & Barto write the names of the algorithms, for titles and tables."""
+"""The names of the algorithms as in Sutton & Barto, for titles and tables."""
 
 LearningRateSchedule: TypeAlias = Literal["constant", "linear", "exponential", "visits"]
 Exploration: TypeAlias = Literal["epsilon_greedy", "softmax", "ucb"]
@@ -83,4 +83,4 @@ CHOICES: Mapping[str, tuple[str, ...]] = {
     "bit_generator": get_args(BitGenerator),
     "backend": get_args(Backend),
 }
-"""The names that each setting chooses from."""
+"""The possible values of each setting."""

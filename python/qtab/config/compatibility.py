@@ -1,4 +1,4 @@
-"""Which settings go together: options with the choices that they belong to, and choices with each other."""
+"""The compatibility of settings: options with the choices they apply to, and choices with each other."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -24,14 +24,14 @@ _CHECKED = (
     *("terminal_update", "learning_rate_schedule", "discount", "algorithm", "exploration", "action_mask"),
     *("time_aware", "on_truncation"),
 )
-"""The settings, no options, of which some values exclude each other."""
+"""The settings, other than options, some of whose values exclude each other."""
 
 
 def check_options(fields: Mapping[str, Any]) -> None:
-    """Refuses options that do not apply to the choices made, and choices that do not go together.
+    """Rejects options that do not apply to the choices made, and choices that are incompatible.
 
     Raises:
-        ValueError: names the option, what it applies to, and what was chosen.
+        ValueError: names the option, the choices it applies to, and the choice made.
     """
     for name in OPTIONS:
         if is_set(fields[name]) and (reason := mismatch(name, fields[name], fields)):
@@ -42,7 +42,7 @@ def check_options(fields: Mapping[str, Any]) -> None:
 
 
 def mismatch(name: str, value: Any, fields: Mapping[str, Any]) -> str | None:
-    """Returns why a value of a setting does not go with the other settings, ``fields``; None if it does."""
+    """Returns why a value of a setting is incompatible with the other ``fields``; None if it is compatible."""
     if name in OPTIONS:
         option = OPTIONS[name]
         chosen = _effective(option.choice, fields)
@@ -76,7 +76,7 @@ def mismatch(name: str, value: Any, fields: Mapping[str, Any]) -> str | None:
     if name == "action_mask" and value is not False and algorithm in NO_MASKED_TILES and with_tiles:
         return f"action_mask must be False for algorithm {algorithm!r} with discretizer 'tiles', got {shown(value)}"
     if (name, value) == ("on_truncation", "bootstrap") and fields["time_aware"]:
-        return "on_truncation must be 'terminate' for time_aware=True, whose last step nothing follows, got 'bootstrap'"
+        return "on_truncation must be 'terminate' for time_aware=True, got 'bootstrap'"
     if name == "time_aware" and value and with_tiles:
         return (
             "time_aware must be False for discretizer 'tiles', which has no cells, got True; "
@@ -92,9 +92,9 @@ def mismatch(name: str, value: Any, fields: Mapping[str, Any]) -> str | None:
 
 
 def turned_off(fields: Mapping[str, Any]) -> dict[str, Any]:
-    """Returns the options that a complete config, such as that of a run, has off, each with its None.
+    """Returns the options that are off in a complete config, such as that of a run, each as None.
 
-    A config in which options are still open is not complete, and nothing says that another one is not open as well.
+    A config with unset options is not complete, so any of its options may be unset.
     """
     if defaults(fields):
         return {}
@@ -102,7 +102,7 @@ def turned_off(fields: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def applicable(fields: Mapping[str, Any], others: Mapping[str, Any]) -> dict[str, Any]:
-    """Returns the settings in ``fields`` that fit the other settings, without the options of choices that do not."""
+    """Returns the settings in ``fields`` that are compatible with the others, without options that do not apply."""
     kept = {name: value for name, value in fields.items() if not mismatch(name, value, others)}
     for name, option in OPTIONS.items():
         if option.choice in fields and option.choice not in kept:
@@ -111,7 +111,7 @@ def applicable(fields: Mapping[str, Any], others: Mapping[str, Any]) -> dict[str
 
 
 def other_choice(name: str, value: str, excluded: Sequence[str], where: str) -> str:
-    """Returns the message for a choice that is excluded where something else was chosen."""
+    """Returns the message for a value that is excluded by another choice."""
     possible = [word for word in CHOICES[name] if word not in excluded]
     return f"{name} must be {listed(possible)} {where}, got {shown(value)}"
 

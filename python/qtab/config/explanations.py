@@ -16,17 +16,17 @@ _TITLES = {
     "exploration": "Exploration",
     "discretizer": "Discretizer",
 }
-"""The title of each group of settings, by the field of the config with which the group begins."""
+"""The title of each group of settings, by the field of the config that starts the group."""
 
 
 @cache
 def explanations() -> Mapping[str, str]:
-    """Returns the docstring of each of the config's fields, in one line; nothing if the source is not installed."""
+    """Returns the docstring of each field of the config, in one line; empty if the source is not installed."""
     return MappingProxyType({name: text for name, _, text in source_fields(Config) if text})
 
 
 def applicability(name: str) -> str:
-    """Returns a sentence that says for which choices a setting applies; empty if it always does."""
+    """Returns a sentence that names the choices a setting applies to; empty if it always applies."""
     if name not in OPTIONS:
         return ""
     option = OPTIONS[name]
@@ -34,13 +34,13 @@ def applicability(name: str) -> str:
 
 
 def default(name: str) -> Any:
-    """Returns the value that a setting has, where it applies, if neither the user nor a preset gives one."""
+    """Returns the default value of a setting, where it applies, if neither the user nor a preset gives one."""
     option = OPTIONS.get(name)
     return DEFAULTS[name] if option is None or option.default is None else option.default
 
 
 def groups(names: Iterable[str]) -> dict[str, list[str]]:
-    """Returns the settings of each group by its title, in the order of the config; only those of ``names``."""
+    """Returns the settings of each group by its title, in the order of the config, restricted to ``names``."""
     wanted = set(names)
     grouped: dict[str, list[str]] = {}
     title = ""

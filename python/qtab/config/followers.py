@@ -1,4 +1,4 @@
-"""The settings that follow when others of a config are changed."""
+"""The settings that change automatically when other settings of a config are changed."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -12,7 +12,7 @@ from qtab.config.origin import Origin
 def with_followers(
     config: Any, changes: Mapping[str, Any], defaults: Mapping[str, Any]
 ) -> tuple[dict[str, Any], Origin | None]:
-    """Returns the changes of a config with those that follow from them, and the origin that it has then.
+    """Returns the changes to a config together with those that follow from them, and the new origin.
 
     Args:
         config: The config.

@@ -1,4 +1,4 @@
-"""The check of the setting ``discretizer``, in which each key of the observation may have one of its own."""
+"""The check of the setting ``discretizer``, in which each key of the observation may have its own discretizer."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -16,7 +16,7 @@ _OPTIONS = [
 
 
 def checked_discretizer(name: str, value: Any) -> Any:
-    """Returns the setting, checked: for each key as a mapping that holds the name and all options that apply.
+    """Returns the checked setting: a mapping from each key to a mapping with the name and all options that apply.
 
     Args:
         name: The name of the setting.
@@ -36,10 +36,10 @@ def checked_discretizer(name: str, value: Any) -> Any:
 
 
 def check_limits(low: tuple[float, ...] | None, high: tuple[float, ...] | None) -> None:
-    """Checks that upper limits lie above lower ones, where both are given.
+    """Checks that upper limits lie above lower ones, if both are given.
 
     Raises:
-        ValueError: if one does not, or there are more of the one than of the other.
+        ValueError: if one does not, or their numbers differ.
     """
     if low is None or high is None:
         return
@@ -51,7 +51,7 @@ def check_limits(low: tuple[float, ...] | None, high: tuple[float, ...] | None) 
 
 def _key(name: str, key: Any) -> str:
     if isinstance(key, bool) or not isinstance(key, str | int):
-        raise TypeError(f"{name} must have texts or integers as keys, those of the observation, got {shown(key)}")
+        raise TypeError(f"{name} must have the keys of the observation, strings or integers, got {shown(key)}")
     return str(key)
 
 

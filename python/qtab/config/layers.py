@@ -1,4 +1,4 @@
-"""The settings that a call asks for: its keywords over the config that it starts from."""
+"""The settings that a call requests: its keywords, over the config that it starts from."""
 
 import inspect
 from collections.abc import Callable, Mapping
@@ -27,10 +27,10 @@ def collect(
     """Checks the names of a call's settings; returns its environment and the config that it starts from.
 
     Args:
-        function: The function that was called. Its signature shows which settings it takes.
-        env: The environment given; None takes the config's.
-        config: The config given. With another environment, its ``env_kwargs``, its ``preset``, and what followed from
-            its own environment do not count.
+        function: The function that was called. Its signature lists its settings.
+        env: The environment given; None uses the config's.
+        config: The config given. With another environment, its ``env_kwargs``, its ``preset``, and the settings derived
+            from its own environment are ignored.
         settings: The keywords given.
 
     Raises:
@@ -66,9 +66,9 @@ def _arguments(function: Callable[..., Any]) -> frozenset[str]:
 def over(base: Base, settings: Mapping[str, Any]) -> dict[str, Any]:
     """Returns settings over the base of a call.
 
-    What a mapping holds counts like a keyword. The fields of a Config yield: those that are not set, those that do not
-    apply beside the other settings, and those that are derived again are left out. An option that is off in the config
-    of a run stays off, whatever a preset has.
+    The items of a mapping count like keywords. A Config contributes fewer: fields that are not set, that do not apply
+    to the other settings, or that are derived again are left out. An option that is off in the config of a run stays
+    off, even if a preset sets it.
     """
     if isinstance(base, Config):
         left_out = {"env", *freed_settings(base.algorithm, settings.get("algorithm", base.algorithm))}

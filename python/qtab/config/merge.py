@@ -1,4 +1,4 @@
-"""From the layers of what a user asked for to one checked config: the preset below, then files, then keywords."""
+"""Merging the layers of requested settings into one checked config: the preset lowest, then files, then keywords."""
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -15,7 +15,7 @@ from qtab.config.unknown import check_names
 
 
 def merge_layers(*layers: Mapping[str, Any]) -> dict[str, Any]:
-    """Returns the settings that were asked for, a later layer over an earlier one. Their values are not checked.
+    """Returns the requested settings, with later layers over earlier ones. Their values are not checked.
 
     Raises:
         TypeError: for an unknown setting.
@@ -28,10 +28,10 @@ def merge_layers(*layers: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def config_of(env: str, asked: Mapping[str, Any]) -> Config:
-    """Returns the config of an environment: the settings that were asked for over those of its preset.
+    """Returns the config of an environment: the requested settings over those of its preset.
 
-    A preset is a starting point: those of its settings that do not apply to what was asked for are left out, and an
-    algorithm that was asked for brings its own.
+    A preset is a starting point: its settings that do not apply to the requested ones are left out, and a requested
+    algorithm brings its own defaults.
 
     Raises:
         TypeError: for a setting of the wrong type.
@@ -52,12 +52,12 @@ def config_of(env: str, asked: Mapping[str, Any]) -> Config:
 
 @contextmanager
 def naming_preset(name: str | None, settings: Mapping[str, Any], asked: Mapping[str, Any]) -> Iterator[None]:
-    """Adds to an error about a value of a preset that it is the preset's, which nobody typed.
+    """Adds to an error about a preset's value that it comes from the preset.
 
     Args:
         name: The name of the preset.
-        settings: What is used of it.
-        asked: The settings that were asked for.
+        settings: The settings used from the preset.
+        asked: The requested settings.
     """
     try:
         yield
@@ -65,11 +65,11 @@ def naming_preset(name: str | None, settings: Mapping[str, Any], asked: Mapping[
         setting = str(error).split(" ", 1)[0]
         if name is None or setting not in settings or is_set(asked.get(setting)):
             raise
-        raise ValueError(f"{error}; this is the {setting} of preset {name!r}, give another one") from None
+        raise ValueError(f"{error}; this is the {setting} of preset {name!r}; give another one") from None
 
 
 def merge(env: str, *layers: Mapping[str, Any]) -> Config:
-    """Returns the config of an environment: its preset, then each layer over the one before.
+    """Returns the config of an environment: its preset, then each layer over the previous one.
 
     Raises:
         TypeError: for an unknown setting, or one of the wrong type.

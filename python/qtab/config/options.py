@@ -1,4 +1,4 @@
-"""The table of settings: for each its check, where it applies, its default there, and what else it is called.
+"""The table of settings: for each its check, where it applies, its default there, and its other names.
 
 The fields of :class:`qtab.Config` have the types, the explanations, and the defaults of the settings that always apply.
 """
@@ -26,11 +26,11 @@ class Setting:
     check: Check
     """The check of its value."""
     other_names: str = field(default="", kw_only=True)
-    """What other libraries and textbooks call it, separated by spaces."""
+    """Its names in other libraries and textbooks, separated by spaces."""
     may_be_none: bool = field(default=False, kw_only=True)
-    """Whether None means "not given"; it is not checked then."""
+    """Whether None means "not given" and is not checked."""
     added: bool = field(default=False, kw_only=True)
-    """Whether earlier versions do not have it: files hold it only where it differs from its default."""
+    """Whether earlier versions lack it: files store it only if it differs from its default."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class Option(Setting):
     values: tuple[str, ...]
     """The values of the other setting for which this one applies."""
     default: Any
-    """The default where it applies. None: it has none, or is found from the observation space."""
+    """The default where it applies. None if there is no default, or it is derived from the observation space."""
     off_by_none: bool = field(default=False, kw_only=True)
     """Whether None is a real value, not just "not set"."""
     may_be_none: bool = field(default=True, kw_only=True)
@@ -50,21 +50,22 @@ class Option(Setting):
 
 @dataclass(frozen=True)
 class Fixed:
-    """Settings that have a single value for an algorithm, which would ignore any other."""
+    """Settings with a single possible value for an algorithm, which would ignore any other."""
 
     values: Mapping[str, Any]
     """The value of each of these settings."""
     reason: str
-    """Why: a message says "for algorithm ..., which" before it."""
+    """The reason, for messages: it follows "for algorithm ..., which"."""
 
 
 _WITH_TRACES = ("sarsa_lambda", "watkins_q_lambda")
 _WITH_TARGET_POLICY = ("n_step_tree_backup", "n_step_q_sigma")
 _FALLING = ("linear", "exponential")
 WITH_STATE_VALUES = ("reinforce_with_baseline", "actor_critic", "actor_critic_lambda")
-"""The algorithms that learn state values beside a policy: a second table, with the value of a row in every column."""
+"""The algorithms that learn state values besides a policy: a second table, with the value of a row in every column."""
 PREFERENCES = ("gradient_bandit", "reinforce", *WITH_STATE_VALUES)
-"""The algorithms whose table holds preferences, of which the policy is the softmax, instead of action values."""
+"""The algorithms whose table holds preferences instead of action values. Their policy is the softmax of the
+preferences."""
 
 WITH_PROBABILITIES = ("off_policy_monte_carlo", *_WITH_TARGET_POLICY)
 """The algorithms that learn from the probabilities of the actions."""
@@ -91,13 +92,14 @@ ONE_STEP = (
     "dyna_q_plus",
     "prioritized_sweeping",
 )
-"""The algorithms that can assign a value at a terminal state, as the article does, if they learn a table."""
+"""The algorithms that can assign the reward as the value at a terminal state, as the article does, if they learn a
+table."""
 TABLES_ONLY = ("dyna_q", "dyna_q_plus", *MONTE_CARLO, "prioritized_sweeping", "gradient_bandit")
 """The algorithms that do not work with tile coding."""
 NO_MASKED_TILES = (*PREFERENCES, *_WITH_TARGET_POLICY)
 """The algorithms that do not work with action masks and tile coding together.
 
-They update states after the next one is seen, and only the mask of the last one is known.
+They update a state after seeing the next one, and only the mask of the last state is known.
 """
 
 
@@ -237,39 +239,39 @@ SETTINGS: Mapping[str, Setting] = {
     "high": Option(check.each(checks.finite), "discretizer", ("bins", "tiles"), None),
     "actions": Setting(check.actions, other_names="n_actions num_actions", may_be_none=True),
 }
-"""Every setting but ``discretizer``, whose check needs those of its options; see ``keyed_discretizers.py``."""
+"""Every setting except ``discretizer``, whose check also needs its options; see ``keyed_discretizers.py``."""
 OPTIONS: Mapping[str, Option] = {name: setting for name, setting in SETTINGS.items() if isinstance(setting, Option)}
-"""The settings that apply only beside certain choices."""
+"""The settings that apply only to certain choices."""
 OFF_BY_NONE = tuple(name for name, option in OPTIONS.items() if option.off_by_none)
 """The options for which None is a real value, not just "not set"."""
 
 
 def options_of(choice: str, value: str) -> list[str]:
-    """Returns the names of the options that apply for a value of a choice, such as an algorithm."""
+    """Returns the names of the options that apply to a value of a choice, such as an algorithm."""
     return [name for name, option in OPTIONS.items() if option.choice == choice and value in option.values]
 
 
 def n_tables(algorithm: str) -> int:
-    """Returns how many tables an algorithm learns."""
+    """Returns the number of tables that an algorithm learns."""
     return 2 if algorithm in ("double_q_learning", *WITH_STATE_VALUES) else 1
 
 
 def fixed_settings(algorithm: Any) -> Mapping[str, Any]:
-    """Returns the settings that have a single value for an algorithm; none if ``algorithm`` is not the name of one."""
+    """Returns the settings with a single possible value for an algorithm; empty for an unknown ``algorithm``."""
     return FIXED[algorithm].values if isinstance(algorithm, str) and algorithm in FIXED else {}
 
 
 def freed_settings(before: Any, now: Any) -> set[str]:
-    """Returns the names of the settings that were fixed for the algorithm before, and are not for the one now."""
+    """Returns the names of the settings that were fixed for the previous algorithm, and are not for the new one."""
     return fixed_settings(before).keys() - fixed_settings(now).keys()
 
 
 def listed(words: Sequence[str]) -> str:
-    """Returns words as English lists them: ``'a', 'b' or 'c'``."""
+    """Returns words as an English list: ``'a', 'b' or 'c'``."""
     *others, last = map(repr, words)
     return f"{', '.join(others)} or {last}" if others else last
 
 
 def is_set(value: Any) -> bool:
-    """Returns whether a setting has a value: None, and an empty scale, mean "not given"."""
+    """Returns whether a setting has a value. None and an empty scale mean "not given"."""
     return value is not None and not (isinstance(value, tuple) and not value)

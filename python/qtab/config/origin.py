@@ -1,4 +1,4 @@
-"""What a config of a run knows besides its settings: where they come from."""
+"""The origin of a run's config, which it stores besides its settings."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
@@ -12,24 +12,24 @@ C = TypeVar("C", bound="WithOrigin")
 
 @dataclass(frozen=True)
 class Origin:
-    """The environment that a run was trained on, and which of its settings were derived.
+    """The environment that a run was trained on, and the names of the derived settings.
 
     Settings that were not given are filled in when training begins. Those that follow from the environment or from
-    other settings are derived: with another environment, or beside other settings, they are derived again.
+    other settings are derived: they are derived again for another environment, or with other settings.
     """
 
     environment: "EnvironmentDescription | None" = None
-    """The environment of the training; None where it is not known."""
+    """The environment of the training; None if it is not known."""
     derived: frozenset[str] = frozenset()
     """The names of the settings that were derived."""
 
     @property
     def derived_again(self) -> frozenset[str]:
-        """The settings that a new training derives again; without the environment all that were derived."""
+        """The settings that a new training derives again; all derived ones if the environment is not known."""
         return self.derived if self.environment is None else self.derived & {"backend"}
 
     def as_json(self) -> dict[str, Any]:
-        """Returns the origin as files hold it."""
+        """Returns the origin as stored in files."""
         environment = None if self.environment is None else self.environment.as_json()
         return {"environment": environment, "derived": sorted(self.derived)}
 
@@ -39,13 +39,13 @@ class Origin:
 
 
 class WithOrigin:
-    """Gives a config its origin. It is no setting: ``vars(config)`` holds the settings only."""
+    """Gives a config its origin, which is not a setting: ``vars(config)`` holds only the settings."""
 
     __slots__ = ("_origin",)
 
     @property
     def origin(self) -> Origin | None:
-        """Where the config of a run comes from; None for any other config, and in files of earlier versions."""
+        """The origin of a run's config; None for any other config, and in files of earlier versions."""
         found: Origin | None = getattr(self, "_origin", None)
         return found
 
@@ -67,5 +67,5 @@ def copied(config: C, origin: Origin | None) -> C:
 
 
 def trained_on(config: WithOrigin) -> "EnvironmentDescription | None":
-    """Returns the environment that the run of a config was trained on; None where it is not known."""
+    """Returns the environment that the run of a config was trained on; None if it is not known."""
     return None if config.origin is None else config.origin.environment

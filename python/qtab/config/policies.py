@@ -1,4 +1,4 @@
-"""How the agent chooses actions."""
+"""The policies of the agent."""
 
 from dataclasses import dataclass
 from typing import TypeAlias
@@ -11,11 +11,11 @@ from qtab.config.schedules import Schedule, epsilon
 
 @dataclass(frozen=True)
 class EpsilonGreedy:
-    """With probability epsilon a random action, else a greedy one."""
+    """A random action with probability epsilon, otherwise a greedy one."""
 
     epsilon: Schedule
     ties: Ties
-    """Which of several greedy actions."""
+    """The choice among several greedy actions."""
 
 
 @dataclass(frozen=True)

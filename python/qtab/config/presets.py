@@ -17,7 +17,7 @@ from qtab.envs.registry import gymnasium_id, spec_of
 # config's defaults.
 _ARTICLE: SharedSettings = {"scale": (10.0, 100.0), "terminal_update": "assign"}
 
-# Tuned by hand over a few seeds. The exploration rate falls to 0, and in environments with chance so does the learning
+# Tuned by hand on a few seeds. The exploration rate falls to 0, and in stochastic environments so does the learning
 # rate.
 _LAKE: SharedSettings = {
     "learning_rate": 0.05,
@@ -67,8 +67,8 @@ _BLACKJACK: SharedSettings = {
     "initial_q": 0.0,
     "episodes": 500_000,
 }
-# The velocities of cart and pole have no bounds: what lies outside these limits falls into the outermost bins. The
-# initial values are optimistic at first (50, where a return is at most 500).
+# The velocities of cart and pole are unbounded: values outside these limits fall into the outermost bins. The initial
+# values are optimistic at first (50, while a return is at most 500).
 _CART_POLE: SharedSettings = {
     "discretizer": "bins",
     "bins": (3, 3, 6, 6),
@@ -100,8 +100,8 @@ _SOLVED_LARGE_LAKE: SharedSettings = {
     "discount": 0.996,
     "episodes": 100_000,
 }
-# These count the steps, as the optimum under the time limit does. Optimistic values let every state be tried at every
-# step, and a little chance goes on trying. Chosen on the seeds 20,000 to 20,003.
+# These include the number of steps in the state, as the optimum under the time limit does. Optimistic values make the
+# agent try every state at every step, and a small exploration rate keeps trying. Chosen on the seeds 20,000 to 20,003.
 _TIME_AWARE_LAKE: SharedSettings = {
     "time_aware": True,
     "learning_rate": 0.2,
@@ -133,7 +133,7 @@ _SOLVED_TAXI: SharedSettings = {
     "initial_q": 20.0,
     "episodes": 10_000,
 }
-# Planning with the outcomes that were counted brings the policy within 3 % of the optimum, which is -11.69.
+# Planning with the counted outcomes brings the policy within 3 % of the optimum, which is -11.69.
 _SOLVED_RACETRACK: SharedSettings = {
     "algorithm": "dyna_q",
     "model": "stochastic",
@@ -145,7 +145,7 @@ _SOLVED_RACETRACK: SharedSettings = {
     "initial_q": 0.0,
     "episodes": 20_000,
 }
-# Some hands of blackjack are rarely dealt, and have rarely been tried: this explores to the end.
+# Some hands of blackjack are rarely dealt, and so rarely tried: this explores to the end.
 _SOLVED_BLACKJACK: SharedSettings = {**_BLACKJACK, "learning_rate": 0.005, "episodes": 1_000_000}
 
 # An environment's first preset is its default.
@@ -179,9 +179,9 @@ _PRESETS: Mapping[str, Mapping[str, SharedSettings]] = {
 
 
 def presets(env: str) -> Mapping[str, SharedSettings]:
-    """Returns the presets of an environment by name, the default one first; none for one that has no presets.
+    """Returns the presets of an environment by name, the default one first; empty if it has no presets.
 
-    The settings of each are a copy: changing them changes no preset.
+    The settings of each preset are a copy: changing them does not change the preset.
 
     Args:
         env: The environment's id in Gymnasium.
@@ -207,10 +207,10 @@ def _presets(env: str) -> Mapping[str, SharedSettings]:
 
 
 def preset(env: str, name: str | None) -> tuple[str | None, Mapping[str, Any]]:
-    """Returns the name and the values of an environment's preset; None asks for the first one, if it has any.
+    """Returns the name and the values of an environment's preset; None selects the first one, if there is any.
 
     Raises:
-        ValueError: if it has none of that name.
+        ValueError: if there is none of that name.
     """
     known = _presets(env)
     if name is None:

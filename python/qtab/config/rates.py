@@ -1,4 +1,4 @@
-"""The schedules of rates that are asked for without naming one: whether they fall, and how."""
+"""The implied schedules of rates that are requested without naming a schedule."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -10,14 +10,15 @@ _SCHEDULES: Mapping[str, tuple[str, tuple[str, ...]]] = {
     "learning_rate": ("learning_rate_schedule", ("min_learning_rate", "learning_rate_warm_up")),
     "epsilon": ("epsilon_schedule", ("min_epsilon", "epsilon_warm_up")),
 }
-"""For each rate that can fall, the setting that names its schedule, and the settings that only a falling rate has."""
+"""For each rate that can fall, the setting that names its schedule, and the settings that apply only to a falling
+rate."""
 
 
 def implied_schedules(asked: Mapping[str, Any], fields: Mapping[str, Any]) -> dict[str, str]:
-    """Returns the schedules of the rates that were asked for without naming one; see :func:`implied_schedule`.
+    """Returns the schedules of the rates that were requested without naming one; see :func:`implied_schedule`.
 
     Args:
-        asked: The settings that were asked for.
+        asked: The requested settings.
         fields: All settings.
     """
     found = {name: implied_schedule(rate, asked, fields[name]) for rate, (name, _) in _SCHEDULES.items()}
@@ -25,15 +26,15 @@ def implied_schedules(asked: Mapping[str, Any], fields: Mapping[str, Any]) -> di
 
 
 def implied_schedule(rate: str, asked: Mapping[str, Any], otherwise: str | None) -> str | None:
-    """Returns the schedule of a rate that was asked for without naming one; None where nothing implies one.
+    """Returns the schedule of a rate that was requested without naming one; None if nothing implies one.
 
-    A rate alone is constant. With a minimum or a warm-up it falls: linearly, unless the rate itself was not asked for
-    and falls in another way.
+    A rate given alone is constant. With a minimum or a warm-up it falls: linearly, unless the rate itself was not
+    requested and already falls in another way.
 
     Args:
         rate: ``"learning_rate"`` or ``"epsilon"``.
-        asked: The settings that were asked for.
-        otherwise: The schedule of the rate that is used where none was asked for.
+        asked: The requested settings.
+        otherwise: The schedule of the rate if none was requested.
     """
     name, falling = _SCHEDULES[rate]
     if is_set(asked.get(name)):
@@ -45,9 +46,9 @@ def implied_schedule(rate: str, asked: Mapping[str, Any], otherwise: str | None)
 
 
 def without_rates(start: Mapping[str, Any], asked: Mapping[str, Any]) -> dict[str, Any]:
-    """Returns the settings of a preset without the schedules of those rates that are asked for.
+    """Returns the settings of a preset without the schedules of the requested rates.
 
-    The schedule of a preset belongs to its rate: a rate that is asked for does not fall because the preset's does.
+    The schedule of a preset belongs to its rate: a requested rate does not fall because the preset's does.
     """
     replaced = tuple(rate for rate in _SCHEDULES if is_set(asked.get(rate)))
     return {name: value for name, value in start.items() if not any(_belongs(name, rate) for rate in replaced)}

@@ -1,4 +1,4 @@
-"""How the learning rate and the exploration rate change over a run."""
+"""The schedules of the learning rate and the exploration rate over a run."""
 
 from dataclasses import dataclass
 from typing import TypeAlias
@@ -20,7 +20,7 @@ class Constant:
 
 @dataclass(frozen=True)
 class Linear:
-    """From episode ``warm_up`` on, falls by equal amounts to reach ``minimum`` at the end of the run."""
+    """Falls by equal amounts from episode ``warm_up`` on, to reach ``minimum`` at the end of the run."""
 
     value: float
     minimum: float
@@ -34,7 +34,7 @@ class Linear:
 
 @dataclass(frozen=True)
 class Exponential:
-    """From episode ``warm_up`` on, is multiplied by ``decay`` after each episode, down to ``minimum``."""
+    """Falls by the factor ``decay`` after each episode from ``warm_up`` on, down to ``minimum``."""
 
     value: float
     minimum: float
@@ -80,7 +80,7 @@ def epsilon(config: Config) -> Schedule:
     """Returns the exploration rate of a complete config whose policy is epsilon-greedy.
 
     Raises:
-        ValueError: if it, or an option of its schedule, is None.
+        ValueError: if the rate, or an option of its schedule, is None.
     """
     value, kind = required("epsilon", config.epsilon), required("epsilon_schedule", config.epsilon_schedule)
     if kind == "constant":

@@ -1,7 +1,7 @@
-"""The types in which settings may be given, for ``**settings: Unpack[Settings]``.
+"""The types of the arguments for settings, for ``**settings: Unpack[Settings]``.
 
-They are wider than the types that :class:`qtab.Config` stores: ``tiles=8`` does as well as ``tiles=(8, 8)``, and
-NumPy's scalars and arrays as well as Python's numbers and tuples. A test compares the names with the config's.
+They are wider than the types that :class:`qtab.Config` stores: ``tiles=8`` works as well as ``tiles=(8, 8)``, and
+NumPy's scalars and arrays work as well as Python's numbers and tuples. A test compares the names with the config's.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     Integers: TypeAlias = Sequence[Integer] | NDArray[np.integer]
     Reals: TypeAlias = Sequence[Real] | Array
 else:
-    # What help() shows: shorter, and without NumPy's types beside every number.
+    # The types that help() shows: shorter, and without NumPy's types beside every number.
     Integer, Real, Array, Integers, Reals = int, float, np.ndarray, Sequence[int], Sequence[float]
 
 

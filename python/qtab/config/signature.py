@@ -18,8 +18,8 @@ not apply to the choices made raises an error."""
 def with_settings(function: F) -> F:
     """Shows the settings that a function takes as ``**settings: Unpack[...]`` in its signature and its docstring.
 
-    Type checkers read the annotation. At run time ``inspect.signature`` reports each setting as a
-    keyword-only parameter with its type and default, and the docstring ends with their explanations.
+    Type checkers read the annotation. At run time ``inspect.signature`` reports each setting as a keyword-only
+    parameter with its type and default, and the docstring ends with the explanations.
     """
     signature = inspect.signature(function)
     *parameters, keywords = signature.parameters.values()

@@ -1,4 +1,4 @@
-"""The settings of a config as files hold them."""
+"""The settings of a config as stored in files."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -8,14 +8,14 @@ from qtab.config.config import DEFAULTS, Config
 from qtab.config.options import OPTIONS, SETTINGS, fixed_settings
 
 ADDED = tuple(name for name, setting in SETTINGS.items() if setting.added)
-"""Settings that earlier versions do not have: files hold them only where they differ from their defaults."""
+"""Settings that earlier versions lack: files store them only if they differ from their defaults."""
 
 IMPLIED = ("model",)
-"""Added options of algorithms that earlier versions have: files leave out what these did without the option."""
+"""Options added to algorithms of earlier versions: files omit values that reproduce the earlier behavior."""
 
 
 def stored_settings(config: Config) -> dict[str, Any]:
-    """Returns the settings of a config by name. A function, which no file can hold, is replaced by a word."""
+    """Returns the settings of a config by name. A function, which a file cannot store, is replaced by a word."""
     fields: Mapping[str, Any] = {name: getattr(config, name) for name in DEFAULTS}
     kept = {name: value for name, value in fields.items() if name not in ADDED or value != DEFAULTS[name]}
     for name in IMPLIED:
@@ -33,7 +33,7 @@ def corrected_settings(stored: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def implied_settings(config: Config) -> dict[str, Any]:
-    """Returns the options that a stored config leaves out although they apply."""
+    """Returns the options that a stored config omits although they apply."""
     return {
         name: OPTIONS[name].default
         for name in IMPLIED

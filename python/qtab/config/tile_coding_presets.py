@@ -3,7 +3,7 @@
 from qtab.config.settings import SharedSettings
 
 # Sarsa(λ) on tile coding, as in Sutton & Barto, Example 10.1 and Figure 12.10. It needs no exploration rate: values of
-# 0 are optimistic where every step costs 1.
+# 0 are optimistic if every step costs 1.
 _TILES: SharedSettings = {
     "algorithm": "sarsa_lambda",
     "discretizer": "tiles",
@@ -18,7 +18,7 @@ _TILES: SharedSettings = {
     "initial_q": 0.0,
     "episodes": 2000,
 }
-# Chosen on the seeds 20,000 to 20,199; docs/reference/environments.md reports others.
+# Chosen on the seeds 20,000 to 20,199; docs/reference/environments.md reports results on others.
 SOLVED_MOUNTAIN_CAR: SharedSettings = {
     **_TILES,
     "algorithm": "true_online_sarsa_lambda",
@@ -39,7 +39,7 @@ CONTINUOUS_MOUNTAIN_CAR: SharedSettings = {
     "episodes": 500,
 }
 
-# Chosen on a part of the seeds 20,000 to 20,199; docs/reference/environments.md reports others.
+# Chosen on a part of the seeds 20,000 to 20,199; docs/reference/environments.md reports results on others.
 _TRACES: SharedSettings = {
     **_TILES,
     "algorithm": "true_online_sarsa_lambda",
@@ -48,8 +48,8 @@ _TRACES: SharedSettings = {
     "epsilon_schedule": "linear",
 }
 # While the learning rate is high, the policy now and then loses a rare state near the edge for some episodes. An
-# exponential schedule ends with hundreds of episodes in which it hardly changes any more. Chosen on the seeds 20,100 to
-# 20,499.
+# exponential schedule ends with hundreds of episodes in which the learning rate hardly changes. Chosen on the seeds
+# 20,100 to 20,499.
 SOLVED_CART_POLE: SharedSettings = {
     **_TRACES,
     "tilings": 16,
@@ -80,7 +80,7 @@ PENDULUM: SharedSettings = {
     "episodes": 2000,
 }
 
-# The limits are those of the usual states; the bounds of the space are wider. Chosen on the seeds 20,000 and 20,001.
+# The limits cover the usual states; the bounds of the space are wider. Chosen on the seeds 20,000 and 20,001.
 LUNAR_LANDER: SharedSettings = {
     **_TRACES,
     "tilings": 32,

@@ -1,4 +1,4 @@
-"""The error for a setting that does not exist, which names the one that was probably meant."""
+"""The error for an unknown setting, which suggests the nearest known one."""
 
 import inspect
 from collections.abc import Callable, Collection, Iterable
@@ -19,21 +19,21 @@ _ARGUMENTS = {
     "progress": "verbose progress_bar",
 }
 _OTHER_NAMES = {name: setting.other_names for name, setting in SETTINGS.items()} | _ARGUMENTS
-"""What other libraries and textbooks call the settings and the arguments of the functions."""
+"""The names of the settings and of the functions' arguments in other libraries and textbooks."""
 _STEPS = ("total_timesteps", "n_timesteps", "num_timesteps", "timesteps", "total_steps")
 
 
 def check_names(names: Iterable[str], known: Collection[str], function: str = "train", kind: str = "setting") -> None:
-    """Refuses unknown settings.
+    """Rejects unknown settings.
 
     Args:
-        names: What was given.
+        names: The names given.
         known: The settings, and any other arguments that could have been meant.
         function: The public function whose help lists them.
-        kind: What they are, for the message.
+        kind: The word for them in the message.
 
     Raises:
-        TypeError: names the first unknown setting and, where there is one, the nearest known one.
+        TypeError: names the first unknown setting and, if there is one, the nearest known one.
     """
     for name in names:
         if name not in known:
@@ -41,7 +41,7 @@ def check_names(names: Iterable[str], known: Collection[str], function: str = "t
 
 
 def suggesting(function: Callable[P, T]) -> Callable[P, T]:
-    """Makes a function suggest the argument that was probably meant by an unknown keyword."""
+    """Makes a function suggest the nearest argument for an unknown keyword."""
     known = inspect.signature(function).parameters
 
     @wraps(function)

@@ -1,4 +1,4 @@
-"""The check of a whole config: each setting by itself, and those that limit others."""
+"""The check of a whole config: each setting by itself, and settings that limit others."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -17,11 +17,11 @@ LARGEST_MT19937_SEED = 2**32 - 1
 
 
 def validated(fields: Mapping[str, Any]) -> dict[str, Any]:
-    """Returns the fields of a config, checked. None stays None where it means "not given".
+    """Returns the checked fields of a config. None stays None if it means "not given".
 
     Raises:
         TypeError: for a value of the wrong type.
-        ValueError: for a value that is out of range, or that does not go with another.
+        ValueError: for a value that is out of range, or incompatible with another.
     """
     checked = dict(fields)
     if fields["seed"] is not None and fields["bit_generator"] == "MT19937":

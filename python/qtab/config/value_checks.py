@@ -1,4 +1,4 @@
-"""The checks of the values of settings: bad ones are refused, NumPy's numbers become Python's.
+"""The checks of the values of settings: invalid ones are rejected, and NumPy's numbers converted to Python's.
 
 Each check takes the name of the setting, for the message, and the value. It returns the value as the config stores it.
 It raises TypeError for a value of the wrong type, and ValueError for one that is out of range.
@@ -22,14 +22,14 @@ Check: TypeAlias = Callable[[str, Any], Any]
 
 
 def text(name: str, value: Any) -> str:
-    """Returns a text: an environment id, or the name of a preset."""
+    """Returns a string: an environment id, or the name of a preset."""
     if not isinstance(value, str):
         raise TypeError(f"{name} must be {'an environment id' if name == 'env' else 'a name'}, got {shown(value)}")
     return value
 
 
 def real(low: float, high: float) -> Check:
-    """The check of a number in [``low``, ``high``]."""
+    """Returns the check of a number in [``low``, ``high``]."""
     return lambda name, value: checks.real(name, value, low, high)
 
 
@@ -50,7 +50,7 @@ def not_negative(name: str, value: Any) -> float:
 
 
 def integer(least: int, most: int | None = None) -> Check:
-    """The check of an integer in [``least``, ``most``]."""
+    """Returns the check of an integer in [``least``, ``most``]."""
     return lambda name, value: checks.integer(name, value, least, most)
 
 
@@ -60,7 +60,7 @@ def count(name: str, value: Any) -> int:
 
 
 def choice(name: str, value: Any) -> str:
-    """Returns one of the names that the setting chooses from."""
+    """Returns one of the possible values of the setting."""
     return checks.choice(name, value, CHOICES[name])
 
 
@@ -72,7 +72,7 @@ def keywords(name: str, value: Any) -> dict[str, Any]:
 
 
 def each(check: Check) -> Check:
-    """The check of a number for each component of the observation."""
+    """Returns the check of a number for each component of the observation."""
 
     def checked(name: str, value: Any) -> tuple[Any, ...]:
         if not checks.is_sequence(value):
@@ -91,7 +91,7 @@ def scale(name: str, value: Any) -> tuple[float, ...]:
 
 
 def counts(least: int, most: int) -> Check:
-    """The check of an integer for each component, or of one for all."""
+    """Returns the check of an integer for each component, or of a single one for all."""
 
     def checked(name: str, value: Any) -> tuple[int, ...]:
         numbers: tuple[int, ...] = each(integer(least, most))(name, value if hasattr(value, "__iter__") else (value,))
@@ -165,7 +165,7 @@ def initial_q(name: str, value: Any) -> float | tuple[float, float] | NDArray[np
 
 
 def _holds_numbers(array: NDArray[Any]) -> bool:
-    """Whether NumPy converts an array to floats without a change of meaning, as it would make of texts and dates."""
+    """Whether NumPy converts an array to floats without changing its meaning, as it would for strings and dates."""
     if array.dtype.kind == "O":
         return all(hasattr(part, "__float__") and not isinstance(part, str | bytes) for part in array.flat)
     return array.dtype.kind in "iuf"
