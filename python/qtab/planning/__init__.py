@@ -1,4 +1,4 @@
-"""The best policy of an environment, exact or the best known; the values of policies; dynamic programming by steps."""
+"""The best policy of an environment, exact or the best known; the values of policies; dynamic programming."""
 
 from qtab.planning.expected_updates import ExpectedUpdates
 from qtab.planning.gap import Gap

@@ -1,7 +1,7 @@
-"""The best policy known on the cells of a run: dynamic programming on its task as the discretizer shows it.
+"""The best policy known on the cells of a run: dynamic programming on the task as its discretizer shows it.
 
-All states of a cell are taken for one, whose transitions are the mean of theirs (hard aggregation: D. Bertsekas and
-J. Tsitsiklis, "Neuro-Dynamic Programming", 1996, section 3.1.2).
+All states of a cell are treated as one state, whose transitions are the mean of theirs (hard aggregation: D. Bertsekas
+and J. Tsitsiklis, "Neuro-Dynamic Programming", 1996, section 3.1.2).
 """
 
 import dataclasses
@@ -17,7 +17,7 @@ from qtab.training.run_env import make_run_env
 
 SAMPLES_PER_CELL = 30
 MOST_SAMPLES = 60_000
-"""So many states are sampled, evenly over the range of the states; each is stepped with each action."""
+"""The number of sampled states, evenly spread over the range of the states; each is stepped with each action."""
 
 
 def aggregated_run(run: Run, known: GridEnvironment, axes: tuple[NDArray[np.float64], ...]) -> Run | None:
@@ -25,8 +25,8 @@ def aggregated_run(run: Run, known: GridEnvironment, axes: tuple[NDArray[np.floa
 
     Args:
         run: A run in the environment.
-        known: What is known of the environment.
-        axes: The coordinates of a grid over its states, for their range.
+        known: The description of the environment.
+        axes: The coordinates of a grid over the environment's states, which define their range.
     """
     if not isinstance(run.discretizer, Rounding | Edges) or run.tables.shape[1] > MOST_SAMPLES:
         return None
@@ -36,7 +36,7 @@ def aggregated_run(run: Run, known: GridEnvironment, axes: tuple[NDArray[np.floa
 
 
 def _action_values(run: Run, known: GridEnvironment, axes: tuple[NDArray[np.float64], ...]) -> NDArray[np.float64]:
-    """Returns (rows, actions): the undiscounted values with as many steps to go as the time limit has."""
+    """Returns (rows, actions): the undiscounted values with all steps of the time limit to go."""
     shape = run.tables.shape[1:]
     count = min(SAMPLES_PER_CELL * shape[0], MOST_SAMPLES)
     states = even_points([axis[0] for axis in axes], [axis[-1] for axis in axes], count)
@@ -59,7 +59,7 @@ def _action_values(run: Run, known: GridEnvironment, axes: tuple[NDArray[np.floa
 
 
 def _steps(run: Run, states: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.bool_]]:
-    """Steps each state with each action; returns (states * actions,) rows, rewards, and whether the episode ends."""
+    """Steps each state with each action. Returns (states * actions,) rows, rewards, and whether the episode ends."""
     env = make_run_env(run.config)
     try:
         env.reset(seed=0)
@@ -69,7 +69,7 @@ def _steps(run: Run, states: NDArray[np.float64]) -> tuple[NDArray[np.int64], ND
             for action in run.actions.take(np.arange(run.tables.shape[-1])):
                 plain.state = np.array(state)
                 if hasattr(plain, "steps_beyond_terminated"):
-                    plain.steps_beyond_terminated = None  # what CartPole remembers of an episode that has ended
+                    plain.steps_beyond_terminated = None  # CartPole sets it when an episode has ended
                 observation, reward, ended, _, _ = plain.step(action)
                 observations.append(observation)
                 rewards.append(float(reward))

@@ -17,19 +17,19 @@ from qtab.results.run import Run
 from qtab.training.evaluate import evaluate
 
 EVALUATION_EPISODES = 1000
-"""The return of a greedy policy is estimated from this many episodes, with seed 0."""
+"""The number of episodes, with seed 0, from which the return of a greedy policy is estimated."""
 KEPT_SEARCHES = 2
-"""The results of so many searches are kept, about 50 MB each: ``gap`` after ``optimum`` need not search again."""
+"""The number of cached searches, about 50 MB each: ``gap`` after ``optimum`` need not search again."""
 
 
 def search_grid(
     env: Any, known: GridEnvironment, max_episode_steps: int, on_values: Callable[[], None]
 ) -> tuple[_core.GridSearch, Search]:
-    """Searches the best policy of an environment, or returns what the same search found before.
+    """Searches for the best policy of an environment, or returns the cached result of the same search.
 
     Args:
         env: The environment, unwrapped.
-        known: How it is searched.
+        known: The description of the environment, with the parameters of the search.
         max_episode_steps: The time limit in steps.
         on_values: Called between the two stages, when the values on the grid are known.
 
@@ -61,7 +61,7 @@ def _values(
 
 @lru_cache(KEPT_SEARCHES)
 def _episodes(searched: _core.GridSearch, known: GridEnvironment) -> Search:
-    """Follows the policy from each start state, and searches a better route where there is a goal."""
+    """Follows the policy from each start state, and searches for a better route if there is a goal."""
     starts = known.starts
     greedy = searched.rollouts(starts)
     routes: list[NDArray[np.uint8] | None] = [None] * len(starts)
@@ -99,11 +99,11 @@ class GridSolver:
         return (self._known.observation_length,)
 
     def in_rows(self, observation: Any) -> Any:
-        """Returns the observation, which is of a Box."""
+        """Returns the observation unchanged, as it is from a Box."""
         return observation
 
     def action(self, observation: ArrayLike, steps_taken: int) -> Any:  # noqa: ARG002 - see needs_step_count
-        """Returns the best action: an integer, or of Pendulum a (1,) float32 torque.
+        """Returns the best action: an integer, or for Pendulum a (1,) float32 torque.
 
         Raises:
             ValueError: if the observation has another shape, or is not finite.
@@ -116,7 +116,7 @@ class GridSolver:
 
     @property
     def has_continuous_actions(self) -> bool:
-        """Whether its actions are some of a Box, as Pendulum's torques."""
+        """Whether the actions are chosen from a Box, such as Pendulum's torques."""
         return len(self._torques) > 0
 
     def greedy_return(self, run: Run) -> tuple[float, float]:

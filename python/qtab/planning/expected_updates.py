@@ -1,4 +1,4 @@
-"""Planning by expected updates of single state-action pairs, and how they are distributed."""
+"""Planning by expected updates of single state-action pairs, and the distributions of these updates."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -16,17 +16,17 @@ from qtab.planning.table import opened_table
 class ExpectedUpdates:
     """Q(s, a) ← Σ p (r + γ max Q(s', ·)) for one state-action pair after another, from values of 0.
 
-    Sutton & Barto, 2nd ed., section 8.6. The random numbers are those of ``np.random.default_rng(seed)``: of each
-    simulated step those of the policy, then that of the transition; of each episode first that of its first state.
+    Sutton & Barto, 2nd ed., section 8.6. The random numbers are those of ``np.random.default_rng(seed)``: for each
+    simulated step those of the policy, then that of the transition; for each episode first that of its initial state.
 
     Args:
         env: A Gymnasium id, an ``EnvSpec`` or an environment with a transition table, which is neither stepped nor
             closed.
-        distribution: Which pairs are updated: with ``"uniform"`` all of them in turn, the actions of state 0 first;
-            with ``"on_policy"`` those that occur in simulated episodes under the ε-greedy policy, whose ties are
-            broken at random.
+        distribution: The pairs to update: ``"uniform"`` updates all in turn, the actions of state 0 first;
+            ``"on_policy"`` those that occur in simulated episodes under the ε-greedy policy, whose ties are broken at
+            random.
         discount: The discount, in [0, 1].
-        epsilon: ε of that policy, in [0, 1]; ignored with ``"uniform"``.
+        epsilon: ε of the ε-greedy policy, in [0, 1]; ignored with ``"uniform"``.
         seed: The seed of the simulated episodes.
         env_kwargs: Keyword arguments of the environment's constructor, with an id or a spec.
 
@@ -58,7 +58,7 @@ class ExpectedUpdates:
         """Makes more updates.
 
         Raises:
-            OverflowError: if a value exceeds the range of float64; the updates before are kept.
+            OverflowError: if a value exceeds the range of float64; the earlier updates are kept.
             TypeError: if the number is not an integer.
             ValueError: if it is negative.
         """
@@ -71,9 +71,9 @@ class ExpectedUpdates:
         return values[: int(np.prod(self._shape))].reshape(self._shape)
 
     def greedy_return(self) -> float:
-        """Returns the expected discounted return of the greedy policy: of several best actions it takes the first.
+        """Returns the expected discounted return of the greedy policy. Ties go to the first action.
 
-        It is exact up to rounding errors.
+        The return is exact up to rounding errors.
 
         Raises:
             OverflowError: if it exceeds the range of float64.

@@ -1,4 +1,4 @@
-"""``qtab.Gap``: how far a run falls short of the optimum."""
+"""``qtab.Gap``: the shortfall of a run from the optimum."""
 
 from dataclasses import dataclass
 from typing import Generic, TypeVar
@@ -10,13 +10,13 @@ from qtab._utils import html
 from qtab._utils.fields import with_fields
 
 Number = TypeVar("Number", float, NDArray[np.float64])
-"""A float for one run, (runs,) float64 for many."""
+"""A float for one run, (runs,) float64 for several."""
 
 
 @with_fields
 @dataclass(frozen=True, eq=False, repr=False)
 class Gap(Generic[Number]):
-    """The expected return of the optimum, the returns of a run, and how much these fall short of it."""
+    """The expected return of the optimum, the returns of a run, and their shortfalls."""
 
     optimum: float
     """The expected return of the optimum."""
@@ -25,12 +25,12 @@ class Gap(Generic[Number]):
     greedy_return: Number
     """The expected return of the run's greedy policy under the time limit; NaN if its Q tables were not kept."""
     standard_error: Number
-    """The standard error of ``greedy_return``; 0 where that was computed exactly, from a transition table."""
+    """The standard error of ``greedy_return``; 0 if that was computed exactly, from a transition table."""
     label: str = "optimum"
-    """``"optimum"``, or ``"best known"`` where the optimum is not proven."""
+    """``"optimum"``, or ``"best known"`` if the optimum is not proven."""
     attainable: float | None = None
-    """The return of the best policy known with the run's table, whose cells join states, or which does not count the
-    steps taken; None where it is not known. A lower bound: a better one may exist."""
+    """The return of the best policy known with the run's table, whose cells join states, or which does not include the
+    steps taken; None if it is not known. A lower bound: a better policy may exist."""
 
     @property
     def final(self) -> Number:
@@ -44,16 +44,16 @@ class Gap(Generic[Number]):
 
     @property
     def approximation(self) -> float | None:
-        """The optimum minus ``attainable``: at most so much of the gap is what the table costs, not the learning."""
+        """The optimum minus ``attainable``: an upper bound on the part of the gap due to the table, not to learning."""
         return None if self.attainable is None else self.optimum - self.attainable
 
     @property
     def learning(self) -> Number | None:
-        """``attainable`` minus ``greedy_return``: what learning has not reached yet, at least."""
+        """``attainable`` minus ``greedy_return``: a lower bound on the part of the gap due to learning."""
         return None if self.attainable is None else self.attainable - self.greedy_return
 
     def __repr__(self) -> str:
-        """One line, of many runs with their means."""
+        """A one-line summary; for several runs, with their means."""
         count = f" of {np.size(self.final_return)} runs" if np.ndim(self.final_return) else ""
         return f"<Gap{count}: {self}>"
 
@@ -88,6 +88,6 @@ class Gap(Generic[Number]):
 
 
 def _shown(value: float | NDArray[np.float64]) -> str:
-    """A number; of many runs the mean and the range."""
+    """A number; for several runs, the mean and the range."""
     mean = f"{float(np.mean(value)):.4g}" if np.size(value) else "-"
     return f"{mean} ({np.min(value):.4g} to {np.max(value):.4g})" if np.size(value) > 1 else mean

@@ -1,4 +1,4 @@
-"""The environments of classic control whose best known policy is found on a grid over their states."""
+"""The environments of classic control whose best known policies are found on a grid over their states."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -18,25 +18,25 @@ class GridEnvironment:
     name: str
     """Its name in Rust."""
     classes: tuple[type, ...]
-    """Gymnasium's class and ours."""
+    """The classes of Gymnasium and of qtab."""
     starts: NDArray[np.float64]
     """(starts, components): states that cover Gymnasium's range of start states evenly."""
     state_of: Callable[[NDArray[np.float64]], NDArray[np.float64]]
-    """The components of the state that an observation shows."""
+    """Maps the components of an observation to those of the state."""
     observations_of: Callable[[NDArray[np.float64]], NDArray[np.float32]]
-    """(n, components) states as (n, components) observations."""
+    """Maps (n, components) states to (n, components) observations."""
     observation: str
-    """What an observation is, for messages."""
+    """The description of an observation, for messages."""
     observation_length: int
-    """The number of its components."""
+    """The number of components of an observation."""
     beam: int = 0
-    """How many states the search for a route keeps after each step; 0 where there is no goal."""
+    """The number of states that the search for a route keeps after each step; 0 if there is no goal."""
     starts_at_rest: bool = False
-    """Whether the starts are given as their first component alone."""
+    """Whether only the first component of each start is given."""
     flags: Mapping[str, Any] = field(default_factory=dict)
-    """The value of each attribute of two values that Rust calls true."""
+    """The value that means true in Rust, for each attribute with two possible values."""
     fixed: Mapping[str, Any] = field(default_factory=dict)
-    """Constants that the search takes for granted."""
+    """Constants whose values the search assumes."""
 
 
 def even_points(low: ArrayLike, high: ArrayLike, count: int) -> NDArray[np.float64]:
@@ -136,5 +136,5 @@ ENVIRONMENTS = (
 
 
 def grid_environment(env: Any) -> GridEnvironment | None:
-    """Returns how the best policy of an environment is searched; None for an environment of another class."""
+    """Returns the parameters of the search for the best policy; None for an environment of any other class."""
     return next((known for known in ENVIRONMENTS if type(env) in known.classes), None)

@@ -34,14 +34,14 @@ class Solver(Protocol):
 
     @property
     def has_continuous_actions(self) -> bool:
-        """Whether its actions are some of a Box, as Pendulum's torques."""
+        """Whether the actions are chosen from a Box, such as Pendulum's torques."""
 
     @property
     def observation_shape(self) -> tuple[int, ...]:
         """The shape of an observation."""
 
     def in_rows(self, observation: Any) -> Any:
-        """Returns n observations of a Tuple space as one array; any other observation as it is."""
+        """Returns n observations of a Tuple space as one array; any other observation unchanged."""
 
     def action(self, observation: ArrayLike, steps_taken: int) -> int:
         """Returns the best action after a number of steps of the episode."""
@@ -50,7 +50,7 @@ class Solver(Protocol):
         """Returns the expected return of a run's greedy policy, and its standard error."""
 
     def attainable_return(self, run: Run) -> float | None:
-        """Returns the return of the best policy known with the table of a run; None where none is known."""
+        """Returns the return of the best policy known with the table of a run; None if none is known."""
 
 
 @with_fields
@@ -63,7 +63,7 @@ class Optimum:
     env_kwargs: Mapping[str, Any]
     """Keyword arguments of the environment's constructor."""
     max_episode_steps: int
-    """The time limit that ``expected_return`` assumes; 10,000, as in training, where the environment has none."""
+    """The time limit that ``expected_return`` assumes; 10,000, as in training, if the environment has none."""
     method: str
     """``"finite_horizon"``, ``"value_iteration"``, ``"policy_iteration"`` or ``"search"``."""
     exact: bool
@@ -72,19 +72,20 @@ class Optimum:
     """The discount of ``values``, ``q_values`` and ``policy``; 1 means no discount."""
     values: NDArray[np.float64]
     """(*cells,): the optimal state values, in the shape of a run's Q table without its last axis; for ``"search"`` on
-    the grid of ``search.axes``, of CartPole with a discount of 0.99. Where an observation hides part of the state, such
-    as whether Taxi's fickle passenger will change the destination, the values are those at the start of an episode."""
+    the grid of ``search.axes``, and for CartPole with a discount of 0.99. If an observation hides part of the state,
+    such as whether Taxi's fickle passenger will change the destination, the values are those at the start of an
+    episode."""
     q_values: NDArray[np.float64]
     """(*cells, actions): the optimal action values."""
     policy: NDArray[np.int64]
-    """(*cells,): the best action; for ``"finite_horizon"`` at the start of an episode. Of Pendulum the number of one of
-    21 torques, equally spaced from the lowest to the highest."""
+    """(*cells,): the best action; for ``"finite_horizon"`` at the start of an episode. For Pendulum, the index of one
+    of 21 torques, equally spaced from the lowest to the highest."""
     expected_return: float
-    """The undiscounted expected return of the policy from the environment's first states under the time limit: the
-    number to compare a run's returns with."""
+    """The undiscounted expected return of the policy from the environment's initial states under the time limit.
+    Compare a run's returns with this number."""
     reward_threshold: float | None
-    """The return at which Gymnasium considers the environment solved; None where it defines none, or only for another
-    time limit or other keyword arguments."""
+    """The return at which Gymnasium considers the environment solved; None if it defines none, or only for another time
+    limit or other keyword arguments."""
     seconds: float
     """The wall-clock time of the computation."""
     search: Search | None = field(repr=False)
@@ -92,25 +93,25 @@ class Optimum:
     solver: Solver = field(repr=False)
     """The solution behind :meth:`predict` and :meth:`gap`."""
     environment: EnvironmentDescription | None = field(default=None, repr=False)
-    """The environment in detail: what was changed in it after it was made."""
+    """The environment in detail, with the changes made to it after its construction."""
 
     @property
     def config(self) -> Config:
-        """The environment and the time limit as a config, from which it can be made again."""
+        """The environment and the time limit as a config, from which the environment can be made again."""
         config = Config(env=self.env, env_kwargs=self.env_kwargs, max_episode_steps=self.max_episode_steps)
         return copied(config, Origin(self.environment))
 
     @property
     def label(self) -> str:
-        """``"optimum"``, or ``"best known"`` where it is not exact."""
+        """``"optimum"``, or ``"best known"`` if it is not exact."""
         return "optimum" if self.exact else "best known"
 
     @property
     def stationary(self) -> StationaryPolicy | None:
-        """The best policy known that ignores the number of steps taken, as runs without ``time_aware`` learn.
+        """The best policy known that ignores the number of steps taken, as runs without ``time_aware`` do.
 
-        The criterion is the undiscounted return under the time limit. It is searched when it is first read. None for an
-        optimum that was found by search itself, and for tables too large to search within seconds.
+        The criterion is the undiscounted return under the time limit. The search runs when the policy is first read.
+        None for an optimum that was itself found by search, and for tables too large to search within seconds.
         """
         return self.solver.stationary if isinstance(self.solver, TabularSolver) else None
 
@@ -126,8 +127,8 @@ class Optimum:
         Under a finite horizon the best action depends on the steps left. The state is then the number of steps taken in
         the episode; otherwise it is None.
 
-        For n observations, batched as Gymnasium's vector environments do, it returns an array of n actions, and of n
-        states. The actions are (n,) int64, or of Pendulum (n, 1) float32.
+        For n observations, batched as in Gymnasium's vector environments, it returns an array of n actions and one of n
+        states. The actions are (n,) int64, or for Pendulum (n, 1) float32.
 
         Args:
             observation: An observation, or n of them.
@@ -166,14 +167,14 @@ class Optimum:
     @overload
     def gap(self, run: Runs) -> Gap[NDArray[np.float64]]: ...
     def gap(self, run: Run | Runs) -> Gap[float] | Gap[NDArray[np.float64]]:
-        """Returns how far a run, or each of many runs, falls short of the optimum, and how much of that is its table's.
+        """Returns the shortfall of a run, or of each of several runs, from the optimum, and the part due to its table.
 
-        A table may be unable to hold the best policy: its cells join states that need different actions, or it does not
-        count the steps taken. What is best with it is estimated: of cells as dynamic programming finds it where all
-        states of a cell are taken for one, and of a transition table as :attr:`stationary`. Of tile coding, and of more
-        than 60,000 cells, it is not known.
+        A table may be unable to represent the best policy: its cells join states that need different actions, or it
+        does not include the number of steps taken. The best policy with that table is estimated: for cells, by dynamic
+        programming that treats all states of a cell as one; for a transition table, by :attr:`stationary`. For tile
+        coding, and for more than 60,000 cells, it is not known.
 
-        The return of a greedy policy is exact where there is a transition table, else the mean of 1,000 episodes.
+        The return of a greedy policy is exact with a transition table, otherwise the mean of 1,000 episodes.
 
         Raises:
             TypeError: if ``run`` is neither a Run nor Runs.
@@ -194,12 +195,12 @@ class Optimum:
         return Gap(self.expected_return, run.final_returns(), greedy, errors, self.label, attainable)
 
     def _attainable_return(self, run: Run, greedy_returns: ArrayLike) -> float | None:
-        """What the best policy known with the table of a run returns: at least what greedy policies were seen to."""
+        """Returns the return of the best policy known with the table of a run, at least that of its greedy policies."""
         found = self.solver.attainable_return(run)
         return None if found is None else max(found, float(np.max(greedy_returns)))
 
     def check_same_env(self, run: Run | Runs, *, with_limit: bool = True) -> None:
-        """Checks that a run is on the environment of this optimum.
+        """Checks that the environment of a run is that of this optimum.
 
         Args:
             run: The run, or many runs of one config.
@@ -221,7 +222,7 @@ class Optimum:
                 raise ValueError(f"run must be on the environment of this optimum, got another one: {'; '.join(found)}")
 
     def _facts(self, times: str) -> dict[str, str]:
-        """What is printed and what notebooks show, before the time."""
+        """The rows to print or to show in notebooks, without the time."""
         facts = {
             "expected return": f"{self.expected_return:.6g} within {self.max_episode_steps:,} steps",
             "certainty": "exact" if self.exact else "the best known policy, not proven optimal",
@@ -245,7 +246,7 @@ class Optimum:
         return "\n".join([self.env, *(f"  {name:17}{text}" for name, text in lines.items())])
 
     def __repr__(self) -> str:
-        """One line: the values are not shown."""
+        """A one-line summary without the values."""
         return (
             f"<Optimum of {self.env}: {self.label} expected return {self.expected_return:.6g} "
             f"within {self.max_episode_steps:,} steps, by {self.method}>"
@@ -258,7 +259,7 @@ class Optimum:
 
 
 def _each(name: str, values: Any, count: int) -> list[Any]:
-    """Returns one value for each of some observations."""
+    """Returns one value for each of several observations."""
     if values is None:
         return [None] * count
     if np.shape(values) != (count,):
@@ -267,7 +268,7 @@ def _each(name: str, values: Any, count: int) -> list[Any]:
 
 
 def _all_kwargs(env: str, kwargs: Mapping[str, Any]) -> dict[str, Any]:
-    """Returns the keyword arguments and those of the id's spec, sorted by name."""
+    """Returns the keyword arguments, including those of the id's spec, sorted by name."""
     with suppress(gym.error.Error):  # the class of an environment that has no id
         kwargs = {**spec_of(env).kwargs, **kwargs}
     return {name: kwargs[name] for name in sorted(kwargs) if kwargs[name] is not None or name != "render_mode"}

@@ -17,10 +17,10 @@ from qtab.results.run import Run
 RANDOM = "random"
 """The name of the policy that takes every action with the same probability."""
 SUM_TOLERANCE = 1e-9
-"""How far the probabilities of a state may be from a sum of 1, as in transition tables."""
+"""The largest deviation of a state's probabilities from a sum of 1, as in transition tables."""
 
 GivenPolicy: TypeAlias = ArrayLike | Callable[[Any], Any] | Run | Optimum | str
-"""What a policy may be given as; see :func:`probabilities`."""
+"""The accepted forms of a policy; see :func:`probabilities`."""
 
 
 def probabilities(
@@ -31,17 +31,17 @@ def probabilities(
     Args:
         name: The name of the argument, for messages.
         policy: ``"random"`` for equal probabilities; an array (*cells,) of actions or (*cells, actions) of
-            probabilities, where a single axis may take the place of those of the cells; a function from an observation
-            to an action or to (actions,) probabilities; a run, for its greedy policy; or an optimum that does not
-            depend on the steps left.
-        space: The observation space, which only a function needs.
+            probabilities, in which a single axis may replace those of the cells; a function from an observation to an
+            action or to (actions,) probabilities; a run, for its greedy policy; or an optimum that does not depend on
+            the steps left.
+        space: The observation space, needed only for a function.
         cells: The cells of the observations.
         actions: The actions.
 
     Raises:
-        TypeError: if it is none of these.
-        ValueError: if it has the wrong shape, an action that does not exist, a negative probability, or probabilities
-            that do not sum to 1.
+        TypeError: if ``policy`` is none of these.
+        ValueError: for a wrong shape, an action that does not exist, a negative probability, or probabilities that do
+            not sum to 1.
     """
     if isinstance(policy, str):
         return equal_probabilities(name, policy, cells.n_rows, len(actions))
@@ -60,10 +60,10 @@ def probabilities(
 
 
 def equal_probabilities(name: str, policy: str, rows: int, n_actions: int) -> NDArray[np.float64]:
-    """Returns (rows, actions): the policy that has this name, of which there is one.
+    """Returns (rows, actions): the probabilities of the named policy. The only name is ``"random"``.
 
     Raises:
-        ValueError: for another name.
+        ValueError: for any other name.
     """
     if policy != RANDOM:
         raise ValueError(f"{name} must be 'random' or a policy, got {shown(policy)}{did_you_mean(policy, [RANDOM])}")
@@ -133,7 +133,7 @@ def _of_actions(name: str, chosen: NDArray[Any], actions: Actions) -> NDArray[np
 
 
 def refuse_time_aware(name: str, run: Run) -> None:
-    """Refuses a run whose policy depends on the number of steps taken."""
+    """Rejects a run whose policy depends on the number of steps taken."""
     if run.config.time_aware:
         raise ValueError(
             f"{name} must not depend on the number of steps taken, got a run with time_aware=True; "
@@ -169,11 +169,11 @@ def _of_function(
 
 
 def answered(name: str, answer: Any, observation: Any, actions: Actions) -> list[float]:
-    """Returns (actions,): the answer of a function to an observation, an action or probabilities, as probabilities.
+    """Returns (actions,): the probabilities from a function's return value, which is an action or probabilities.
 
     Raises:
-        TypeError: if it does not hold numbers.
-        ValueError: for an action that does not exist, or if it is no distribution over the actions.
+        TypeError: if the value does not hold numbers.
+        ValueError: for an action that does not exist, or probabilities that are not a distribution over the actions.
     """
     first, count = actions.first, len(actions)
     where = f"for the observation {shown(np.asarray(observation).tolist())}"

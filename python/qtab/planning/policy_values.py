@@ -28,22 +28,22 @@ class PolicyValues:
     discount: float
     """The discount of the values; 1 means no discount."""
     values: NDArray[np.float64]
-    """(*cells,): the state values. Where an observation hides part of the state, as Blackjack's naturals, the values
+    """(*cells,): the state values. If an observation hides part of the state, such as Blackjack's naturals, the values
     are those of the state that the observation shows."""
     q_values: NDArray[np.float64]
-    """(*cells, actions): the action values: of each action taken once, and the policy followed from then on."""
+    """(*cells, actions): the action values: each action is taken once, and the policy is followed from then on."""
     probabilities: NDArray[np.float64]
     """(*cells, actions): the policy, as the probabilities of its actions."""
     error: float
-    """A bound of the error of every state value: the largest expected (discounted) sum, over the steps to the end of an
-    episode, of what is left of the Bellman equation and of the rounding errors."""
+    """A bound on the error of every state value: the largest expected (discounted) sum, over the steps to the end of an
+    episode, of the residuals of the Bellman equation and of the rounding errors."""
     expected_return: float
-    """The expected discounted return of an episode from the environment's first states, without a time limit."""
+    """The expected discounted return of an episode from the environment's initial states, without a time limit."""
     solver: _core.MdpSolver = field(repr=False)
-    """The environment behind :attr:`visits`."""
+    """The environment, for :attr:`visits`."""
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
-        """The state values, so that NumPy's functions take the result as an array."""
+        """The state values, so that NumPy's functions accept the result as an array."""
         return np.array(self.values, dtype=dtype, copy=copy) if copy else np.asarray(self.values, dtype=dtype)
 
     @cached_property
@@ -55,7 +55,7 @@ class PolicyValues:
         """
         flat = np.ascontiguousarray(self.probabilities.reshape(-1))
         every = self.solver.expected_visits(flat)
-        # Several states share a row where the observation hides part of the state.
+        # Several states share a row if the observation hides part of the state.
         rows = np.zeros(self.values.size)
         np.add.at(rows, self.solver.rows, every)
         return rows.reshape(self.values.shape)
@@ -71,7 +71,7 @@ class PolicyValues:
         return distribution
 
     def __repr__(self) -> str:
-        """One line: the values are not shown."""
+        """A one-line summary without the values."""
         return (
             f"<PolicyValues of {self.env}: {' x '.join(map(str, self.values.shape))} states, discount "
             f"{self.discount:g}, expected return {self.expected_return:.6g}, error below {self.error:.1g}>"
@@ -99,10 +99,10 @@ def policy_values(
 ) -> PolicyValues:
     """Computes the exact values of a policy by iterative policy evaluation (Sutton & Barto, 2nd ed., section 4.1).
 
-    Where that takes many sweeps, as with episodes of thousands of steps, tables of up to 2,000 states are solved
-    directly. The values are those of episodes without a time limit, up to rounding errors that ``error`` bounds. Every
-    environment with a transition table has them: toy text, :class:`qtab.TabularEnv`, any other environment with ``P``
-    and ``initial_state_distrib``, and Blackjack, whose table follows from its rules.
+    If that takes many sweeps, as with episodes of thousands of steps, tables of up to 2,000 states are solved directly.
+    The values are those of episodes without a time limit, up to rounding errors that ``error`` bounds. They exist for
+    every environment with a transition table: toy text, :class:`qtab.TabularEnv`, any other environment with ``P`` and
+    ``initial_state_distrib``, and Blackjack, whose table follows from its rules.
 
     Args:
         env: A Gymnasium id, an ``EnvSpec`` or an environment, which is neither stepped nor closed.

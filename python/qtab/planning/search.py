@@ -1,4 +1,4 @@
-"""``qtab.planning.search.Search``: what a search found in classic control."""
+"""``qtab.planning.search.Search``: the results of a search in classic control."""
 
 from dataclasses import dataclass
 
@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True, eq=False)
 class Search:
-    """Episodes of the best known policy, and the grid of its values. No episode is proven to be the best one."""
+    """Episodes of the best known policy, and the grid of its values. No episode is proven optimal."""
 
     starts: NDArray[np.float64]
     """(starts,) the start positions of MountainCar; (starts, components) start states of the other environments. They
@@ -18,13 +18,13 @@ class Search:
     returns: NDArray[np.float64]
     """(starts,): the undiscounted return of the episode from each start."""
     routes: tuple[NDArray[np.uint8] | None, ...]
-    """(starts,): the actions from each start, the last of which reaches the goal; None where no route was found, and
-    for CartPole and Pendulum, which have no goal: their episodes follow :meth:`qtab.Optimum.predict`."""
+    """(starts,): the actions from each start, the last of which reaches the goal. None if no route was found, and for
+    CartPole and Pendulum, which have no goal: their episodes follow :meth:`qtab.Optimum.predict`."""
     predict_return: float
-    """The mean return of :meth:`qtab.Optimum.predict` from the same starts. The routes may be a little better."""
+    """The mean return of :meth:`qtab.Optimum.predict` from the same starts. The routes may be slightly better."""
     axes: tuple[NDArray[np.float64], ...]
-    """The coordinates of the grid along each component of a state: of MountainCar position and velocity, of CartPole
-    position, velocity, angle and angular velocity, of Pendulum angle and angular velocity, of Acrobot both angles and
+    """The coordinates of the grid along each component of a state: for MountainCar position and velocity, for CartPole
+    position, velocity, angle and angular velocity, for Pendulum angle and angular velocity, for Acrobot both angles and
     both angular velocities."""
 
     @property

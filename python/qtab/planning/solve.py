@@ -31,7 +31,7 @@ from qtab.training.run_env import make_run_env
 
 SEARCH = "search"
 SEARCH_STAGES = 2
-"""The search first computes values on a grid, then routes."""
+"""The stages of a search: values on a grid, then routes."""
 
 
 @suggesting
@@ -48,20 +48,20 @@ def optimum(
 
     The result is exact for every environment with a transition table: toy text, :class:`qtab.TabularEnv`, any other
     environment with ``P`` and ``initial_state_distrib``, and Blackjack, whose table follows from its rules. For
-    MountainCar, CartPole, Acrobot and Pendulum it is the best known policy: value iteration on a fine grid, and for
-    MountainCar and Acrobot a search over the exact dynamics besides. Each route that it returns reaches the goal, but
-    none is proven to be the shortest. CartPole's never falls, so that no policy returns more.
+    MountainCar, CartPole, Acrobot and Pendulum it is the best known policy: value iteration on a fine grid and, for
+    MountainCar and Acrobot, also a search over the exact dynamics. Each route that it returns reaches the goal, but
+    none is proven to be the shortest. CartPole's policy never falls, so no policy returns more.
 
     Args:
         env: A Gymnasium id, an ``EnvSpec`` or an environment, which is neither stepped nor closed; or a run, whose
             environment, keyword arguments and time limit are used.
         discount: The discount of the values and the policy, in [0, 1]; None means 1, no discount.
-        max_episode_steps: The time limit in steps; None means the environment's own, or 10,000, as in training.
+        max_episode_steps: The time limit in steps; None means the environment's own limit, or 10,000, as in training.
         method: With a transition table, ``"finite_horizon"`` (the default; backward induction over the time limit, so
-            no policy returns more), ``"value_iteration"`` (Sutton & Barto, 2nd ed., eq. 4.10) or
-            ``"policy_iteration"`` (section 4.3). The last two give the best policy that ignores the time limit, and its
-            values; without a discount, policy iteration considers only policies that end the episode, and value
-            iteration those, too, that stay where there are no rewards. For classic control, ``"search"``.
+            no policy returns more), ``"value_iteration"`` (Sutton & Barto, 2nd ed., eq. 4.10) or ``"policy_iteration"``
+            (section 4.3). The last two give the best policy that ignores the time limit, and its values; without a
+            discount, policy iteration considers only policies that end the episode, and value iteration also those that
+            stay in states without rewards. For classic control, ``"search"``.
         env_kwargs: Keyword arguments of the environment's constructor, with an id or a spec.
         progress: Whether to show a progress bar over the stages of the search. None shows one on a terminal or in a
             notebook if it takes more than a second.
@@ -94,7 +94,7 @@ def _optimum_for_run(
 ) -> Optimum:
     config = run.config
     if env_kwargs is not None:
-        raise ValueError(f"env_kwargs must be None with a run, whose own are used, got {shown(env_kwargs)}")
+        raise ValueError(f"env_kwargs must be None with a run, which has its own, got {shown(env_kwargs)}")
     try:
         spec_of_run(config.env)
     except gym.error.Error:
@@ -156,7 +156,7 @@ def _solve_table(env: Any, method: str, discount: float, max_episode_steps: int)
     table = table_of(env)
     cells = table.cells
     solver = TabularSolver(table, method, discount, max_episode_steps)
-    # The first states are those that observations show. Where these hide part of the state, the hidden variants follow.
+    # The first states are those that observations show. If these hide part of the state, the hidden variants follow.
     observed = slice(cells.n_rows)
     return {
         "values": solver.values[observed].reshape(cells.shape),
@@ -190,7 +190,7 @@ def _search_grid(
 
 
 def quick_optimum(config: Config, n_rows: int, n_actions: int) -> Optimum | None:
-    """Returns the optimum of a resolved config's environment; None where no table is known, or it would take a second.
+    """Returns the optimum of a resolved config's environment; None without a known table, or if it takes a second.
 
     Args:
         config: The config.

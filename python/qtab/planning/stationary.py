@@ -1,4 +1,4 @@
-"""The best stationary policy known: one action for each observation, whatever the number of steps taken."""
+"""The best stationary policy known: one action for each observation, independent of the number of steps taken."""
 
 from dataclasses import dataclass
 
@@ -22,9 +22,9 @@ class StationaryPolicy:
 
     @property
     def label(self) -> str:
-        """``"best"``, or ``"best known"`` where it is not proven."""
+        """``"best"``, or ``"best known"`` if it is not proven."""
         return "best" if self.proven else "best known"
 
     def __repr__(self) -> str:
-        """One line: the actions are not shown."""
+        """A one-line summary without the actions."""
         return f"<StationaryPolicy: {self.label} expected return {self.expected_return:.6g}>"

@@ -21,7 +21,7 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Improvement:
-    """A policy that policy iteration went through, and its values."""
+    """A policy from policy iteration, with its values."""
 
     policy: NDArray[np.int64]
     """(*cells,): the action in each state."""
@@ -37,16 +37,16 @@ def policy_evaluation(
     in_place: bool = True,
     env_kwargs: Mapping[str, Any] | None = None,
 ) -> Iterator[FloatArray]:
-    """Yields the values of the states by iterative policy evaluation: at first zeros, then after each sweep, forever.
+    """Yields the state values of iterative policy evaluation: first zeros, then the values after each sweep, forever.
 
-    Sutton & Barto, 2nd ed., section 4.1, equation 4.5. :func:`qtab.policy_values` returns what they converge to.
+    Sutton & Barto, 2nd ed., section 4.1, equation 4.5. :func:`qtab.policy_values` returns the values at convergence.
 
     Args:
         env: A Gymnasium id, an ``EnvSpec`` or an environment with a transition table, which is neither stepped nor
             closed.
         policy: As for :func:`qtab.policy_values`.
         discount: The discount, in [0, 1].
-        in_place: Whether a sweep takes the new values of the states before, instead of the old values of all states.
+        in_place: Whether a sweep uses the new values of the states before, instead of the old values of all states.
         env_kwargs: Keyword arguments of the environment's constructor, with an id or a spec.
 
     Yields:
@@ -72,9 +72,9 @@ def value_iteration(
     in_place: bool = True,
     env_kwargs: Mapping[str, Any] | None = None,
 ) -> Iterator[FloatArray]:
-    """Yields the values of the states by value iteration: at first zeros, then after each sweep, forever.
+    """Yields the state values of value iteration: first zeros, then the values after each sweep, forever.
 
-    Sutton & Barto, 2nd ed., section 4.4, equation 4.10. :func:`qtab.optimum` returns what they converge to, and the
+    Sutton & Barto, 2nd ed., section 4.4, equation 4.10. :func:`qtab.optimum` returns the values at convergence, and the
     policy. The arguments, the arrays and the errors are those of :func:`policy_evaluation`.
     """
     discount, in_place = checks.real("discount", discount, 0.0, 1.0), checks.boolean("in_place", in_place)
@@ -100,16 +100,16 @@ def policy_iteration(
     policy: GivenPolicy = 0,
     env_kwargs: Mapping[str, Any] | None = None,
 ) -> Iterator[Improvement]:
-    """Yields the policies of policy iteration with their values, from the first to the optimal one.
+    """Yields the policies of policy iteration with their values, from the initial to the optimal one.
 
-    Sutton & Barto, 2nd ed., section 4.3. An action is replaced only by one that is better by more than rounding errors;
-    of several best actions, the first is taken.
+    Sutton & Barto, 2nd ed., section 4.3. An action is replaced only if another is better by more than rounding errors.
+    Ties go to the first action.
 
     Args:
         env: As for :func:`policy_evaluation`.
         discount: The discount, in [0, 1].
-        policy: The first policy, as for :func:`qtab.policy_values`, with one action for each state; or the action that
-            it takes everywhere.
+        policy: The initial policy, as for :func:`qtab.policy_values`, with one action for each state; or a single
+            action for all states.
         env_kwargs: Keyword arguments of the environment's constructor, with an id or a spec.
 
     Raises:

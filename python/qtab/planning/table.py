@@ -1,4 +1,4 @@
-"""The transition table of an environment, as planning takes it."""
+"""The transition table of an environment, in the form that planning uses."""
 
 from collections.abc import Iterator, Mapping
 from contextlib import closing, contextmanager
@@ -26,30 +26,30 @@ class Table:
     """The environment's id, or the name of its class."""
     env: gym.Env
     cells: Identity
-    """From observations to rows."""
+    """The discretizer from observations to rows."""
     actions: Actions
     native: _core.NativeEnv
-    """The environment as Rust steps it."""
+    """The environment in Rust."""
     solver: _core.MdpSolver
-    """The Markov decision process. Its first states are those that observations show; where an observation hides part
-    of the state, the hidden variants follow."""
+    """The Markov decision process. Its first states are those that observations show; if an observation hides part of
+    the state, the hidden variants follow."""
 
 
 @contextmanager
 def opened_env(
     env: Any, env_kwargs: Mapping[str, Any] | None, known: str = "an environment id, an EnvSpec or an environment"
 ) -> Iterator[tuple[str, gym.Env]]:
-    """Gives the name of an environment and the environment. One that is made here is closed afterwards.
+    """Yields the name of an environment and the environment, which is closed afterwards if it was made here.
 
     Args:
         env: An id, a spec or an environment.
         env_kwargs: Keyword arguments of the environment's constructor, with an id or a spec.
-        known: What ``env`` can be, for messages.
+        known: The accepted forms of ``env``, for messages.
 
     Raises:
         gymnasium.error.Error: from Gymnasium, for an unknown id.
         TypeError: for an argument of the wrong type.
-        ValueError: for keyword arguments beside an environment.
+        ValueError: for keyword arguments with an environment.
     """
     if isinstance(env, gym.Env):
         if env_kwargs is not None:
@@ -67,13 +67,13 @@ def opened_env(
 
 @contextmanager
 def opened_table(env: str | EnvSpec | gym.Env, env_kwargs: Mapping[str, Any] | None) -> Iterator[Table]:
-    """Gives the table of an environment. One that is made here, from an id or a spec, is closed afterwards.
+    """Yields the table of an environment. An environment made here, from an id or a spec, is closed afterwards.
 
     Raises:
         gymnasium.error.Error: from Gymnasium, for an unknown id.
         TypeError: for an argument of the wrong type.
-        ValueError: for an environment without a table, with a wrapper that may change numbers, or with a table of other
-            states or actions than its spaces.
+        ValueError: for an environment without a table, with a wrapper that may change numbers, or with a table whose
+            states or actions do not fit its spaces.
     """
     with opened_env(env, env_kwargs) as (_, opened):
         yield table_of(opened)
@@ -85,10 +85,10 @@ def has_transition_table(env: Any) -> bool:
 
 
 def check_wrappers(env: gym.Env) -> None:
-    """Checks that what is computed for the unwrapped environment holds for the environment.
+    """Checks that results for the unwrapped environment also hold for the environment.
 
     Raises:
-        ValueError: if it has a wrapper that may change numbers.
+        ValueError: if the environment has a wrapper that may change numbers.
     """
     wrapper = unknown_wrapper(env)
     if wrapper is not None:

@@ -34,8 +34,9 @@ class TabularSolver:
     expected_return: float
     """The undiscounted expected return of the policy under the time limit."""
     policy_changes: tuple[NDArray[np.int64], ...] | None
-    """For a finite horizon (changes,) each: the steps to go, the state, and the action that is best there with as many
-    steps to go or more, until the next change. None where the best action does not depend on the steps to go."""
+    """For a finite horizon, the changes of the policy as three (changes,) arrays: the steps to go, the state, and the
+    action that is best there from that many steps to go on, until the next change. None if the best action does not
+    depend on the steps to go."""
 
     def __init__(self, table: Table, method: str, discount: float, max_episode_steps: int) -> None:
         self.cells, self.actions = table.cells, table.actions
@@ -56,7 +57,7 @@ class TabularSolver:
         return self.cells.low.shape
 
     def in_rows(self, observation: Any) -> Any:
-        """Returns n observations of a Tuple space as one array; any other observation as it is."""
+        """Returns n observations of a Tuple space as one array; any other observation unchanged."""
         return self.cells.in_rows(observation)
 
     def action(self, observation: ArrayLike, steps_taken: int) -> int:
@@ -79,15 +80,15 @@ class TabularSolver:
             return int(self.policy[state])
         steps_to_go, states, actions = self.policy_changes
         remaining = max(self._max_episode_steps - steps_taken, 1)
-        # Sorted by the steps to go: the last change that applies is in force.
+        # Sorted by the steps to go: the last applicable change counts.
         applicable = np.flatnonzero((states == state) & (steps_to_go <= remaining))
         return int(actions[applicable[-1]])
 
     def greedy_return(self, run: Run) -> tuple[float, float]:
-        """Returns the expected return of a run's greedy policy, and 0.0 as its standard error: it is exact.
+        """Returns the expected return of a run's greedy policy, and 0.0 as its standard error, as it is exact.
 
         Raises:
-            ValueError: if the run's Q table has another shape than the environment, or rows that are not its states.
+            ValueError: if the run's Q table does not have the environment's shape, or its rows are not the states.
         """
         cells, steps = run.discretizer, tuple[int, ...]()
         if isinstance(cells, TimeAware):
@@ -105,7 +106,7 @@ class TabularSolver:
         return self._planner.policy_return(policy, self._max_episode_steps), 0.0
 
     def attainable_return(self, run: Run) -> float | None:
-        """Returns the return of the best policy known that counts the steps only if the run's does; None if unknown."""
+        """Returns the return of the best policy known that counts steps only if the run's does; None if unknown."""
         if run.config.time_aware:
             return self.expected_return
         return None if self.stationary is None else self.stationary.expected_return

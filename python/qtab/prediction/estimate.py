@@ -66,25 +66,26 @@ def estimate_values(
     """Estimates the values of a policy from episodes that follow it. This is prediction; :func:`qtab.train` is control.
 
     Environments in Rust run on threads, with any number of seeds, unless the policy is a function of the observations
-    of a Box. One that is stepped in Python takes a single seed.
+    of a Box. An environment stepped in Python takes a single seed.
 
     Args:
         env: An environment's id, its EnvSpec, an environment, or a function that makes one. Its observations are
-            discrete, or a Box with one axis of floats that a discretizer divides.
+            discrete, or a Box with one axis of floats, which a discretizer divides.
         policy: ``"random"`` for equal probabilities; an array (*cells,) of actions or (*cells, actions) of
             probabilities; a function from an observation to an action's number or to (actions,) probabilities; a run,
             for its greedy policy; or an optimum that does not depend on the steps left. Functions, and runs with other
-            cells, choose by the observation itself, not by its cell.
+            cells, choose by the observation, not by its cell.
         method: ``"td"`` is TD(0) (Sutton & Barto, 2nd ed., eq. 6.2), ``"n_step_td"`` eq. 7.2, ``"td_lambda"`` and
             ``"true_online_td_lambda"`` the boxes in sections 12.2 and 12.5, ``"offline_lambda_return"`` eq. 12.4,
             ``"monte_carlo"`` eq. 6.1 and the box in section 5.1, ``"importance_sampling"`` eqs. 5.5 and 5.6,
             ``"batch_td"`` section 6.3. Batch Monte Carlo is ``"monte_carlo"`` without a learning rate.
         episodes: The number of episodes.
-        learning_rate: α, in [0, 2]: the fraction of the error that an update corrects; the active features share it.
-            None takes 1 / n at the n-th visit of a feature, so that Monte Carlo values are averages of returns.
-        learning_rate_schedule: How it falls: ``"linear"`` or ``"exponential"`` over the episodes, or ``"visits"``, as
+        learning_rate: α, in [0, 2]: the fraction of the error that an update corrects, divided among the active
+            features. None means 1 / n at the n-th visit of a feature, so that Monte Carlo values are averages of
+            returns.
+        learning_rate_schedule: ``"linear"`` or ``"exponential"`` over the episodes, ``"constant"``, or ``"visits"``:
             learning_rate / n at the n-th visit of a feature, for methods without traces. None means ``"visits"``
-            without a learning rate, ``"linear"`` with a ``min_learning_rate`` or a ``learning_rate_warm_up``, and else
+            without a learning rate, ``"linear"`` with a ``min_learning_rate`` or a ``learning_rate_warm_up``, otherwise
             ``"constant"``.
         min_learning_rate: The lowest learning rate of a schedule, in [0, learning_rate]; None means 0.
         learning_rate_decay: The factor of ``"exponential"`` after each episode, in [0, 1]; None means 0.999.
@@ -97,27 +98,29 @@ def estimate_values(
         weighted: Whether importance sampling is weighted or ordinary; None means weighted.
         behavior: The policy that chooses the actions, for ``"importance_sampling"``, in the same forms as ``policy``.
             It must be able to take every action that ``policy`` can take.
-        discretizer: How a Box of observations is divided, as in :func:`qtab.train`: cells by ``"round"``, ``"bins"`` or
-            ``"edges"``, or ``"tiles"``. None means that of a run as the policy, or else the environment's own.
-        tilings: Of ``"tiles"``: the number of tilings; None means 8.
-        tiles: Of ``"tiles"``: the number of tiles along each component, or one for all; None means 8.
-        hashed_rows: Of ``"tiles"``: how many weights the tiles share by hashing; None means a weight for each.
-        bins: Of ``"bins"``: the number of bins along each component, or one for all; None means 10.
-        edges: Of ``"edges"``: the inner edges of the cells along each component.
-        scale: Of ``"round"``: the number of cells per unit of each component.
-        low: Of ``"bins"`` and ``"tiles"``: the lower limit of each component; None means that of the space.
-        high: The upper limit of each component.
-        actions: Of a Box of actions: those to choose from, or how many values of each component.
+        discretizer: The discretizer of a Box of observations, as in :func:`qtab.train`: cells by ``"round"``,
+            ``"bins"`` or ``"edges"``, or ``"tiles"``. None uses that of a run as the policy, or else the environment's
+            default.
+        tilings: For ``"tiles"``: the number of tilings; None means 8.
+        tiles: For ``"tiles"``: the number of tiles along each component, or one for all; None means 8.
+        hashed_rows: For ``"tiles"``: the number of weights that the tiles share by hashing; None gives each tile a
+            weight.
+        bins: For ``"bins"``: the number of bins along each component, or one for all; None means 10.
+        edges: For ``"edges"``: the inner edges of the cells along each component.
+        scale: For ``"round"``: the number of cells per unit of each component.
+        low: For ``"bins"`` and ``"tiles"``: the lower limit of each component; None uses that of the space.
+        high: The upper limit of each component, like ``low``.
+        actions: For a Box of actions: the actions to choose from, or the number of values of each component.
         features: None for a table; or (states,) or (states, n_active) integers: the features that are active in each
             state, as :func:`qtab.prediction.state_aggregation` and :func:`qtab.prediction.tile_coding` return them.
         initial_value: The value of every state before the first episode.
-        on_truncation: Where the time limit ends an episode: the returns continue with the value of the last state
-            (``"bootstrap"``), or end there (``"terminate"``).
+        on_truncation: The end of a return at the time limit: it continues with the value of the last state
+            (``"bootstrap"``), or ends there (``"terminate"``).
         bit_generator: The random generator of the policy, ``"PCG64"`` or ``"MT19937"``.
         seeds: The seeds of the runs; an integer N means 0 to N - 1.
-        record: After how many episodes the weights are kept: an integer means each time after so many, a sequence lists
-            the numbers, 0 for those before the first; None means after every episode.
-        max_episode_steps: The time limit in steps; None means the environment's own, or 10,000.
+        record: The numbers of episodes after which the weights are kept: an integer n means every n episodes; a
+            sequence lists the numbers, with 0 for the initial weights; None means after every episode.
+        max_episode_steps: The time limit in steps; None means the environment's own limit, or 10,000.
         env_kwargs: Keyword arguments of the environment's constructor, with an id or a spec.
         threads: The number of threads; None means one per core. It does not change the results.
         progress: Whether to show a progress bar. None shows one on a terminal or in a notebook if the episodes take
@@ -125,7 +128,7 @@ def estimate_values(
 
     Raises:
         gymnasium.error.Error: from Gymnasium, for an unknown id.
-        MemoryError: if what is recorded would take more than half of the machine's memory.
+        MemoryError: if the recorded weights would take more than half of the machine's memory.
         OverflowError: if the values of a run overflow, because ``learning_rate`` or ``trace_decay`` is too large.
         ModuleNotFoundError: if ``progress`` is True and tqdm is not installed.
         TypeError: for an argument of the wrong type.

@@ -1,4 +1,4 @@
-"""``qtab.ValueEstimates``: the estimated values of a policy, for each seed, and how they developed."""
+"""``qtab.ValueEstimates``: the estimated values of a policy, for each seed and over the episodes."""
 
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, field
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 @with_fields
 @dataclass(frozen=True, eq=False, repr=False)
 class ValueEstimates:
-    """The values of a policy as one method estimated them, with one run for each seed."""
+    """The values of a policy as estimated by one method, with one run for each seed."""
 
     env: str
     """The environment's id, or the name of its class."""
@@ -37,24 +37,25 @@ class ValueEstimates:
     seeds: tuple[int, ...]
     """(seeds,): the seed of each run."""
     episodes: NDArray[np.int64]
-    """(points,): after how many episodes the weights were recorded, ascending; the last one is the last episode."""
+    """(points,): the numbers of episodes after which the weights were recorded, ascending; the last one is the last
+    episode."""
     weights: NDArray[np.float64]
-    """(seeds, points, n_weights): the recorded weights: of a table the values themselves."""
+    """(seeds, points, n_weights): the recorded weights, which are the values if the features are a table."""
     rows: NDArray[np.uint32] | None
     """(states, n_active): the active features of each state, whose weights add up to its value; None with tile coding
-    of the observations, whose active tiles they are."""
+    of the observations, whose active tiles are the features."""
     probabilities: NDArray[np.float64] | None
-    """(*cells, actions): the policy that is evaluated; None where it reads the observations of a Box."""
+    """(*cells, actions): the policy that is evaluated; None if it reads the observations of a Box."""
     behavior: NDArray[np.float64] | None
     """(*cells, actions): the policy that chose the actions: the same, except off policy."""
     config: Config | None = field(repr=False, default=None)
-    """The task as a config, by which it can be verified; None for estimates from a file."""
+    """The task as a config, for verification; None for estimates from a file."""
     seconds: float = 0.0
     """The wall-clock time of the computation."""
     discretizer: Discretizer | None = field(repr=False, default=None)
     """Maps observations to states, or to the active features; None for estimates of numbered states from a file."""
     policies: ObservationPolicies | None = field(repr=False, default=None)
-    """The policies that read the observations of a Box, where they are no tables; None for estimates from a file."""
+    """The policies that read the observations of a Box, if they are not tables; None for estimates from a file."""
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -66,7 +67,7 @@ class ValueEstimates:
         if self.probabilities is not None:
             return self.probabilities.shape[:-1]
         if self.discretizer is None or not self.discretizer.has_cells:
-            raise ValueError("the values need cells, which tile coding does not have; value(observation) works")
+            raise ValueError("the values need cells, which tile coding does not have; value(observation) works instead")
         return self.discretizer.shape
 
     @property
@@ -92,8 +93,8 @@ class ValueEstimates:
 
         Raises:
             TypeError: if the observation does not hold numbers (integers for a discrete space).
-            ValueError: if it has another shape than the space, or lies outside the space; or for estimates of numbered
-                states from a file.
+            ValueError: if the observation has another shape than the space, or lies outside it; or for estimates of
+                numbered states from a file.
         """
         if self.discretizer is None:
             raise ValueError("value needs the observations of the states, which are not in the file; values works")
@@ -131,11 +132,11 @@ class ValueEstimates:
         """Returns (seeds, points): the root of the weighted mean of the squared errors over states or observations.
 
         Args:
-            true_values: (*cells,): the true values, such as those of :func:`qtab.policy_values`; with ``observations``
-                (n,) those of the observations, or a function from an observation to its value.
-            weights: (*cells,) or (n,): how much each counts, such as ``state_distribution`` for the value error VE of
-                Sutton & Barto's equation 9.1; None counts all the same.
-            observations: The n observations whose values are compared, where states are not numbered; None means all
+            true_values: (*cells,): the true values, such as those of :func:`qtab.policy_values`; with ``observations``,
+                (n,) true values of these, or a function from an observation to its value.
+            weights: (*cells,) or (n,): the weight of each error, such as ``state_distribution`` for the value error VE
+                of Sutton & Barto's equation 9.1; None means equal weights.
+            observations: The n observations whose values are compared, for states that are not numbered; None means all
                 states.
 
         Raises:
@@ -169,10 +170,10 @@ class ValueEstimates:
         return np.stack(errors, axis=1)
 
     def verify(self, episodes: int | None = None, seed: int | None = None) -> "ValuesVerification":
-        """Estimates again in plain NumPy in Gymnasium's environment, and compares the weights byte for byte.
+        """Repeats the estimate in plain NumPy in Gymnasium's environment, and compares the weights byte for byte.
 
         Args:
-            episodes: How many episodes: one of :attr:`episodes`; None means all.
+            episodes: The number of episodes, one of :attr:`episodes`; None means all.
             seed: One of :attr:`seeds`; None means the first.
 
         Raises:
@@ -185,8 +186,8 @@ class ValueEstimates:
     def plot(self, ax: "Axes | None" = None, *, true_values: ArrayLike | None = None) -> "Axes":
         """Draws the mean values over the states, and returns the axes.
 
-        States of one component are a line with a band of two standard errors to each side; of two or more it is the
-        picture of :func:`qtab.plots.values`. Estimates from a file may not hold the observations of the states: it is
+        States of one component are a line with a band of two standard errors to each side; states of two or more are
+        drawn as in :func:`qtab.plots.values`. Estimates from a file may lack the observations of the states: they are
         then a map of the first two components, with the others at the middle of their range.
 
         Args:
@@ -195,7 +196,7 @@ class ValueEstimates:
 
         Raises:
             ModuleNotFoundError: without matplotlib; the message names the ``pip install``.
-            ValueError: for ``true_values`` of another shape, or beside values that are drawn as a map.
+            ValueError: for ``true_values`` of another shape, or with values that are drawn as a map.
         """
         from qtab.prediction.plot import draw_values
 
@@ -210,7 +211,7 @@ class ValueEstimates:
         )
 
     def _subject(self) -> "Subject":
-        """What :func:`qtab.plots.values` draws."""
+        """The data that :func:`qtab.plots.values` draws."""
         from qtab.prediction.plot import subject_of_values
 
         return subject_of_values(self)
@@ -225,23 +226,23 @@ class ValueEstimates:
 
     @classmethod
     def load(cls, path: Path | str) -> "ValueEstimates":
-        """Reads estimates that :meth:`save` wrote.
+        """Reads estimates written by :meth:`save`.
 
         Raises:
             OSError: if the file is missing or cannot be read.
-            ValueError: if it is not such a file.
+            ValueError: if the file does not hold value estimates.
         """
         return storage.load(cls, path)
 
     def __repr__(self) -> str:
-        """One line: the values are not shown."""
+        """A one-line summary without the values."""
         runs = "1 run" if len(self.seeds) == 1 else f"{len(self.seeds):,} runs"
         size = self._size(" x ")
         episodes = f"{runs} of {self.settings.episodes:,} episodes"
         return f"<ValueEstimates of {self.env}: {self.settings.method}, {size}, {episodes}>"
 
     def _repr_html_(self) -> str:
-        """A table and, where there are states, the mean values, for notebooks."""
+        """A table and, if there are states, the mean values, for notebooks."""
         options = {name: value for name, value in asdict(self.settings).items() if value is not None}
         facts: dict[str, object] = {
             **options,
@@ -262,7 +263,7 @@ class ValueEstimates:
 
 
 def _summed(weights: NDArray[np.float64], active: NDArray[Any]) -> NDArray[np.float64]:
-    """Returns (seeds, ...): the sums of (n_active, ...) weights, from left to right, as the methods add them."""
+    """Returns (seeds, ...): the sums of (n_active, ...) weights, added from left to right as in the methods."""
     total: NDArray[np.float64] = weights[:, active[0]]
     for rows in active[1:]:
         total = total + weights[:, rows]

@@ -17,13 +17,13 @@ def state_aggregation(states: int, size: int) -> Rows:
 
     Args:
         states: The number of states.
-        size: The number of states of a group; the last one may be smaller.
+        size: The number of states in a group; the last group may be smaller.
 
     Returns:
         The group of each state, (states, 1) uint32.
 
     Raises:
-        TypeError: for an argument that is no integer.
+        TypeError: for an argument that is not an integer.
         ValueError: for an argument below 1.
     """
     states, size = checks.count("states", states, least=1), checks.count("size", size, least=1)
@@ -39,13 +39,13 @@ def tile_coding(states: int, width: int, tilings: int = 1, offset: int = 0) -> R
         states: The number of states.
         width: The number of states of a tile.
         tilings: The number of tilings.
-        offset: The number of states by which each tiling is shifted against the one before.
+        offset: The number of states by which each tiling is shifted from the previous one.
 
     Returns:
         The tile of each state in each tiling, (states, tilings) uint32.
 
     Raises:
-        TypeError: for an argument that is no integer.
+        TypeError: for an argument that is not an integer.
         ValueError: for an argument that is too small, or shifts of more than a tile in all.
     """
     states, width = checks.count("states", states, least=1), checks.count("width", width, least=1)
@@ -66,8 +66,8 @@ def feature_rows(features: ArrayLike | None, states: int) -> tuple[Rows, int]:
         states: The number of states.
 
     Raises:
-        TypeError: if they are no integers.
-        ValueError: if they have another shape, or a number that is negative or too large.
+        TypeError: if the features are not integers.
+        ValueError: for another shape, or a number that is negative or too large.
     """
     if features is None:
         return np.arange(states, dtype=np.uint32)[:, None], states

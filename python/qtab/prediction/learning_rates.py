@@ -1,4 +1,4 @@
-"""The learning rate of a prediction: which schedules a method takes, and the checks of their options."""
+"""The learning rate of a prediction: the schedules that a method supports, and the checks of their options."""
 
 from collections.abc import Callable, Mapping
 from typing import Any, get_args
@@ -10,22 +10,22 @@ from qtab.config.options import listed
 from qtab.config.rates import implied_schedule
 
 ONE_STEP_SIZE = ("td_lambda", "true_online_td_lambda")
-"""The methods with traces, which need one step size for all weights."""
+"""The methods with traces, which need a single step size for all weights."""
 AVERAGES_ONLY = ("importance_sampling", "batch_td")
 """The methods without a learning rate."""
 LARGEST = 2.0
-"""The largest learning rate, which several active features share."""
+"""The largest learning rate, which is divided among the active features."""
 
 OPTIONS: Mapping[str, tuple[tuple[str, ...], float]] = {
     "min_learning_rate": (("linear", "exponential", "visits"), 0.0),
     "learning_rate_decay": (("exponential",), 0.999),
     "learning_rate_warm_up": (("linear", "exponential"), 0),
 }
-"""The schedules that an option applies to, and its default there: those of :class:`qtab.Config`."""
+"""The schedules that an option applies to, and its default there, the same as in :class:`qtab.Config`."""
 
 
 def checked_learning_rate(method: str, episodes: int, given: Mapping[str, Any]) -> dict[str, Any]:
-    """Returns the learning rate, its schedule and the options of that, checked; None where one does not apply.
+    """Returns the checked learning rate, its schedule and the schedule's options; None for those that do not apply.
 
     Args:
         method: The method.
@@ -76,15 +76,15 @@ def applied(
     *,
     fill: bool = True,
 ) -> dict[str, Any]:
-    """Returns the options that apply to a choice, checked.
+    """Returns the checked options that apply to a choice.
 
     Args:
         choice: The setting that decides which options apply.
-        chosen: Its value.
+        chosen: The value of that setting.
         options: For each option the values to which it applies, and its default; None if it must be given.
         given: The settings.
-        check: Checks the value of an option, by its name.
-        fill: Whether defaults take the place of options that are not given.
+        check: A function that checks the value of an option, given its name.
+        fill: Whether to fill in defaults for options that are not given.
 
     Raises:
         ValueError: if an option is missing, or given although it does not apply.
@@ -102,7 +102,7 @@ def applied(
 
 
 def rate_settings(given: Mapping[str, Any]) -> dict[str, Any]:
-    """Returns the learning rate of checked settings by the settings of :class:`qtab.Config`, with their defaults."""
+    """Returns the learning rate of checked settings as settings of :class:`qtab.Config`, with their defaults."""
     value = given["learning_rate"]
     return {
         "learning_rate": 1.0 if value is None else value,

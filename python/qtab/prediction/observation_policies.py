@@ -33,7 +33,7 @@ class TablePolicy:
     """(cells, actions), or (1, actions)."""
 
     def spec(self) -> ObservationPolicySpec:
-        """Returns the policy as the extension takes it."""
+        """Returns the policy in the form that the extension reads."""
         return {"type": "table", "probabilities": self.probabilities}
 
 
@@ -45,7 +45,7 @@ class GreedyPolicy:
 
     @property
     def tables(self) -> NDArray[np.float64]:
-        """(tables, rows, actions): the action values, whose sums over tables and active rows are compared."""
+        """The action values, (tables, rows, actions). Their sums over tables and active rows are compared."""
         tables = read_by_policy(self.run.config, self.run.tables)
         if self.run.action_masks is not None:
             masks = self.run.action_masks.reshape(tables.shape[1:])
@@ -53,21 +53,21 @@ class GreedyPolicy:
         return np.ascontiguousarray(tables)
 
     def spec(self) -> ObservationPolicySpec:
-        """Returns the policy as the extension takes it."""
+        """Returns the policy in the form that the extension reads."""
         return {"type": "greedy", "discretizer": self.run.discretizer.spec(), "tables": self.tables}
 
 
 @dataclass(frozen=True, eq=False)
 class FunctionPolicy:
-    """A function from an observation to an action or to the probabilities of all."""
+    """A function from an observation to an action or to the probabilities of all actions."""
 
     name: str
-    """The argument that gave it, for messages."""
+    """The name of the argument, for messages."""
     function: Callable[[Any], Any]
     actions: Actions
 
     def spec(self) -> ObservationPolicySpec:
-        """Returns the policy as the extension takes it."""
+        """Returns the policy in the form that the extension reads."""
         return {
             "type": "function",
             "function": self.function,
@@ -81,19 +81,19 @@ ObservationPolicy: TypeAlias = TablePolicy | GreedyPolicy | FunctionPolicy
 
 @dataclass(frozen=True, eq=False)
 class ObservationPolicies:
-    """The policy that acts, and the one that is evaluated: the same, except off policy."""
+    """The policy that acts, and the policy that is evaluated: the same, except off policy."""
 
     target: ObservationPolicy
     behavior: ObservationPolicy
 
     def spec(self) -> Mapping[str, ObservationPolicySpec | None]:
-        """Returns the policies as the extension takes them."""
+        """Returns the policies in the form that the extension reads."""
         target = None if self.target is self.behavior else self.target.spec()
         return {"target": target, "behavior": self.behavior.spec()}
 
 
 def reads_observations(policy: GivenPolicy, cells: Discretizer) -> bool:
-    """Whether a policy does not choose by the cells of a discretizer, so that it has to read the observations."""
+    """Whether a policy must read the observations, because it does not choose by the cells of a discretizer."""
     if not isinstance(cells, BoxDiscretizer):
         return False
     if not cells.has_cells:
@@ -125,12 +125,12 @@ def observation_policy(
 
     Args:
         name: The name of the argument, for messages.
-        policy: What was given; see :func:`qtab.estimate_values`.
+        policy: The policy given; see :func:`qtab.estimate_values`.
         cells: The discretizer of the values.
         actions: The actions.
 
     Raises:
-        TypeError: if it is no policy.
+        TypeError: if it is not a policy.
         ValueError: if it does not fit the observations or the actions.
     """
     if isinstance(policy, str):

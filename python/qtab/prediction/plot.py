@@ -17,10 +17,10 @@ if TYPE_CHECKING:
 
 
 def subject_of_values(estimates: "ValueEstimates") -> Subject:
-    """Returns what a picture of estimated values shows: tables of one column, which stands for no action.
+    """Returns the subject of a picture of estimated values: tables with a single column, which stands for no action.
 
     Raises:
-        ValueError: for estimates from a file that does not hold how observations are divided.
+        ValueError: for estimates from a file that does not include the discretizer.
     """
     discretizer = estimates.discretizer
     if discretizer is None:

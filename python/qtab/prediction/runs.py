@@ -24,7 +24,7 @@ from qtab.prediction.settings import PredictionSettings
 from qtab.training.resolved_run import ResolvedRun
 
 BYTES_PER_WEIGHT = 8 + 4
-"""What a run in progress keeps for each weight, beside the features: the weight and how often it was updated."""
+"""The memory of a run in progress for each weight, besides the features: the weight and its number of updates."""
 BYTES_OF_METHOD = {
     "td_lambda": 13,
     "true_online_td_lambda": 13,
@@ -33,7 +33,7 @@ BYTES_OF_METHOD = {
     "importance_sampling": 16,
     "batch_td": 32,
 }
-"""What a method adds to that: traces, the last visits, or sums over the visits."""
+"""The additional memory of a method for each weight: traces, the last visits, or sums over the visits."""
 
 
 def run_prediction(
@@ -49,7 +49,7 @@ def run_prediction(
     limit: int,
     progress: bool | None = False,
 ) -> tuple[ValueEstimates, list[tuple[int, Exception]]]:
-    """Runs a prediction; returns the estimates and the runs that failed, whose missing weights are NaN."""
+    """Runs a prediction. Returns the estimates and the runs that failed, whose missing weights are NaN."""
     cells, actions = resolved.discretizer, resolved.actions
     _check_behavior(behavior, settings)
     by_observation = any(reads_observations(one, cells) for one in (policy, behavior) if one is not None)
@@ -112,7 +112,7 @@ def run_prediction(
 
 
 def _check_behavior(behavior: GivenPolicy | None, settings: PredictionSettings) -> None:
-    """Refuses a missing policy that acts, and one for a method that evaluates the policy that acts."""
+    """Rejects a missing ``behavior`` off policy, and a given one for a method that evaluates the policy that acts."""
     off_policy = settings.method == "importance_sampling"
     if behavior is None and off_policy:
         raise ValueError("behavior must be given for method 'importance_sampling', got None")
@@ -159,7 +159,7 @@ def _by_cell(table: NDArray[np.float64] | None, cells: Discretizer) -> NDArray[n
 
 
 def recorded_episodes(record: Any, episodes: int) -> NDArray[np.uint64]:
-    """Returns (points,) uint64: after how many episodes the weights are kept, ascending; always after the last.
+    """Returns (points,) uint64: the ascending numbers of episodes after which the weights are kept, including the last.
 
     Raises:
         TypeError: if ``record`` is not an integer or a sequence of integers.

@@ -1,4 +1,4 @@
-"""How values are estimated: the methods, the options of each, and the checks of their values."""
+"""The settings of an estimate: the methods, the options of each, and the checks of their values."""
 
 import dataclasses
 from collections.abc import Mapping
@@ -35,7 +35,7 @@ _OPTIONS: Mapping[str, tuple[tuple[str, ...], Any]] = {
 @with_fields
 @dataclass(frozen=True)
 class PredictionSettings:
-    """How values are estimated. An option that does not apply to the method is None, and giving it is an error.
+    """The settings of an estimate. An option that does not apply to the method is None, and giving it is an error.
 
     Raises:
         TypeError: for a value of the wrong type.
@@ -50,12 +50,12 @@ class PredictionSettings:
     episodes: int = 100
     """The number of episodes."""
     learning_rate: float | None = None
-    """α: the fraction of the error that an update corrects, in [0, 2]; the active features share it. None takes 1 / n
-    at the n-th visit of a feature, so that Monte Carlo values are averages of returns."""
+    """α: the fraction of the error that an update corrects, in [0, 2], divided among the active features. None means 1
+    / n at the n-th visit of a feature, so that Monte Carlo values are averages of returns."""
     learning_rate_schedule: LearningRateSchedule | None = None
-    """How the learning rate falls: linearly or exponentially over the episodes, or (visits) as learning_rate / n at the
-    n-th visit of a feature. None means visits without a learning rate, linear with a min_learning_rate or a
-    learning_rate_warm_up, and else constant."""
+    """The schedule of the learning rate: constant, linear or exponential over the episodes, or learning_rate / n at the
+    n-th visit of a feature (visits). None means visits without a learning rate, linear with a min_learning_rate or a
+    learning_rate_warm_up, otherwise constant."""
     min_learning_rate: float | None = None
     """The lowest learning rate of a schedule, in [0, learning_rate]."""
     learning_rate_decay: float | None = None
@@ -75,13 +75,13 @@ class PredictionSettings:
     initial_value: float = 0.0
     """The value of every state before the first episode."""
     on_truncation: OnTruncation = "bootstrap"
-    """Where the time limit ends an episode: the returns continue with the value of the last state (bootstrap), or end
-    there (terminate)."""
+    """The end of a return at the time limit: it continues with the value of the last state (bootstrap), or ends there
+    (terminate)."""
     bit_generator: BitGenerator = "PCG64"
     """The random generator of the policy: PCG64 as in np.random.default_rng, or MT19937 as in np.random.seed."""
 
     def __post_init__(self) -> None:
-        """Checks the values, fills in the defaults of options, and turns NumPy's numbers into Python's."""
+        """Checks the values, fills in the defaults of options, and converts NumPy's numbers to Python's."""
         method = checks.choice("method", self.method, METHODS)
         given = vars(self)
         episodes = checks.count("episodes", self.episodes, least=1)
@@ -106,12 +106,12 @@ class PredictionSettings:
         return dataclasses.replace(self, **changes)
 
     def method_spec(self) -> dict[str, Any]:
-        """Returns the method and its options as the extension takes them."""
+        """Returns the method and its options in the form that the extension reads."""
         options = {name: getattr(self, name) for name, (methods, _) in _OPTIONS.items() if self.method in methods}
         return {"type": self.method, **options}
 
     def config(self) -> dict[str, Any]:
-        """Returns the settings of :class:`qtab.Config` for the task. The learning rate is not made from them."""
+        """Returns the settings of :class:`qtab.Config` for the task, without the learning rate."""
         return {
             "algorithm": "q_learning",
             "episodes": self.episodes,

@@ -1,4 +1,4 @@
-"""How value estimates are written to a file, and read again."""
+"""Writing value estimates to a file, and reading them again."""
 
 import json
 from dataclasses import asdict
@@ -21,17 +21,17 @@ if TYPE_CHECKING:
 
 _ARRAYS = ("episodes", "weights")
 _OF_STATES = ("rows", "probabilities", "behavior")
-"""The arrays that there are where the policy and the features are those of numbered states or of cells."""
+"""The arrays present if the policy and the features are those of numbered states or of cells."""
 FORMAT = 1
 OBSERVATIONS_FORMAT = 2
-"""The format of estimates that lack some of these arrays, which earlier versions could not read."""
+"""The format of estimates without some of these arrays, which earlier versions could not read."""
 DISCRETIZER = ("discretizer", "scale", "bins", "edges", "low", "high", "tiles", "tilings", "hashed_rows")
 """The settings of a run from which the discretizer of a Box is restored."""
 
 
 def save(estimates: "ValueEstimates", path: Path | str) -> None:
     """Writes estimates to a file; see :meth:`qtab.ValueEstimates.save`."""
-    # Schedules only where there are any, so that earlier versions can read the others.
+    # Schedules are written only if there are any, so that earlier versions can read the other files.
     settings = {
         name: value
         for name, value in asdict(estimates.settings).items()
@@ -90,7 +90,7 @@ def load(cls: type["ValueEstimates"], path: Path | str) -> "ValueEstimates":
 def _discretizer(about: Any, arrays: Any, n_weights: int) -> Discretizer | None:
     if "discretizer" not in about:
         return None
-    # The scale and the edges are in the file as lists, which the config turns into tuples.
+    # The scale and the edges are lists in the file, which the config converts to tuples.
     config = Config(env=str(about["env"]), **{name: about["discretizer"][name] for name in DISCRETIZER})
     stored = {name.removeprefix("discretizer_"): arrays[name] for name in arrays if name.startswith("discretizer_")}
     return discretizers.restore(config, stored, n_weights)

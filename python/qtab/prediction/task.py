@@ -1,4 +1,4 @@
-"""The task of a prediction: the environment, and how its observations are divided into states or tilings."""
+"""The task of a prediction: the environment, and the division of its observations into states or tilings."""
 
 from collections.abc import Mapping
 from contextlib import closing
@@ -19,13 +19,13 @@ from qtab.training.resolve import resolve
 from qtab.training.resolved_run import ResolvedRun
 
 OF_OBSERVATIONS = (*DISCRETIZER, "actions")
-"""The settings of a run by which observations find their features, and actions their columns."""
+"""The settings of a run that map observations to features, and actions to columns."""
 
 
 def resolve_prediction(
     env: Any, policy: GivenPolicy, settings: PredictionSettings, seed: int, given: Mapping[str, Any]
 ) -> tuple[ResolvedRun, gym.Space[Any] | None]:
-    """Returns the task of a prediction as a run, and its observation space where a function needs it."""
+    """Returns the task of a prediction as a run, and its observation space if a function needs it."""
     brought = _of_policy(policy, given)
     made = env
     if not isinstance(env, gym.Env | str | EnvSpec):
@@ -42,13 +42,13 @@ def resolve_prediction(
         raise ValueError(f"env must have discrete observations or a Box with one axis of floats, got {cells!r}")
     if isinstance(made, gym.Env) or not callable(policy) or isinstance(cells, BoxDiscretizer):
         return resolved, made.observation_space if isinstance(made, gym.Env) else None
-    # A function of the observation has to see observations of the right type.
+    # A function of the observation must receive observations of the right type.
     with closing(gym.make(made, **dict(given.get("env_kwargs", {})))) as again:
         return resolved, again.observation_space
 
 
 def _of_policy(policy: GivenPolicy, given: Mapping[str, Any]) -> dict[str, Any]:
-    """The settings that a policy brings along: a run its actions and, unless one is given, its discretizer."""
+    """Returns the settings that come with the policy: a run's actions and, if none is given, its discretizer."""
     if isinstance(policy, Run):
         config = policy.config
         names = ("shape", *OF_OBSERVATIONS) if given.keys().isdisjoint(DISCRETIZER) else ("actions",)

@@ -29,12 +29,12 @@ class ValuesVerification:
     method: str
     seed: int
     episodes: int
-    """How many episodes were compared."""
+    """The number of episodes that were compared."""
     equal: bool
     """Whether the weights are equal byte for byte."""
 
     def __repr__(self) -> str:
-        """One line."""
+        """A one-line summary."""
         found = "equal" if self.equal else "DIFFERENT"
         compared = f"seed {self.seed}, {self.episodes:,} episodes"
         return f"<ValuesVerification of {self.method} in {self.env}: {compared}, {found}>"
@@ -51,10 +51,10 @@ def verify_values(
     """Compares a run of some estimates with plain NumPy; see :meth:`qtab.ValueEstimates.verify`.
 
     Args:
-        estimates: What to verify.
-        episodes: How many episodes; None means all.
+        estimates: The estimates to verify.
+        episodes: The number of episodes; None means all.
         seed: The seed of the run; None means the first.
-        env: The environment, where it has no id. It is not closed.
+        env: The environment, if it has no id. It is not closed.
     """
     config = estimates.config
     if config is None:

@@ -38,13 +38,13 @@ METHODS: Mapping[str, Callable[[Prediction], None]] = {
 
 
 def estimate(env: gym.Env, config: Config, estimates: "ValueEstimates", episodes: int) -> NDArray[np.float64]:
-    """Returns (n_weights,): the weights after so many episodes.
+    """Returns (n_weights,): the weights after ``episodes`` episodes.
 
     Args:
         env: The environment, with its time limit.
         config: The task, with the seed of the run.
         estimates: The method, the policies and the features.
-        episodes: How many episodes.
+        episodes: The number of episodes.
     """
     prediction = Prediction(env, config, estimates, episodes)
     if episodes:

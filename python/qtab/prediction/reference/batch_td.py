@@ -5,11 +5,11 @@ import numpy as np
 from qtab.prediction.reference.common import Prediction
 
 SETTLED = 1e-12
-"""Values have settled when no error is larger than this fraction of the largest sum of its terms' magnitudes so far."""
+"""Values have settled when no error exceeds this fraction of the largest sum of its terms' magnitudes so far."""
 
 
 def batch_td(prediction: Prediction) -> None:
-    """After each episode, presents all transitions so far again and again until the values settle."""
+    """After each episode, presents all transitions so far repeatedly until the values settle."""
     w = prediction.w
     counts: dict[tuple[int, float, int | None], float] = {}
     visits = np.zeros_like(w)

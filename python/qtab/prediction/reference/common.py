@@ -1,4 +1,4 @@
-"""What all prediction methods share: the task, the policy, and the weights of the values."""
+"""The parts that all prediction methods share: the task, the policy, and the weights of the values."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -36,7 +36,7 @@ class Visit:
 
 
 class ObservedTask(Task):
-    """A task whose last observation can be read."""
+    """A task that keeps its last observation."""
 
     observation: Any
 
@@ -53,7 +53,7 @@ class Prediction:
         self.settings = estimates.settings
         self.task = ObservedTask(env, config, stop_after)
         self.discount = self.settings.discount
-        # Of tile coding the states are numbered in the order of their visits in an episode.
+        # With tile coding, the states are numbered in the order of their visits in an episode.
         self.has_states = estimates.rows is not None
         self.rows: list[list[int]] = [] if estimates.rows is None else estimates.rows.tolist()
         count, n_active = estimates.weights.shape[2], estimates.n_active
@@ -109,14 +109,14 @@ class Prediction:
         return possible[-1]
 
     def state_of(self, rows: Rows) -> int:
-        """Returns the number of a state."""
+        """Returns the number of a state, given its active rows."""
         if self.has_states:
             return rows[0]
         self.rows.append(rows)
         return len(self.rows) - 1
 
     def episodes(self) -> Iterator[Iterator[Visit]]:
-        """Yields the steps of each episode, which are taken as they are asked for."""
+        """Yields the steps of each episode as an iterator, which takes them one by one."""
         if self.task.stop_after == 0:
             return
         for _ in self.task.episodes():

@@ -5,7 +5,7 @@ from qtab.prediction.reference.common import Prediction, Visit
 
 
 def offline_lambda_return(prediction: Prediction) -> None:
-    """After an episode, V(S) <- V(S) + α [G - V(S)] with the λ-returns G from the values before."""
+    """After an episode, V(S) <- V(S) + α [G - V(S)] with the λ-returns G from the values before the updates."""
     trace_decay = required("trace_decay", prediction.settings.trace_decay)
     for episode in prediction.episodes():
         visits = list(episode)
@@ -16,7 +16,7 @@ def offline_lambda_return(prediction: Prediction) -> None:
 def lambda_returns(prediction: Prediction, visits: list[Visit], trace_decay: float) -> list[float]:
     """Returns G = R + γ [(1 - λ) V(S') + λ G'] of each step; with λ = 1 the return.
 
-    A truncated episode continues with the value of its last state.
+    The returns of a truncated episode end with the value of its last state.
     """
     returns: list[float] = []
     for visit in reversed(visits):

@@ -11,9 +11,9 @@ from qtab.reference.observations import discretizer
 from qtab.reference.task import values
 
 Answer: TypeAlias = int | list[float]
-"""An action, for which no number is drawn, or the probabilities of all."""
+"""An action, which is not sampled, or the probabilities of all actions."""
 Policy: TypeAlias = Callable[[Any, list[int]], Answer]
-"""From an observation and its active rows to an answer."""
+"""A function from an observation and its active rows to an answer."""
 
 
 def policy_of(given: ObservationPolicy, env: gym.Env) -> Policy:
