@@ -1,7 +1,7 @@
-//! The learner of an algorithm that the page offers.
+//! The learners of the algorithms that the page offers.
 //!
-//! [`AnyAlgorithm::learner`] would link the learners of all algorithms, and a training loop for each. Here is one loop
-//! for all of them: the module, which a page loads, stays small.
+//! [`AnyAlgorithm::learner`] would link the learners of all algorithms, and a training loop for each. A single loop for
+//! all of them keeps the module, which a page must load, small.
 
 use qtab_core::features::ActiveRows;
 use qtab_core::learners::{
@@ -27,8 +27,8 @@ pub(crate) enum AnyLearner<R: ActiveRows> {
 }
 
 impl<R: ActiveRows> AnyLearner<R> {
-    /// The learner of an algorithm that learns with an agent, whose table has so many rows and actions; `second_table` is
-    /// the other table of Double Q-learning.
+    /// The learner of an algorithm that learns with an agent, for a table with this many rows and actions;
+    /// `second_table` is the other table of Double Q-learning.
     pub(crate) fn new(
         algorithm: AnyAlgorithm,
         (n_rows, num_actions): (usize, usize),

@@ -1,4 +1,5 @@
-//! The values and the policy to compare with: optimal from a transition table, or the best known of `MountainCar`.
+//! The values and the policy to compare a run with: optimal from a transition table, or the best known of
+//! `MountainCar`.
 
 use std::cell::OnceCell;
 
@@ -12,7 +13,7 @@ use crate::plane::Cells;
 use crate::settings::Settings;
 use crate::training::Training;
 
-/// The most backups that are computed: about a tenth of a second.
+/// The largest number of backups: about a tenth of a second.
 const MAX_BACKUPS: u64 = 20_000_000;
 /// The stride of `MountainCar`'s grid of values: 181 × 71 points.
 const STRIDE: usize = 8;
@@ -20,7 +21,7 @@ const STRIDE: usize = 8;
 /// `MountainCar`'s own time limit, for which its values are computed.
 const TIME_LIMIT: u64 = 200;
 
-/// What is known to be good: values for the run's discount.
+/// The optimal or best known values for the run's discount.
 pub(crate) struct Best {
     pub(crate) kind: &'static str,
     pub(crate) values: Vec<f64>,
@@ -29,14 +30,14 @@ pub(crate) struct Best {
     pub(crate) expected_return: Option<f64>,
 }
 
-/// What is computed once for all runs.
+/// The data that is computed once for all runs.
 #[derive(Default)]
 pub(crate) struct Planner {
     mountain_car: OnceCell<Option<GridValues<MountainCar, 2>>>,
 }
 
 impl Planner {
-    /// `None` where nothing is known, or computing it would take too long.
+    /// The best values; `None` if they are not known, or computing them would take too long.
     pub(crate) fn of(&self, training: &Training) -> Option<Best> {
         let Training { environment, settings, cells, .. } = training;
         match environment {
@@ -47,7 +48,8 @@ impl Planner {
     }
 
     fn of_mountain_car(&self, car: MountainCar, settings: &Settings, cells: &Cells) -> Option<Best> {
-        // Its policy reaches the flag from everywhere within the environment's own time limit, so a longer one changes nothing.
+        // The best policy reaches the flag from everywhere within the environment's default time limit, so a longer one
+        // changes nothing.
         if settings.max_episode_steps < TIME_LIMIT {
             return None;
         }

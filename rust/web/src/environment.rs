@@ -7,7 +7,7 @@ use serde_json::Value;
 use crate::grid_world::{GridWorld, MAX_SIDE};
 use crate::json::{integer, numbers};
 
-/// The most outcomes of a transition table.
+/// The largest number of outcomes in a transition table.
 const MAX_OUTCOMES: usize = 100_000;
 
 /// An environment that the page can choose.
@@ -21,11 +21,11 @@ pub(crate) enum Environment {
 pub(crate) struct TableMap {
     pub(crate) mdp: TabularMdp,
     pub(crate) columns: usize,
-    /// Which cells are walls, in which the agent never is.
+    /// Whether each cell is a wall, which the agent never enters.
     pub(crate) walls: Vec<bool>,
 }
 
-/// A range of each component of the observations.
+/// The range of each component of the observations.
 pub(crate) type Bounds = &'static [(f32, f32)];
 
 impl Environment {
@@ -57,7 +57,7 @@ impl Environment {
     }
 }
 
-/// A table as `definitions.py` writes it: `P` with the probabilities by their index.
+/// A table in the form that `definitions.py` writes: `P` refers to the probabilities by index.
 fn table(environment: &Value) -> Result<TableMap, String> {
     let invalid = || "table must hold probabilities, outcomes and initial".to_string();
     let table = environment.get("table").ok_or_else(invalid)?;

@@ -1,9 +1,9 @@
-//! An episode by the greedy policy.
+//! An episode of the greedy policy.
 
 /// The steps of an episode.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Episode {
-    /// The observations, one more than actions: their components one after the other.
+    /// The observations, one more than actions, with their components one after another.
     pub(crate) observations: Vec<f64>,
     pub(crate) actions: Vec<u8>,
     pub(crate) total_reward: f64,
@@ -34,12 +34,12 @@ pub(crate) fn action_value(tables: &[&[f64]], rows: &[u32], num_actions: usize, 
     Some(sum)
 }
 
-/// The mean of the value over the tables: of the scale of a return, unlike the sum.
+/// The mean of the value over the tables, which unlike the sum has the scale of a return.
 pub(crate) fn mean_action_value(tables: &[&[f64]], rows: &[u32], num_actions: usize, action: usize) -> Option<f64> {
     action_value(tables, rows, num_actions, action).map(|sum| sum / tables.len() as f64)
 }
 
-/// The first action of the greatest value.
+/// The first action with the largest value.
 pub(crate) fn greedy_action(tables: &[&[f64]], rows: &[u32], num_actions: usize) -> Option<usize> {
     let mut best = (0, f64::NEG_INFINITY);
     for action in 0..num_actions {

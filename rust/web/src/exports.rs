@@ -1,4 +1,4 @@
-//! What the module exports to JavaScript: memory for a request, and the call.
+//! The functions that the module exports to JavaScript: memory for a request, and the call.
 
 #![expect(unsafe_code, reason = "an exported function needs its name; that two of one name exist is not checked")]
 
@@ -6,7 +6,7 @@ use std::cell::RefCell;
 
 use crate::Playground;
 
-/// The one playground of a module, and its texts.
+/// The only playground of a module, with its request and response.
 #[derive(Default)]
 struct Module {
     playground: Playground,
@@ -18,7 +18,7 @@ thread_local! {
     static MODULE: RefCell<Module> = RefCell::default();
 }
 
-/// Makes room for a request of so many bytes and returns where it goes.
+/// Makes room for a request of `length` bytes and returns its address.
 #[unsafe(no_mangle)]
 pub extern "C" fn request(length: usize) -> *mut u8 {
     MODULE.with_borrow_mut(|module| {
@@ -28,8 +28,8 @@ pub extern "C" fn request(length: usize) -> *mut u8 {
     })
 }
 
-/// Answers the request and returns where the response is: UTF-8 of `response_length` bytes. It and the arrays that it
-/// names stay until the next call.
+/// Answers the request and returns the address of the response: UTF-8 of `response_length` bytes. The response and the
+/// arrays that it names are valid until the next call.
 #[unsafe(no_mangle)]
 pub extern "C" fn call() -> *const u8 {
     MODULE.with_borrow_mut(|Module { playground, request, response }| {

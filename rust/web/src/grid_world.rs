@@ -1,4 +1,4 @@
-//! Grid worlds as they are painted: the transition table of a map. `qtab.book.grid_world` makes the same in Python.
+//! Painted grid worlds: the transition table of a map. `qtab.book.grid_world` makes the same table in Python.
 
 use qtab_core::envs::tabular::{Outcome, TabularMdp};
 use serde_json::Value;
@@ -7,10 +7,10 @@ use crate::json::{integer, shown};
 
 /// The longest side of a grid, in cells.
 pub(crate) const MAX_SIDE: usize = 40;
-/// Up, right, down, left: how the row and the column change.
+/// The changes of row and column for up, right, down, left.
 const MOVES: [(isize, isize); 4] = [(-1, 0), (0, 1), (1, 0), (0, -1)];
 
-/// A map: what its cells are, and what they earn.
+/// A map: the kinds of its cells, and their rewards.
 pub(crate) struct GridWorld {
     rows: usize,
     columns: usize,
@@ -78,12 +78,12 @@ impl GridWorld {
         self.columns
     }
 
-    /// Which cells are walls.
+    /// Whether each cell is a wall.
     pub(crate) fn walls(&self) -> Vec<bool> {
         self.cells.iter().map(|&cell| cell == b'#').collect()
     }
 
-    /// The cell that a move leads to.
+    /// The next cell after a move.
     fn next_cell(&self, cell: usize, (down, right): (isize, isize)) -> usize {
         let (row, column) = (cell / self.columns, cell % self.columns);
         let moved = |index: usize, by: isize, count: usize| index.saturating_add_signed(by).min(count - 1);

@@ -1,7 +1,7 @@
-//! The playground's engine: runs of qtab-core that a page in a browser asks for.
+//! The playground's engine: runs of qtab-core, requested by a page in a browser.
 //!
-//! A request and a response are JSON texts in the memory of the module; see [`Playground::call`]. Nothing that a page can
-//! send panics: what is wrong with a request is the text of an error.
+//! A request and a response are JSON texts in the memory of the module; see [`Playground::call`]. No request can make
+//! it panic: an invalid one returns the text of an error.
 
 mod any_learner;
 mod best;

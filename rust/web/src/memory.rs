@@ -1,16 +1,16 @@
-//! How much memory runs take, which is known before they start: in a browser an allocation that fails would end the module.
+//! The memory of runs, computed before they start: in a browser a failed allocation would end the module.
 
 use qtab_core::learners::AnyAlgorithm;
 use qtab_core::settings::LearningRateSpec;
 
 use crate::settings::{SettingError, Settings};
 
-/// The most memory of a request's runs.
+/// The largest memory of a request's runs.
 const MAX_BYTES: u64 = 512 << 20;
-/// Return, length and end of an episode, as the run keeps them and as a report copies them.
+/// Return, length and end of an episode, in the run and in a report's copy.
 const BYTES_PER_EPISODE: u64 = 2 * (8 + 8 + 1);
 
-/// Refuses runs that would take too much memory.
+/// Rejects runs that would take too much memory.
 pub(crate) fn check(
     settings: &Settings,
     (rows, num_actions): (usize, usize),
@@ -39,7 +39,7 @@ fn needed(settings: &Settings, (rows, num_actions): (u64, u64), seeds: u64) -> u
     (seeds + 1) * run + 2 * 8 * values
 }
 
-/// What an algorithm keeps besides its tables: traces, a model, or the steps that await their updates.
+/// The memory of an algorithm besides its tables: traces, a model, or the steps that wait for their updates.
 fn bytes_of_algorithm(settings: &Settings, values: u64) -> u64 {
     match settings.algorithm {
         AnyAlgorithm::SarsaLambda(_) | AnyAlgorithm::TrueOnlineSarsaLambda { .. } | AnyAlgorithm::WatkinsQLambda(_) => {

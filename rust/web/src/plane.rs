@@ -6,15 +6,15 @@ use crate::environment::{Bounds, Environment};
 use crate::json::{integer, numbers};
 use crate::settings::Discretizer;
 
-/// The most cells along an axis; finer grids are shown at so many points.
+/// The largest number of cells along an axis; finer grids are shown at this many points.
 const MAX_CELLS: usize = 128;
-/// The cells along an axis where the discretizer has none of its own.
+/// The number of cells along an axis if the discretizer has no cells.
 const DEFAULT_CELLS: u32 = 48;
 
 /// The cells of a map, counted row by row from the upper left corner.
 #[derive(Clone, Debug)]
 pub(crate) enum Cells {
-    /// The states of a table, of which some are walls.
+    /// The states of a table, some of which are walls.
     States { columns: usize, walls: Vec<bool> },
     /// Cells of a plane through the observations.
     Plane(Plane),
@@ -27,12 +27,12 @@ pub(crate) struct Plane {
     at: Vec<f64>,
     /// The edges of the columns, ascending.
     pub(crate) x_edges: Vec<f64>,
-    /// The edges of the rows, descending, as the uppermost row comes first.
+    /// The edges of the rows, descending, since the top row comes first.
     pub(crate) y_edges: Vec<f64>,
 }
 
 impl Cells {
-    /// The cells that a request asks for in `map`, or the natural ones.
+    /// The cells that a request specifies in `map`, or the default ones.
     pub(crate) fn new(
         environment: &Environment,
         discretizer: &Discretizer,
@@ -81,7 +81,7 @@ impl Cells {
         self.columns() * self.rows()
     }
 
-    /// The observation in the middle of a cell; `None` for walls and what is no cell.
+    /// The observation in the middle of a cell; `None` for walls and invalid cells.
     pub(crate) fn observation(&self, cell: usize) -> Option<Vec<f64>> {
         match self {
             Self::States { walls, .. } => walls.get(cell).filter(|wall| !**wall).map(|_| vec![cell as f64]),
@@ -98,7 +98,7 @@ impl Cells {
         }
     }
 
-    /// The cell of an observation; what lies outside the plane belongs to the outermost cells.
+    /// The cell of an observation; observations outside the plane belong to the outermost cells.
     pub(crate) fn cell(&self, observation: &[f64]) -> usize {
         match self {
             Self::States { walls, .. } => observation.first().map_or(0, |&state| (state as usize).min(walls.len() - 1)),

@@ -10,7 +10,7 @@ use crate::settings::SettingError;
 use crate::subject::Failure;
 use crate::training::{Position, State, Training};
 
-/// The most work of a call: a tenth of a second or less.
+/// The largest amount of work per call: a tenth of a second or less.
 const MAX_WORK: u32 = 10_000_000;
 
 #[derive(Serialize)]
@@ -24,7 +24,7 @@ struct Advanced {
     done: usize,
 }
 
-/// The response to an inspection of a cell whose updates are not found yet.
+/// The response to an inspection while the updates of the cell are not found yet.
 #[derive(Serialize)]
 struct Replaying {
     state: &'static str,
@@ -39,23 +39,23 @@ pub struct Playground {
 }
 
 impl Playground {
-    /// Answers a request, a JSON object whose member `call` says what to do:
+    /// Answers a request, a JSON object whose member `call` names the action:
     ///
-    /// - `start` makes new runs of an `environment`, `settings` and `seeds`; the first one watches the updates of the cell
-    ///   in `inspect`, or of its first state;
-    /// - `advance` trains them until `work` is done or `episodes` are finished, `step` by one step each;
-    /// - `report` returns what was learned, with `returns`, `map`, `episode` and `best` where these are true;
-    /// - `inspect` returns the last updates of a `cell`, or that it has not found them yet with so much `work`;
-    /// - `table` returns the action values of the run of index `seed`;
+    /// - `start` makes new runs of an `environment`, `settings` and `seeds`; the first one watches the updates of the
+    ///   cell in `inspect`, or of its first state;
+    /// - `advance` trains the runs until `work` is done or `episodes` are finished; `step` advances each by one step;
+    /// - `report` returns the progress, and `returns`, `map`, `episode` and `best` where these are true;
+    /// - `inspect` returns the last updates of a `cell`, or reports that they were not found within `work`;
+    /// - `table` returns the action values of the run with index `seed`;
     /// - `version` returns the version of the package that the module was built from.
     ///
-    /// The response is a JSON object. It has a member `error` where the request was refused.
+    /// The response is a JSON object. If the request was rejected, it has a member `error`.
     pub fn call(&mut self, request: &[u8]) -> String {
         self.arrays.clear();
         self.answer(request).unwrap_or_else(|error| written(&error))
     }
 
-    /// An array of float64 of the last response, by its name: what JavaScript reads by its address.
+    /// An array of float64 from the last response, by its name. JavaScript reads it by its address.
     pub fn floats(&self, name: &str) -> Option<&[f64]> {
         self.arrays.floats(name)
     }

@@ -1,4 +1,4 @@
-//! What a response holds: a JSON object, and arrays that it names by their address.
+//! The contents of responses: a JSON object, and arrays that it names by their addresses.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use crate::updates::{Update, Watch};
 
 /// The longest greedy episode that a page shows, in steps.
 const MAX_SHOWN_STEPS: u64 = 2000;
-/// The action of a cell that has none.
+/// The action of a cell without an action.
 const NO_ACTION: u8 = u8::MAX;
 
 enum Array {
@@ -21,7 +21,7 @@ enum Array {
     U8(Vec<u8>),
 }
 
-/// The arrays of a response by their names. They stay where they are until the next call.
+/// The arrays of a response by their names. They are not moved until the next call.
 #[derive(Default)]
 pub(crate) struct Arrays(Vec<(&'static str, Array)>);
 
@@ -41,7 +41,7 @@ impl Arrays {
         })
     }
 
-    /// `"name": ["type", address, length]` of each array.
+    /// The entry `"name": ["type", address, length]` of each array.
     fn described(&self) -> Described {
         let described = |array: &Array| match array {
             Array::F64(values) => ("f64", values.as_ptr().addr(), values.len()),
@@ -54,7 +54,7 @@ impl Arrays {
 
 type Described = BTreeMap<&'static str, (&'static str, usize, usize)>;
 
-/// Where training is, and what was asked for beside its arrays.
+/// The progress of training, with the requested data besides the arrays.
 #[derive(Serialize)]
 pub(crate) struct Report {
     state: State,
@@ -100,13 +100,13 @@ pub(crate) struct Inspection<'a> {
     arrays: Described,
 }
 
-/// The arrays of a response that holds nothing else.
+/// A response that holds only arrays.
 #[derive(Serialize)]
 pub(crate) struct ArraysAlone {
     arrays: Described,
 }
 
-/// Where training is, with the returns, the map and the greedy episode if asked for.
+/// The progress of training, with the returns, the map and the greedy episode if requested.
 pub(crate) fn report(
     training: &Training,
     best: Option<Best>,
@@ -144,8 +144,8 @@ fn add_returns(training: &Training, done: usize, arrays: &mut Arrays) {
     arrays.add("lengths", Array::I32(lengths));
 }
 
-/// The action values, visits and greedy actions of the cells, by the first run. Of two tables it is the mean, which has
-/// the scale of a return and the same greedy actions as their sum.
+/// The action values, visits and greedy actions of the cells in the first run. With two tables the values are their
+/// mean, which has the scale of a return and the same greedy actions as their sum.
 fn add_map(training: &Training, arrays: &mut Arrays) {
     let run = &training.runs[0].run;
     let (tables, num_actions) = (run.tables(), training.subject.num_actions());
@@ -179,12 +179,12 @@ fn add_map(training: &Training, arrays: &mut Arrays) {
     }
 }
 
-/// A cell or a row as JavaScript reads it; there are far fewer than this type has numbers.
+/// A cell or a row as JavaScript reads it; their numbers always fit.
 fn as_i32(index: usize) -> i32 {
     i32::try_from(index).unwrap_or(i32::MAX)
 }
 
-/// How often each action was taken in a state: with tile coding, the mean over its tiles.
+/// The number of times each action was taken in a state: with tile coding, the mean over its tiles.
 fn count_of(counts: &[i64], rows: &[u32], num_actions: usize) -> Vec<f64> {
     let count = |row: u32, action| counts.get(row as usize * num_actions + action).copied().unwrap_or(0) as f64;
     let mean = |action| rows.iter().map(|&row| count(row, action)).sum::<f64>() / rows.len().max(1) as f64;
@@ -214,7 +214,7 @@ fn current(training: &Training, arrays: &mut Arrays) -> Option<Current> {
     Some(Current { cell, next_action, step: steps, episode_return })
 }
 
-/// The action values, visits and last updates of a cell, by the first run.
+/// The action values, visits and last updates of a cell in the first run.
 pub(crate) fn inspection<'a>(training: &'a Training, cell: usize, arrays: &mut Arrays) -> Inspection<'a> {
     let run = &training.runs[0].run;
     let num_actions = training.subject.num_actions();
@@ -230,7 +230,7 @@ pub(crate) fn inspection<'a>(training: &'a Training, cell: usize, arrays: &mut A
     Inspection { cell, updates, discount: training.settings.discount, arrays: arrays.described() }
 }
 
-/// The action values of a run: of each table, row by row.
+/// The action values of a run, table by table and row by row.
 pub(crate) fn table(training: &Training, index: usize, arrays: &mut Arrays) -> Option<ArraysAlone> {
     let run = &training.runs.get(index)?.run;
     arrays.add("table", Array::F64(run.tables().concat()));

@@ -14,12 +14,12 @@ use crate::updates::Watch;
 pub(crate) struct Progress {
     pub(crate) episode_return: f64,
     pub(crate) steps: i64,
-    /// The action to take next; `None` while the learner still learns from the last step.
+    /// The action to take next; `None` while the learner is still learning from the last step.
     pub(crate) next_action: Option<usize>,
 }
 
 pub(crate) trait Run {
-    /// Trains up to a number of finished episodes, or until so much work is done.
+    /// Trains until `episodes` episodes are finished or this much work is done.
     fn advance(&mut self, episodes: usize, work: u64) -> Result<(), Failure>;
 
     fn episodes(&self) -> &EpisodeLog;
@@ -33,7 +33,7 @@ pub(crate) trait Run {
     /// The unfinished episode, if there is one.
     fn progress(&self) -> Option<Progress>;
 
-    /// What was seen of the updates of a state.
+    /// The watched updates of a state.
     fn watch(&self) -> Option<&Watch>;
 }
 

@@ -1,4 +1,4 @@
-//! What the target of a step is made of, as each algorithm takes it.
+//! The terms of a step's target, for each algorithm.
 
 use qtab_core::features::ActiveRows;
 use qtab_core::learners::{Agent, TraceKind, Traces};
@@ -11,12 +11,12 @@ use crate::updates::{StepEnd, Update, UpdateKind};
 
 /// The value of the next state, before the step.
 enum NextValue {
-    /// The next state is terminal for the learner, or the target is made of more than this step.
+    /// None: the next state is terminal for the learner, or the target spans more than this step.
     None,
     One(f64),
-    /// Of the action that is chosen next.
+    /// One value for each action, chosen by the next action.
     OfAction(Vec<f64>),
-    /// Of the table that is updated.
+    /// One value for each table, chosen by the table that is updated.
     OfTable([f64; 2]),
 }
 
@@ -28,13 +28,13 @@ pub(crate) struct StepTerms<R> {
     end: StepEnd,
     next: NextValue,
     old: f64,
-    /// With traces: those of the active rows after this visit. Dutch ones are known after the step only.
+    /// With traces: the traces of the active rows after this visit. Dutch traces are known only after the step.
     traces: Vec<f64>,
     q_old: Option<f64>,
 }
 
 impl<R: ActiveRows> StepTerms<R> {
-    /// Reads them from a learner, whose tables are complete.
+    /// Reads the numbers from a learner, whose tables are complete.
     pub(crate) fn new(
         learner: &mut AnyLearner<R>,
         (state, action, reward): (R, usize, f64),
@@ -72,7 +72,7 @@ impl<R: ActiveRows> StepTerms<R> {
         let sizes = rows.iter().map(|&row| learning_rate.at(table.weight_index(row, self.action)));
         let learning_rate: f64 = sizes.clone().sum();
         let gain: f64 = sizes.zip(traces).map(|(size, trace)| size * trace).sum();
-        // With several active rows the mean that changes the value as they do.
+        // With several active rows, the trace is the mean that would change the value equally.
         let trace = if learning_rate > 0.0 { gain / learning_rate } else { *traces.first()? };
         let kind = if dutch.is_some() { UpdateKind::DutchTrace } else { UpdateKind::Trace };
         let new = table.value(rows, self.action);
@@ -84,7 +84,7 @@ impl<R: ActiveRows> StepTerms<R> {
 }
 
 impl<R: ActiveRows> AnyLearner<R> {
-    /// Whether a step can update a state that the agent was in before.
+    /// Whether a step can update a state that the agent visited before.
     pub(crate) fn updates_other_states(&self) -> bool {
         matches!(self, Self::NStepSarsa(_) | Self::DynaQ(_) | Self::DynaQPlus(_))
     }
@@ -125,7 +125,7 @@ impl<R: ActiveRows> AnyLearner<R> {
         }
     }
 
-    /// The value of a next state that is not terminal, as the target takes it.
+    /// The value of a nonterminal next state, as used in the target.
     fn next_value(&mut self, next: R) -> NextValue {
         match self {
             Self::NStepSarsa(_) => NextValue::None,
@@ -166,7 +166,7 @@ impl<R: ActiveRows> AnyLearner<R> {
         }
     }
 
-    /// The dutch traces of a pair as the step has left them; `None` with others.
+    /// The dutch traces of a pair after the step; `None` for other traces.
     fn dutch_traces(&self, rows: &[u32], action: usize) -> Option<Vec<f64>> {
         let Self::TrueOnlineSarsaLambda(learner) = self else { return None };
         let trace = |&row: &u32| learner.rule.traces.get(learner.agent.table.weight_index(row, action));

@@ -1,4 +1,4 @@
-//! An environment with its features, behind one type: what runs are made of, and what their values are asked about.
+//! An environment with its features, behind one type: it makes the runs and evaluates their values.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -18,7 +18,7 @@ use crate::settings::{Discretizer, Settings};
 use crate::update_recorder::UpdateRecorder;
 use crate::updates::Watch;
 
-/// Why a run cannot be made, or cannot go on.
+/// The reason why a run cannot be made or continued.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Failure(pub(crate) String);
 
@@ -47,7 +47,7 @@ impl From<TrainingError<Failure>> for Failure {
 pub(crate) trait Numbers: Sized {
     fn numbers(&self) -> Vec<f64>;
 
-    /// `None` where there are not as many.
+    /// The observation with these numbers; `None` if their number is wrong.
     fn of(numbers: &[f64]) -> Option<Self>;
 }
 
@@ -72,7 +72,7 @@ impl Numbers for u32 {
     }
 }
 
-/// A run that has not started, and the state that its environment is in.
+/// A run that has not started, and the state of its environment.
 pub(crate) struct StartedRun {
     pub(crate) run: Box<dyn Run>,
     pub(crate) observation: Box<dyn Fn() -> Option<Vec<f64>>>,
@@ -84,7 +84,7 @@ pub(crate) trait Subject {
 
     fn n_rows(&self) -> usize;
 
-    /// A run with a seed. With `shown`, its visits are counted, and `watch` sees its updates.
+    /// A run with a seed. With `shown`, its visits are counted, and `watch` receives its updates.
     fn run(&self, settings: &Settings, seed: u32, shown: bool, watch: Option<Watch>) -> Result<StartedRun, Failure>;
 
     /// The observation of the first state of a run with a seed.
@@ -93,7 +93,7 @@ pub(crate) trait Subject {
     /// The active rows of an observation; `None` if it is outside the table.
     fn active_rows(&self, observation: &[f64]) -> Option<Vec<u32>>;
 
-    /// An episode by the greedy policy over the sum of the tables, with the first state of the seed's first episode.
+    /// An episode of the greedy policy for the sum of the tables, from the first state of the seed's first episode.
     fn greedy_episode(&self, tables: &[&[f64]], seed: u32, max_steps: u64) -> Option<Episode>;
 }
 
@@ -103,7 +103,7 @@ struct EnvWithFeatures<E, F> {
     n_active: usize,
 }
 
-/// The subject that an environment and its discretizer make; `None` where they do not fit.
+/// The subject of an environment and its discretizer; `None` if they do not fit.
 pub(crate) fn subject(environment: &Environment, discretizer: &Discretizer) -> Option<Box<dyn Subject>> {
     let n_active = discretizer.n_active();
     Some(match (environment, discretizer) {
@@ -197,7 +197,7 @@ where
     }
 }
 
-/// A task that shows the state of its environment after each step.
+/// A task that exposes the state of its environment after each step.
 struct ShownTask<E: Env, F> {
     task: NativeTask<E, F>,
     last_state: Arc<Mutex<Option<E::State>>>,

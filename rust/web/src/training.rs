@@ -1,4 +1,4 @@
-//! Runs that differ in their seeds alone, advanced in turn so that all of them have about as many episodes.
+//! Runs that differ only in their seeds, advanced in turn so that all of them have about the same number of episodes.
 
 use serde::Serialize;
 use serde_json::Value;
@@ -13,16 +13,16 @@ use crate::subject::{Failure, StartedRun, Subject, subject};
 use crate::updates::Watch;
 
 const MAX_SEEDS: usize = 64;
-/// The most episodes of all seeds together: their results take 17 bytes each, and a page copies them.
+/// The largest number of episodes of all seeds together: their results take 17 bytes each, and a page copies them.
 const MAX_TOTAL_EPISODES: usize = 4_000_000;
-/// The parts into which a run is divided, so that its seeds take turns.
+/// The number of parts into which a run is divided, so that the seeds take turns.
 const TURNS: usize = 100;
-/// The first run is watched in one of so many parts, the last one.
+/// The first run is watched in the last of this many parts.
 const LAST_PART: usize = 10;
-/// The most work before another run has its turn.
+/// The largest amount of work before another run has its turn.
 const WORK_OF_A_TURN: u64 = 20_000;
 
-/// What a request started.
+/// The runs of a request.
 pub(crate) struct Training {
     pub(crate) environment: Environment,
     pub(crate) settings: Settings,
@@ -32,7 +32,7 @@ pub(crate) struct Training {
     pub(crate) runs: Vec<StartedRun>,
     /// The cell whose updates the first run watches; `None` if no cell of the map has its first state.
     watched: Option<usize>,
-    /// The first run once more, on its way to the same step while it watches another cell.
+    /// A repetition of the first run up to the same step, which watches another cell.
     replay: Option<Replay>,
 }
 
@@ -41,7 +41,7 @@ struct Replay {
     run: StartedRun,
 }
 
-/// Where training is.
+/// The progress of training.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum State {
@@ -50,7 +50,7 @@ pub(crate) enum State {
     Diverged,
 }
 
-/// Whether a run that is repeated has reached the step of the first one.
+/// Whether a repeated run has reached the step of the first run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Position {
     Reached,
@@ -84,8 +84,8 @@ impl Training {
         Ok(training)
     }
 
-    /// Starts the runs. The first one watches the cell to inspect, or that of its first state, in its last episodes: they
-    /// usually have as many updates as an inspection shows, and watching more of them would slow the run down.
+    /// Starts the runs. The first one watches the cell to inspect, or that of its first state, in its last episodes:
+    /// they usually have as many updates as an inspection shows, and watching more of them would slow the run down.
     fn start(&mut self, inspect: Option<&Value>) -> Result<(), SettingError> {
         let first = self.cells.cell(&self.subject.first_observation(self.seeds[0]));
         let cell = inspect.and_then(|inspect| self.cell_of(inspect)).unwrap_or(first);
@@ -97,20 +97,20 @@ impl Training {
         Ok(())
     }
 
-    /// The cell of `{cell, columns, rows}`, which came from an earlier map; `None` if this one differs.
+    /// The cell of `{cell, columns, rows}` from an earlier map; `None` if this map differs.
     fn cell_of(&self, inspect: &Value) -> Option<usize> {
         let index = |name: &str| integer(inspect.get(name)?, u32::MAX).map(|index| index as usize);
         let same = index("columns") == Some(self.cells.columns()) && index("rows") == Some(self.cells.rows());
         index("cell").filter(|&cell| same && self.watch(cell, 0).is_some())
     }
 
-    /// A watch of a cell from an episode on; `None` if it is not one with action values.
+    /// A watch of a cell from an episode on; `None` if the cell has no action values.
     fn watch(&self, cell: usize, from: usize) -> Option<Watch> {
         let observation = self.cells.observation(cell)?;
         self.subject.active_rows(&observation).map(|rows| Watch::new(rows, from))
     }
 
-    /// The number of finished episodes, the least of all runs.
+    /// The smallest number of finished episodes of all runs.
     pub(crate) fn done(&self) -> usize {
         self.runs.iter().map(|started| started.run.episodes().returns.len()).min().unwrap_or(0)
     }
@@ -125,7 +125,7 @@ impl Training {
         }
     }
 
-    /// Trains the runs in turn, up to a number of episodes or until so much work is done.
+    /// Trains the runs in turn, until `episodes` episodes are finished or this much work is done.
     pub(crate) fn advance(&mut self, episodes: usize, work: u64) -> Result<(), Failure> {
         let episodes = episodes.min(self.settings.episodes);
         let turn = self.settings.episodes.div_ceil(TURNS);
@@ -141,7 +141,7 @@ impl Training {
             let (run, budget) = (&mut next.run, left.min(WORK_OF_A_TURN));
             let steps_before = steps(run.as_ref(), before);
             run.advance(until, budget)?;
-            // What the episodes took if the turn ended with them, else all of the budget.
+            // The steps of the episodes if they ended the turn, otherwise the whole budget.
             let done_after = run.episodes().returns.len();
             let used =
                 if done_after < until { budget } else { steps(run.as_ref(), before).saturating_sub(steps_before) };
@@ -150,7 +150,7 @@ impl Training {
         Ok(())
     }
 
-    /// One step of each run that is not finished.
+    /// Takes one step of each run that is not finished.
     pub(crate) fn step(&mut self) -> Result<(), Failure> {
         for started in &mut self.runs {
             step(started.run.as_mut(), self.settings.episodes)?;
@@ -158,8 +158,8 @@ impl Training {
         Ok(())
     }
 
-    /// Makes the first run watch a cell, by repeating it up to its last step if it has watched another one, or too short a
-    /// time. Nothing that is learned changes.
+    /// Makes the first run watch a cell. If it has watched another one, or not long enough, it is repeated up to its
+    /// last step. The learned values do not change.
     pub(crate) fn inspect(&mut self, cell: usize, work: u64) -> Result<Position, Failure> {
         if self.watched == Some(cell) && self.runs[0].run.watch().is_some_and(Watch::is_complete) {
             return Ok(Position::Reached);
@@ -197,7 +197,7 @@ fn steps(run: &dyn Run, from: usize) -> u64 {
     (finished + run.progress().map_or(0, |progress| progress.steps)) as u64
 }
 
-/// One step of a run. The learner may do it in parts.
+/// Takes one step of a run. The learner may do it in parts.
 fn step(run: &mut dyn Run, episodes: usize) -> Result<(), Failure> {
     let position = |run: &dyn Run| (run.episodes().returns.len(), run.progress().map(|progress| progress.steps));
     let is_unfinished = |run: &dyn Run| run.progress().is_some_and(|progress| progress.next_action.is_none());

@@ -1,4 +1,4 @@
-//! A learner whose updates of a state are watched. It learns the same.
+//! A learner that records the updates of a state. The learned values are unchanged.
 
 use qtab_core::checkpoint::{Checkpoint, CheckpointError};
 use qtab_core::features::ActiveRows;
@@ -12,7 +12,7 @@ use crate::any_learner::AnyLearner;
 use crate::step_terms::StepTerms;
 use crate::updates::{Update, UpdateKind, Watch};
 
-/// A learner, and the state whose updates are watched, if one is.
+/// A learner, and the state whose updates are watched, if any.
 pub(crate) struct UpdateRecorder<R: ActiveRows> {
     learner: TransformedSteps<AnyLearner<R>>,
     watch: Option<Box<Watch>>,
@@ -27,7 +27,7 @@ impl<R: ActiveRows> UpdateRecorder<R> {
         self.watch.as_deref()
     }
 
-    /// Learns from a step, and keeps its updates of the state.
+    /// Learns from a step, and records its updates of the watched state.
     #[cold]
     #[inline(never)]
     fn learn_watched(&mut self, step: (R, usize, f64), next: Next<R>, rng: &mut impl Rng) -> usize {
@@ -36,7 +36,7 @@ impl<R: ActiveRows> UpdateRecorder<R> {
         if !near && !self.learner.learner.updates_other_states() {
             return self.learner.learn(state, action, reward, next, rng);
         }
-        // Traces keep values outside the tables.
+        // Learners with traces keep values outside the tables.
         self.learner.complete_tables();
         let terminate = self.learner.terminate;
         let terms = near.then(|| StepTerms::new(&mut self.learner.learner, step, &next, terminate));
@@ -56,7 +56,7 @@ impl<R: ActiveRows> UpdateRecorder<R> {
         next_action
     }
 
-    /// Keeps the logged updates of the state. The first one is that of a step, if there was one.
+    /// Records the logged updates of the state. The first one is that of a step, if there was one.
     fn keep_logged(&mut self, step: Option<(&StepTerms<R>, usize)>, from_step: bool) {
         let Some(watch) = &mut self.watch else { return };
         let learner = &mut self.learner.learner;

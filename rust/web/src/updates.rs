@@ -1,38 +1,38 @@
-//! The last updates of a state, with the numbers that the learner made them of.
+//! The last updates of a state, with the numbers that the learner used.
 
 use std::collections::VecDeque;
 
 use serde::Serialize;
 
-/// How many updates are kept.
+/// The number of updates that are kept.
 const KEPT: usize = 8;
 
-/// What an update came from.
+/// The source of an update.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum UpdateKind {
     /// A step from the state, whose target is the reward and the discounted value of the next state.
     Target,
-    /// The same, of which all eligible states take their share.
+    /// A step with the same target, whose error updates all eligible states.
     Trace,
-    /// The same with a dutch trace, which also corrects by the value that the step before saw.
+    /// A step with a dutch trace, which also corrects by the value that the previous step used.
     DutchTrace,
-    /// A return of several rewards, of a step some time before.
+    /// The return of several rewards, for an earlier step.
     NStep,
-    /// The model.
+    /// An outcome from the model.
     Planning,
 }
 
-/// What followed the step of an update.
+/// The end of an update's step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum StepEnd {
     Continues,
     Terminal,
     Truncated,
-    /// The time limit ended the episode, and the learner takes the next state as terminal.
+    /// The time limit ended the episode, and the learner treats the next state as terminal.
     TruncatedAsTerminal,
-    /// The update is not that of the step.
+    /// The update does not belong to the step.
     Other,
 }
 
@@ -46,24 +46,24 @@ pub(crate) struct Update {
     pub(crate) episode: usize,
     pub(crate) step: usize,
     pub(crate) action: usize,
-    /// Which table was updated.
+    /// The index of the updated table.
     pub(crate) table: usize,
     pub(crate) old: f64,
     pub(crate) new: f64,
     pub(crate) target: f64,
     /// The learning rate α; `None` if the target replaced the value.
     pub(crate) learning_rate: Option<f64>,
-    /// The reward and the value of the next state in the target, where it is made of these.
+    /// The reward and the value of the next state in the target, if it consists of these.
     pub(crate) reward: Option<f64>,
     pub(crate) next_value: Option<f64>,
     /// The trace z of the value.
     pub(crate) trace: Option<f64>,
-    /// The value of the state as the step before saw it, for dutch traces.
+    /// The value of the state that the previous step used, for dutch traces.
     pub(crate) q_old: Option<f64>,
 }
 
 impl Update {
-    /// An update of the first table, of which no more is known than its equation.
+    /// An update of the first table, of which only the equation is known.
     pub(crate) fn new(
         kind: UpdateKind,
         action: usize,
@@ -91,25 +91,25 @@ impl Update {
     }
 }
 
-/// The state that is watched, and its updates.
+/// The state that is watched, with its updates.
 #[derive(Clone, Debug)]
 pub(crate) struct Watch {
     rows: Vec<u32>,
-    /// The episode, from 0, with which watching begins.
+    /// The first episode that is watched, counted from 0.
     from: usize,
     episode: usize,
-    /// The steps of the episode that have begun.
+    /// The number of steps of the episode that have begun.
     steps: usize,
     updates: VecDeque<Update>,
 }
 
 impl Watch {
-    /// A watch of the state with these active rows, beginning with an episode.
+    /// A watch of the state with these active rows, from an episode on.
     pub(crate) fn new(rows: Vec<u32>, from: usize) -> Self {
         Self { rows, from, episode: 0, steps: 0, updates: VecDeque::with_capacity(KEPT) }
     }
 
-    /// Whether no update is missing that it would have kept had it begun with the first episode.
+    /// Whether all updates were kept that would have been kept when watching from the first episode.
     pub(crate) fn is_complete(&self) -> bool {
         self.from == 0 || self.updates.len() == KEPT
     }
@@ -119,7 +119,7 @@ impl Watch {
         self.updates.iter()
     }
 
-    /// Whether a state is the one that is watched; with tile coding, whether it shares three quarters of its tiles.
+    /// Whether a state is the watched one; with tile coding, whether it shares three quarters of its tiles.
     #[inline]
     pub(crate) fn is_near(&self, state: &[u32]) -> bool {
         let shared = state.iter().zip(&self.rows).filter(|(row, watched)| row == watched).count();
@@ -144,7 +144,7 @@ impl Watch {
         self.steps = 0;
     }
 
-    /// Keeps an update of the step that has begun last.
+    /// Records an update of the step that began last.
     pub(crate) fn push(&mut self, update: Update) {
         if self.updates.len() == KEPT {
             self.updates.pop_front();

@@ -1,4 +1,4 @@
-//! How observations become rows of the table.
+//! The discretizer of a request.
 
 use qtab_core::features::{AnyGrid, Axis, Bins, Edges, MAX_TILINGS, Rounding, TileCoding};
 use qtab_core::settings::SettingSource;
@@ -6,15 +6,15 @@ use qtab_core::settings::SettingSource;
 use super::fields::{Fields, SettingError};
 use crate::environment::Bounds;
 
-/// The most rows of a table.
+/// The largest number of rows of a table.
 const MAX_ROWS: u64 = 1 << 24;
-/// Limits beyond this would overflow float32, in which grids compute.
+/// Larger limits would overflow float32, the precision of grids.
 const LARGEST_LIMIT: f64 = 1e30;
 
 /// A discretizer of the observations, with its features.
 #[derive(Clone, Debug)]
 pub(crate) enum Discretizer {
-    /// The states are numbers.
+    /// States that are already numbers.
     Identity,
     Grid(Grid),
     Tiles {
@@ -46,7 +46,7 @@ impl Discretizer {
         }
     }
 
-    /// How many rows are active at a time.
+    /// The number of rows that are active at a time.
     pub(crate) fn n_active(&self) -> usize {
         if let Self::Tiles { tilings, .. } = self { *tilings } else { 1 }
     }
@@ -92,7 +92,7 @@ fn tiles(fields: &Fields<'_>, bounds: Bounds) -> Result<Discretizer, SettingErro
     Ok(Discretizer::Tiles { features, tilings: tilings as usize, limits })
 }
 
-/// The lower and the upper limit of each component: those that are given, or those of the observation space.
+/// The lower and the upper limit of each component: the given ones, or those of the observation space.
 fn limits(fields: &Fields<'_>, bounds: Bounds) -> Result<Vec<(f64, f64)>, SettingError> {
     let (low, high) = (fields.numbers("low", bounds.len())?, fields.numbers("high", bounds.len())?);
     let mut limits = Vec::new();
@@ -102,7 +102,7 @@ fn limits(fields: &Fields<'_>, bounds: Bounds) -> Result<Vec<(f64, f64)>, Settin
         if !(lower.abs() < LARGEST_LIMIT && upper.abs() < LARGEST_LIMIT) {
             return Err(fields.invalid("low", "given with high, as the observation space has no bounds"));
         }
-        // As float32, in which bins compute, and apart enough for the number of tiles per unit.
+        // Compared as float32, the precision of bins, and far enough apart for the number of tiles per unit.
         if !((lower as f32) < upper as f32 && upper - lower > f64::from(f32::MIN_POSITIVE)) {
             return Err(fields.invalid("low", "below high in each component"));
         }
@@ -117,5 +117,5 @@ fn check_rows(
     mut counts: impl Iterator<Item = u64>,
 ) -> Result<(), SettingError> {
     let rows = counts.try_fold(1_u64, u64::checked_mul).filter(|rows| *rows <= MAX_ROWS);
-    rows.map(|_| ()).ok_or_else(|| fields.invalid(name, &format!("so few that the table has at most {MAX_ROWS} rows")))
+    rows.map(|_| ()).ok_or_else(|| fields.invalid(name, &format!("such that the table has at most {MAX_ROWS} rows")))
 }

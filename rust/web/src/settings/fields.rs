@@ -8,7 +8,7 @@ use serde_json::{Map, Value};
 
 use crate::json::{integer, numbers, shown};
 
-/// What is wrong with the settings, and which one it is.
+/// An error in the settings, and the name of the setting.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct SettingError {
     pub(crate) setting: Option<String>,
@@ -22,7 +22,7 @@ impl From<String> for SettingError {
     }
 }
 
-/// The settings of a request, and which of them were read.
+/// The settings of a request, and the names of those that were read.
 pub(crate) struct Fields<'a> {
     settings: &'a Map<String, Value>,
     used: RefCell<Vec<&'static str>>,
@@ -56,7 +56,7 @@ impl<'a> Fields<'a> {
         }
     }
 
-    /// An integer for each of `count` components, given as such or as one for all.
+    /// An integer for each of `count` components, given as an array or as one number for all.
     pub(crate) fn integers(&self, name: &'static str, count: usize, high: u32) -> Result<Vec<u32>, SettingError> {
         let given = self.any(name)?;
         let given = given.as_array().map_or(std::slice::from_ref(given), Vec::as_slice);
@@ -70,7 +70,7 @@ impl<'a> Fields<'a> {
         Err(self.invalid(name, &format!("{count} integers from 1 to {high}, or one for all")))
     }
 
-    /// Refuses settings that were not read: they do not apply, or do not exist.
+    /// Rejects settings that were not read: they do not apply, or do not exist.
     pub(crate) fn check_all_used(&self) -> Result<(), SettingError> {
         let used = self.used.borrow();
         let unused = self.settings.keys().find(|name| !used.contains(&name.as_str()));

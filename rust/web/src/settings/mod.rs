@@ -1,4 +1,4 @@
-//! The settings of a run, by the names of `qtab.Config`: every one that applies, and no other.
+//! The settings of a run, by their names in `qtab.Config`: all that apply, and no others.
 
 mod discretizer;
 mod fields;
@@ -21,7 +21,7 @@ use crate::json::numbers;
 const MAX_EPISODES: u64 = 1_000_000;
 const MAX_STEPS: u64 = 1_000_000;
 
-/// All of a run but its environment and its seed.
+/// A run without its environment and its seed.
 #[derive(Clone, Debug)]
 pub(crate) struct Settings {
     pub(crate) algorithm: AnyAlgorithm,
@@ -93,7 +93,7 @@ impl Settings {
         if self.mersenne_twister { AgentRng::mt19937(seed) } else { AgentRng::pcg64(&SeedSequence::new(&[seed])) }
     }
 
-    /// The agent before its first episode, and the second table of an algorithm that learns two.
+    /// The agent before its first episode, and the second table if the algorithm learns two.
     pub(crate) fn agent(
         &self,
         (n_rows, num_actions): (usize, usize),

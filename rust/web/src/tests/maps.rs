@@ -1,4 +1,4 @@
-//! What a report shows of the values, beside those that are optimal or best known.
+//! The values in a report, and the optimal or best known values to compare them with.
 
 use super::{ARTICLE, GRID, MOUNTAIN_CAR, call, finish, inspect, of_table, start, table};
 use crate::Playground;
@@ -47,7 +47,7 @@ fn the_best_known_values_of_mountain_car_need_its_time_limit() {
         call(&mut playground, BEST);
         let values = playground.floats("bestValues");
         assert_eq!(values.is_some(), known, "{limit}");
-        // Within 200 steps the flag is reached from everywhere.
+        // The flag is reached from everywhere within 200 steps.
         assert!(values.unwrap_or_default().iter().all(|&value| value > -200.0));
     }
 }

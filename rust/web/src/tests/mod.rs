@@ -1,4 +1,4 @@
-//! Requests as the page makes them, and what must hold for all of them.
+//! Requests like those of the page, and properties that hold for all of them.
 
 mod maps;
 mod parity;
@@ -64,7 +64,7 @@ fn start_inspecting(playground: &mut Playground, environment: &str, settings: &s
     assert_eq!(call(playground, &request).get("error"), None);
 }
 
-/// Trains to the end, in calls of so much work.
+/// Trains to the end, with this much work per call.
 fn finish(playground: &mut Playground, work: u32) {
     let request = format!(r#"{{"call": "advance", "work": {work}}}"#);
     while call(playground, &request).get("state").and_then(Value::as_str) == Some("training") {}

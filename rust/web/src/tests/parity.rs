@@ -1,4 +1,4 @@
-//! What is learned here equals what the core learns when its parts are put together by hand.
+//! Learned values equal those of the core, with its parts put together by hand.
 
 use qtab_core::envs::classic_control::{CartPole, MountainCar};
 use qtab_core::envs::tabular::{Outcome, TabularMdp};
@@ -81,7 +81,7 @@ fn a_painted_grid_is_the_mdp_that_it_shows() {
         let reward = [-1.0, -4.0, 2.0, -1.0][state as usize];
         vec![Outcome { probability: 1.0, state, reward, terminated: state == 2 }]
     };
-    // Up and down lead nowhere; the last cell is a wall, from which only the way to the left is free.
+    // Up and down have no effect; the last cell is a wall, from which only the move to the left is free.
     let pairs: Vec<_> = [[0, 1, 0, 0], [1, 2, 1, 0], [2, 2, 2, 1], [3, 3, 3, 2]].as_flattened().to_vec();
     let pairs: Vec<_> = pairs.into_iter().map(outcome).collect();
     let mdp = TabularMdp::new(4, &[1.0, 0.0, 0.0, 0.0], &pairs).expect("a valid table");

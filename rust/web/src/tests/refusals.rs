@@ -1,4 +1,4 @@
-//! Whatever is sent, the answer is JSON: an error that names the setting, or a result.
+//! Every response is JSON, whatever the request: an error that names the setting, or a result.
 
 use proptest::prelude::*;
 use serde_json::Value;
@@ -64,7 +64,7 @@ fn what_is_not_json_is_refused() {
 #[test]
 fn tables_too_large_are_refused() {
     let (error, _) = error_of(r#""scale": [10, 100]"#, r#""scale": [1e300, 1e300]"#);
-    assert_eq!(error, "scale must be so few that the table has at most 16777216 rows, got an array of 2");
+    assert_eq!(error, "scale must be such that the table has at most 16777216 rows, got an array of 2");
 }
 
 #[test]
@@ -104,7 +104,7 @@ fn calls_before_a_start_are_refused() {
     }
 }
 
-/// Values that may stand where another was expected.
+/// Values to replace those of a request.
 const STRANGE: [&str; 16] = [
     "null",
     "true",
@@ -134,7 +134,7 @@ const CALLS: [&str; 8] = [
     r#"{"call": "table", "seed": -1}"#,
 ];
 
-/// Where the values of a request begin and end: after each colon, and in each array.
+/// The start and the end of each value in a request: after each colon, and in each array.
 fn values_of(request: &str) -> Vec<(usize, usize)> {
     let starts = request.match_indices([':', '[', ',']).map(|(at, _)| at + 1);
     let end = |start: usize| request[start..].find([',', '}', ']']).map(|length| (start, start + length));

@@ -1,11 +1,11 @@
-//! The updates that an inspection shows are those that were made, and their numbers fit together.
+//! The updates of an inspection are those that were made, and their numbers are consistent.
 
 use serde_json::Value;
 
 use super::{ALGORITHMS, ARTICLE, GRID, MOUNTAIN_CAR, call, finish, inspect, of_table, start, start_inspecting, table};
 use crate::Playground;
 
-/// The changes of settings under which updates differ, as JSON members and what replaces them.
+/// Changes of settings that affect updates, as JSON members and their replacements.
 const VARIANTS: [&[(&str, &str)]; 5] = [
     &[],
     &[(r#""on_truncation": "bootstrap""#, r#""on_truncation": "terminate""#)],
@@ -27,7 +27,7 @@ fn text<'a>(update: &'a Value, name: &str) -> &'a str {
     update.get(name).and_then(Value::as_str).expect("a text")
 }
 
-/// Whether two numbers agree but for rounding.
+/// Whether two numbers agree up to rounding.
 fn close(left: f64, right: f64) -> bool {
     (left - right).abs() <= 1e-9 * left.abs().max(right.abs()).max(1.0)
 }
@@ -48,7 +48,7 @@ fn changed(settings: &str, changes: &[(&str, &str)]) -> Option<String> {
     (!refused).then_some(result)
 }
 
-/// Checks the equation of an update. It holds to the last bit where one row is active and no traces are learned with.
+/// Checks the equation of an update. It holds to the last bit with a single active row and without traces.
 fn check_equation(update: &Value, discount: f64, exact: bool, context: &str) {
     let agree = |left: f64, right: f64| if exact { left.to_bits() == right.to_bits() } else { close(left, right) };
     let value = |name: &str| number(update, name).expect("a number");
@@ -74,7 +74,8 @@ fn check_equation(update: &Value, discount: f64, exact: bool, context: &str) {
     assert_eq!(target.to_bits(), (value("reward") + following).to_bits(), "{context}");
 }
 
-/// Checks that each update of a value begins where the one before ended, and the last one left the value of the table.
+/// Checks that each update of a value starts from the result of the previous one, and that the last one matches the
+/// table.
 fn check_that_none_is_missing(updates: &[Value], tables: &[f64], (cell, num_actions): (usize, usize), context: &str) {
     let size = tables.len() / if context.contains("double") { 2 } else { 1 };
     let integer = |update: &Value, name: &str| update.get(name).and_then(Value::as_u64).expect("an integer");
@@ -243,7 +244,7 @@ fn planning_is_shown_update_by_update() {
 
 #[test]
 fn a_step_in_parts_is_shown_update_by_update() {
-    // Nothing leads to the goal: all steps are learned from when the time limit ends the episode.
+    // No path leads to the goal: the agent learns from all steps when the time limit ends the episode.
     let enclosed = r#"{"kind": "grid", "layout": ["S.#G"], "step_reward": -1, "goal_reward": 5}"#;
     let settings = of_table(r#""n_step_sarsa", "n_steps": 3000"#).replace(": 60", ": 3000").replace(": 30", ": 1");
     let mut playground = Playground::default();
