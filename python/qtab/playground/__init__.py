@@ -1,4 +1,4 @@
-"""The playground: one page that trains in the browser, with the core crate in WebAssembly.
+"""The playground: a page that trains in the browser, with the core crate compiled to WebAssembly.
 
 ``qtab playground`` opens it; :func:`page` returns it as one self-contained HTML file.
 """

@@ -1,4 +1,4 @@
-"""The playground as one self-contained HTML file, or as the files of a site."""
+"""Assembles the playground: one self-contained HTML file, or the files of a site."""
 
 import base64
 import json
@@ -13,12 +13,12 @@ if TYPE_CHECKING:
     from importlib.resources.abc import Traversable  # Python 3.11 and later
 
 BUILD_COMMAND = "rustup target add wasm32-unknown-unknown && python rust/web/build_backend.py"
-"""What builds the WebAssembly module in a checkout."""
+"""The command that builds the WebAssembly module in a checkout."""
 
 MODULE = "qtab.wasm"
 STYLE = '<link rel="stylesheet" href="style.css">'
 SCRIPT = '<script type="module" src="main.js"></script>'
-# No request can leave the page: not for scripts, styles, pictures or data.
+# The page cannot send any request: not for scripts, styles, pictures or data.
 POLICY = (
     "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'unsafe-inline' "
     "'wasm-unsafe-eval' blob:; style-src 'unsafe-inline'; img-src data: blob:; worker-src blob:; base-uri 'none'; "
@@ -30,7 +30,7 @@ def page() -> str:
     """Returns the playground as one HTML file, with the WebAssembly module inside.
 
     Raises:
-        FileNotFoundError: if the module was not built; the message says how to build it.
+        FileNotFoundError: if the module was not built; the message explains how to build it.
     """
     sources = _sources()
     html = _text("index.html")
@@ -44,7 +44,7 @@ def page() -> str:
 
 
 def data_script(sources: dict[str, str] | None = None) -> str:
-    """Returns the script that holds what engine.js would otherwise load: the module, the worker, the definitions."""
+    """Returns the script with the data that engine.js would otherwise load: the module, the worker, the definitions."""
     sources = _sources() if sources is None else sources
     data = {
         "wasm": base64.b64encode(wasm()).decode(),
@@ -58,7 +58,7 @@ def write_site(folder: Path) -> None:
     """Writes the playground as separate files, for a site: index.html, the modules, the definitions, qtab.wasm.
 
     Raises:
-        FileNotFoundError: if the WebAssembly module was not built; the message says how to build it.
+        FileNotFoundError: if the WebAssembly module was not built; the message explains how to build it.
     """
     module = wasm()
     folder.mkdir(parents=True, exist_ok=True)
@@ -76,13 +76,13 @@ def wasm() -> bytes:
     """Returns the WebAssembly module.
 
     Raises:
-        FileNotFoundError: if it was not built; the message says how to build it.
+        FileNotFoundError: if the module was not built; the message explains how to build it.
     """
     try:
         return (_folder() / MODULE).read_bytes()
     except FileNotFoundError:
         raise FileNotFoundError(
-            "this installation has no WebAssembly module, because Rust's target wasm32-unknown-unknown was not there "
+            "this installation has no WebAssembly module, because Rust's target wasm32-unknown-unknown was missing "
             f"when it was built; in a checkout, build it with: {BUILD_COMMAND}"
         ) from None
 
@@ -101,5 +101,5 @@ def _sources() -> dict[str, str]:
 
 
 def _json(data: Any) -> str:
-    """JSON that may stand in a script of a page."""
+    """JSON that is safe inside a script of a page."""
     return json.dumps(data, ensure_ascii=False, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")

@@ -1,4 +1,4 @@
-"""ES modules as one script, so that a page works from a single file: browsers load no modules from ``file://``."""
+"""Bundles ES modules as one script, for a page in a single file: browsers load no modules from ``file://``."""
 
 import re
 from collections.abc import Mapping
@@ -12,7 +12,7 @@ _OTHER = re.compile(r"^(?:import|export)\b.*$", re.MULTILINE)
 
 
 def bundle(sources: Mapping[str, str], entry: str) -> str:
-    """Returns one script that does what the module ``entry`` does.
+    """Returns one script equivalent to the module ``entry``.
 
     Args:
         sources: The text of each module by its file name. The modules may use ``import { a, b as c } from "./a.js"``,

@@ -1,4 +1,4 @@
-"""What the page knows of environments and settings, made from the package's own definitions."""
+"""The page's data on environments and settings, made from the package's own definitions."""
 
 from collections.abc import Mapping
 from dataclasses import asdict
@@ -18,7 +18,7 @@ from qtab.playground.environments import ENVIRONMENTS, Entry
 from qtab.playground.settings import LEFT_OUT, OFFERED, rules, settings
 
 GRID_TIME_LIMIT = 1000
-"""The time limit of grid worlds, which have none of their own, in steps."""
+"""The time limit of grid worlds, in steps."""
 _GRID_PRESET = {
     "learning_rate": 0.5,
     "discount": 1.0,
@@ -31,7 +31,7 @@ _GRID_PRESET = {
 
 @cache
 def definitions() -> dict[str, Any]:
-    """Returns all that the page shows of environments and settings, ready for JSON."""
+    """Returns the page's data on environments and settings, ready for JSON."""
     return {
         "version": versions()["qtab"],
         "environments": {key: _environment(key, entry) for key, entry in ENVIRONMENTS.items()},
@@ -85,7 +85,7 @@ def _gymnasium(entry: Entry) -> dict[str, Any]:
     given = {
         name: {setting: value for setting, value in preset.items() if setting not in LEFT_OUT}
         for name, preset in presets(entry.env).items()
-        if not preset.get("time_aware")  # its table has an axis that the page does not show
+        if not preset.get("time_aware")  # the page cannot show the additional axis of its table
     }
     made = {
         "actions": list(description.actions),
@@ -127,7 +127,7 @@ def _gymnasium(entry: Entry) -> dict[str, Any]:
 
 
 def _options(given: Mapping[str, Mapping[str, Any]], low: Any, high: Any, bounded: bool) -> dict[str, Any]:
-    """The defaults of the options that depend on the observations: those of the presets, or the observation space's."""
+    """The defaults of the options that depend on the observations: from the presets or the observation space."""
     found: dict[str, Any] = {"low": low, "high": high} if bounded else {}
     for preset in given.values():
         for name in ("scale", "low", "high"):
@@ -137,7 +137,7 @@ def _options(given: Mapping[str, Mapping[str, Any]], low: Any, high: Any, bounde
 
 
 def _layout(env: Any) -> list[str]:
-    """The map of a lake or a cliff, a letter for each cell: start, goal, frozen, hole, cliff."""
+    """The map of a lake or a cliff, one letter per cell: start, goal, frozen, hole, cliff."""
     if hasattr(env, "desc"):
         return ["".join(letter.decode() for letter in row) for row in env.desc.tolist()]
     rows, columns = env.shape
@@ -148,7 +148,7 @@ def _layout(env: Any) -> list[str]:
 
 
 def _table(env: Any) -> dict[str, Any]:
-    """``P`` shorter: for each state and action its outcomes (index of the probability, state, reward, end)."""
+    """``P`` in a shorter form: the outcomes of each state and action (index of the probability, state, reward, end)."""
     states = range(len(env.P))
     outcomes = [[env.P[state][action] for action in sorted(env.P[state])] for state in states]
     probabilities = sorted({float(outcome[0]) for row in outcomes for cell in row for outcome in cell})
@@ -170,7 +170,7 @@ def _finite(value: float) -> float | None:
 
 
 def _plain(value: Any) -> Any:
-    """Returns what JSON holds: tuples as lists."""
+    """Returns a value in the types of JSON: tuples become lists."""
     if isinstance(value, Mapping):
         return {name: _plain(part) for name, part in value.items()}
     if isinstance(value, tuple | list):

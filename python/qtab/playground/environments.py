@@ -1,4 +1,4 @@
-"""The environments of the playground: what the page says of them, and how it draws them."""
+"""The environments of the playground: their descriptions, and how the page draws them."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -27,15 +27,15 @@ class Entry:
 
     title: str
     sentence: str
-    """What the agent does, and what it is rewarded for."""
+    """The task of the agent, and its rewards."""
     drawing: Drawing
     env: str = ""
     """Gymnasium's id; empty for grid worlds."""
     env_kwargs: Mapping[str, Any] = field(default_factory=dict)
     best_known: float | None = None
-    """The expected return of the best known policy, where the page does not compute the optimal one."""
+    """The expected return of the best known policy, if the page does not compute the optimal one."""
     grids: Mapping[str, GridWorld] = field(default_factory=dict)
-    """Grid worlds to begin with, by their title."""
+    """Grid worlds to start from, by title."""
 
 
 _WINDY = GridWorld(WINDY_GRID_WORLD, WIND, step_reward=-1.0, goal_reward=-1.0)
@@ -73,7 +73,7 @@ _OPEN = GridWorld(
 )
 
 _LAKE = "Cross the frozen lake to the goal without falling into a hole. The reward is 1 at the goal and 0 elsewhere{}"
-_SLIPPERY = "; the ice is slippery, so that a move goes where it should only once in three times."
+_SLIPPERY = "; the ice is slippery, so only one move in three goes in the intended direction."
 _ICE = {"is_slippery": False}
 
 # The best known return is that of `qtab.optimum("MountainCar-v0")`, as docs/environments.md reports it.
@@ -101,7 +101,7 @@ ENVIRONMENTS: Mapping[str, Entry] = {
     ),
     "CliffWalking-v1": Entry(
         "Cliff walking",
-        "Walk to the goal along a cliff. Each step costs 1; a step off the cliff costs 100 and leads to the start.",
+        "Walk to the goal along a cliff. Each step costs 1; a fall costs 100 and leads back to the start.",
         "cliff",
         "CliffWalking-v1",
     ),

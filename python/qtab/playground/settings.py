@@ -1,4 +1,4 @@
-"""The settings that the playground shows: their sentences, symbols and defaults are those of :class:`qtab.Config`."""
+"""The settings that the playground shows, with the sentences, symbols and defaults of :class:`qtab.Config`."""
 
 import re
 from collections.abc import Mapping
@@ -33,7 +33,7 @@ OFFERED: Mapping[str, tuple[str, ...]] = {
     "discretizer": ("round", "bins", "tiles", "identity"),
     "bit_generator": ("PCG64", "MT19937"),
 }
-"""What the page offers of each choice: what rust/web/src/settings makes. The rest is for Python."""
+"""The choices that the page offers, limited to those of rust/web/src/settings. The others need Python."""
 
 LEFT_OUT = frozenset(
     (
@@ -41,10 +41,10 @@ LEFT_OUT = frozenset(
         *("edges", "actions", "model", "count_bonus", "time_aware"),
     )
 )
-"""What the page does not offer: settings of Python environments, those too long for a control, and those that the page
-always has at their defaults."""
+"""The settings that the page omits: those of Python environments, those too long for a control, and those that always
+have their defaults on the page."""
 
-# Types and ranges of the controls. A range is inside the one that the config allows, which a test checks.
+# Types and ranges of the controls. A range lies within that of the config, which a test checks.
 _CONTROLS: Mapping[str, tuple[str, float | None, float | None, bool]] = {
     "max_episode_steps": ("integer", 1, 10_000, True),
     "episodes": ("integer", 1, 100_000, True),
@@ -81,11 +81,11 @@ _TITLES = {
     "PCG64": "PCG64",
     "MT19937": "MT19937",
 }
-# Where the config's sentence speaks of what the page does not offer.
+# Sentences that replace those of the config, which mention options that the page omits.
 _SENTENCES = {
     "learning_rate": "α: the fraction of the error that an update corrects, in [0, 1]. With tile coding it is divided "
     "among the tilings, and may be up to 2.",
-    "exploration": "How the agent chooses actions: a random one at times, or by the softmax of the values.",
+    "exploration": "The policy: a random action with probability ε, or the softmax of the values.",
     "max_episode_steps": "The time limit of an episode, in steps.",
     "initial_q": "The initial Q table: drawn uniformly from a range (low, high), or one number everywhere.",
     "discretizer": "How observations index the Q table: rounded to a grid, by bins of equal width, or by tile coding.",
@@ -94,7 +94,7 @@ _SYMBOL = re.compile(r"(\w): ")
 
 
 def title(word: str) -> str:
-    """Returns the name of a choice as people write it."""
+    """Returns the display name of a choice."""
     name = ALGORITHM_NAMES.get(word) or _TITLES.get(word) or word.replace("_", " ").capitalize()
     return name if name.startswith(("n-", "ε")) else name[:1].upper() + name[1:]
 
@@ -123,7 +123,7 @@ def setting(name: str, group: str) -> dict[str, Any]:
 
 
 def is_offered(name: str) -> bool:
-    """Returns whether the page shows a setting: not if it applies to what it does not offer alone."""
+    """Returns whether the page shows a setting, which must apply to some choice that the page offers."""
     if name in LEFT_OUT or (name not in OFFERED and name not in _CONTROLS):
         return False
     option = OPTIONS.get(name)
@@ -131,7 +131,7 @@ def is_offered(name: str) -> bool:
 
 
 def settings() -> dict[str, dict[str, Any]]:
-    """Returns every setting of the page by its name; the groups in the config's order."""
+    """Returns every setting of the page by name; the groups are in the config's order."""
     grouped = groups(name for name in DEFAULTS if is_offered(name))
     return {name: setting(name, group) for group, names in grouped.items() for name in names}
 

@@ -1,4 +1,4 @@
-// Colors of numbers: viridis for values, as in the package's pictures, and shades of blue for visits.
+// Color maps for numbers: viridis for values, as in the package's pictures, and shades of blue for visits.
 
 const VIRIDIS = ["440154", "482878", "3e4989", "31688e", "26828e", "1f9e89", "35b779", "6ece58", "b5de2b", "fde725"];
 const BLUES = ["eef3fa", "d3e0f0", "b0c9e6", "86abd8", "5c8cc7", "3a6cb0", "275091", "193870"];
@@ -11,7 +11,7 @@ const MAPS = {
   darkVisits: DARK_BLUES.map(channels),
 };
 
-/** The red, green and blue of a share from 0 to 1. */
+/** The red, green and blue of a number from 0 to 1. */
 export function shade(name, share) {
   const stops = MAPS[name];
   const place = Math.min(Math.max(Number.isFinite(share) ? share : 0, 0), 1) * (stops.length - 1);
@@ -19,7 +19,7 @@ export function shade(name, share) {
   return stops[index].map((low, channel) => Math.round(low + (stops[index + 1][channel] - low) * (place - index)));
 }
 
-/** A color as canvases take it. */
+/** A color in the form that canvases use. */
 export function css([red, green, blue], alpha = 1) {
   return `rgba(${red}, ${green}, ${blue}, ${alpha})`;
 }

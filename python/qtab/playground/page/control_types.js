@@ -20,14 +20,14 @@ const TITLES = {
   scale: "Cells per unit",
 };
 
-/** What a setting is called: a title, or its name in words. */
+/** The title of a setting: a special one, or its name in words. */
 export function titleOf(name) {
   if (TITLES[name]) return TITLES[name];
   const words = name.replaceAll("_", " ");
   return words[0].toUpperCase() + words.slice(1);
 }
 
-/** The parts that all controls have: the label with its symbol, the sentence, and the place of a refusal. */
+/** The parts of every control: the label with its symbol, the sentence, and the place for an error message. */
 function frame(name, definition, { forId = null, labelTag = "label" } = {}) {
   const symbol = definition.symbol ? [make("span", { className: "symbol", textContent: definition.symbol }), " "] : [];
   const label = make(labelTag, { className: "name", id: `label-${name}` }, ...symbol, titleOf(name));
@@ -38,7 +38,7 @@ function frame(name, definition, { forId = null, labelTag = "label" } = {}) {
   return { head, sentence, refused, element: make("div", { className: "setting" }, head, sentence, refused) };
 }
 
-/** A list of names to choose from; what is impossible beside the other settings is disabled, with the reason. */
+/** A list of names to choose from. Choices that conflict with other settings are disabled, with the reason. */
 export function choiceControl(store, name, definition) {
   const id = `set-${name}`;
   const parts = frame(name, definition, { forId: id });
@@ -60,7 +60,7 @@ export function choiceControl(store, name, definition) {
   return { element: parts.element, refresh, focus: () => select.focus() };
 }
 
-/** A text field, whose numbers are checked. */
+/** A text field with checked numbers. */
 function numberField(parts, id, read, apply) {
   const input = make("input", { type: "text", id, inputMode: "decimal", autocomplete: "off", spellcheck: false });
   input.setAttribute("aria-describedby", `${parts.refused.id} ${parts.sentence.id}`);
@@ -80,7 +80,7 @@ function numberField(parts, id, read, apply) {
   return { input, show };
 }
 
-/** A number as text; limits of observations are 32-bit numbers, of which seven digits say all. */
+/** A number as text. The limits of observations are 32-bit numbers, for which seven digits are enough. */
 function shortest(value) {
   const short = Number(value.toPrecision(7));
   return String(Math.fround(short) === value ? short : value);
@@ -117,7 +117,7 @@ export function numberControl(store, name, definition) {
   return { element: parts.element, refresh, focus: () => slider.focus() };
 }
 
-/** The next value in steps of the keyboard: hundredths of the range, at least 1 for integers; tenths of a large value. */
+/** The next value for keyboard steps: hundredths of the range, at least 1 for integers; tenths of a large value. */
 function stepped({ low, high, integer, log }, value, steps) {
   const size = log ? 10 ** Math.floor(Math.log10(Math.max(Math.abs(value), 1e-9)) - 0.3) : (high - low) / 100;
   const unit = integer ? Math.max(Math.round(size), 1) : Number(size.toPrecision(1));
@@ -165,7 +165,7 @@ function spread(values, length) {
   return listed.length === length ? [...listed] : Array(length).fill(listed[0]);
 }
 
-/** The initial values: drawn from a range, whose limits may be equal. */
+/** The initial values: a range from which they are drawn, whose limits may be equal. */
 export function initialValuesControl(store, name, definition) {
   const parts = frame(name, definition, { labelTag: "span" });
   const rows = make("div", { className: "components" });
@@ -181,7 +181,7 @@ export function initialValuesControl(store, name, definition) {
     const field = numberField(parts, `set-${name}-${index}`, read, (value) => {
       const next = [...range()];
       next[index] = value;
-      // A range whose ends have crossed becomes a single number.
+      // A range whose limits have crossed becomes a single number.
       if (next[0] > next[1]) next[1 - index] = value;
       store.set(name, next[0] === next[1] ? next[0] : next);
     });

@@ -2,7 +2,7 @@
 
 import { choiceControl, componentsControl, initialValuesControl, numberControl } from "./control_types.js";
 
-/** Settings that a first look can do without. */
+/** Settings that are not needed at first. */
 const LESS_NEEDED = new Set([
   ...["learning_rate_schedule", "min_learning_rate", "learning_rate_decay", "learning_rate_warm_up", "traces", "trace_cutoff"],
   ...["initial_q", "terminal_update", "on_truncation", "epsilon_warm_up", "ties", "max_episode_steps", "bit_generator"],
@@ -23,7 +23,7 @@ export class Controls {
     this.refresh();
   }
 
-  /** Shows the settings of the state; builds the form anew only where other settings apply. */
+  /** Shows the settings of the state; rebuilds the form only if other settings apply. */
   refresh() {
     const { state } = this.store;
     const shape = [state.environment, ...Object.keys(state.settings)].join(" ");

@@ -9,7 +9,7 @@ const POINTS = 400;
 const MAX_DOTS = 6000;
 const LABEL_SPACE = 26;
 
-/** Shows learning curves on a canvas, a summary below it, and the numbers under the pointer. */
+/** Shows learning curves on a canvas, with a summary below and the numbers under the pointer. */
 export class LearningCurve {
   constructor(canvas, summary) {
     this.canvas = canvas;
@@ -66,7 +66,7 @@ export class LearningCurve {
     if (this.shown) this.draw();
   }
 
-  /** The range of returns to show. Rare and very low returns, as of early falls from a cliff, are cut off. */
+  /** The range of returns to show. Rare, very low returns, such as those of early falls from a cliff, are cut off. */
   range() {
     const { returns, marks, over, means } = this.shown;
     const lowest = Math.min(...returns.map((each) => quantile(each, 0.03)));
@@ -167,7 +167,7 @@ function drawBand(g, ends, { mean, half }, x, y, color) {
   g.globalAlpha = 1;
 }
 
-/** Draws the lines to compare with; the label of one that is close below another is below its line. */
+/** Draws the lines to compare with. A label that would be too close to the one above is drawn below its line. */
 function drawMarks(g, box, marks, y, colors) {
   const shown = marks.filter(({ value }) => Number.isFinite(value)).sort((left, right) => left.value - right.value);
   shown.forEach(({ name, value, dash }, index) => {

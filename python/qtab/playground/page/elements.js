@@ -7,15 +7,15 @@ export function make(tag, properties = {}, ...children) {
   return element;
 }
 
-/** Shows why a typed value was refused, at its field and in the paragraph below; null takes the message away. */
+/** Shows why a typed value was rejected, at its field and in the paragraph below; null removes the message. */
 export function refuse(place, input, message) {
   place.hidden = !message;
-  place.textContent = message ? `${message}. The value before is kept.` : "";
+  place.textContent = message ? `${message}. The previous value is kept.` : "";
   if (message) input.setAttribute("aria-invalid", "true");
   else input.removeAttribute("aria-invalid");
 }
 
-/** The place of such messages. */
+/** The place for such messages. */
 export function refusalPlace(properties = {}) {
   const place = make("p", { className: "refused", hidden: true, ...properties });
   place.setAttribute("role", "alert");

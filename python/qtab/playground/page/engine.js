@@ -1,11 +1,11 @@
-// The engine as the page sees it: it starts the worker, keeps the newest request only, and completes settings.
+// The page's interface to the engine: starts the worker, keeps only the newest request, and completes settings.
 
 const DATA = globalThis.QTAB_PLAYGROUND ?? {};
 
-/** What Python's definitions.py says of environments and settings. */
+/** The environments and settings from Python's definitions.py. */
 export const definitions = DATA.definitions ?? null;
 
-/** All settings that apply beside `given` in an environment, with the defaults of those that are not given. */
+/** All settings that apply with `given` in an environment, with defaults for those that are not given. */
 export function complete(environment, given) {
   const known = definitions.environments[environment];
   const settings = {};
@@ -19,7 +19,7 @@ export function complete(environment, given) {
   return settings;
 }
 
-/** Why two of the settings exclude each other; null if none do. */
+/** The reason why two of the settings exclude each other; null if none do. */
 export function conflict(settings) {
   for (const { setting, value, unless, reason } of definitions.rules) {
     const [other, chosen] = Object.entries(unless)[0];
@@ -28,7 +28,7 @@ export function conflict(settings) {
   return null;
 }
 
-/** The environment as the WebAssembly module takes it. */
+/** The environment in the form that the WebAssembly module expects. */
 function environmentOf({ id, ...painted }) {
   const known = definitions.environments[id];
   if (!known) throw new Error(`unknown environment '${id}'`);
@@ -43,7 +43,7 @@ function bytesOf(base64) {
 
 function startWorker() {
   if (!DATA.worker) return new Worker(new URL("worker.js", document.baseURI));
-  // A page from a file may start workers from blobs only.
+  // A page from a file can start workers only from blobs.
   return new Worker(URL.createObjectURL(new Blob([DATA.worker], { type: "text/javascript" })));
 }
 
@@ -54,7 +54,7 @@ export class Engine {
   #best = null;
   #inspection = null;
   #inspected = null;
-  #tables = new Map(); // who waits for which table
+  #tables = new Map(); // the callbacks waiting for each table
   #token = 0;
   #onMessage;
 
@@ -70,7 +70,7 @@ export class Engine {
     }
   }
 
-  /** Trains anew; an older request is given up. Returns the id that its messages carry. */
+  /** Starts a new training; an older request is dropped. Returns the id of its messages. */
   start(request) {
     this.#request = request;
     this.#best = this.#inspection = null;
@@ -85,12 +85,12 @@ export class Engine {
     return this.#id;
   }
 
-  /** Goes back to before the first step and waits there. */
+  /** Resets to the state before the first step and waits there. */
   reset() {
     return this.#request && this.start({ ...this.#request, run: false });
   }
 
-  /** Trains for some steps or episodes more, then waits. */
+  /** Trains for some more steps or episodes, then waits. */
   advance(unit, count = 1) {
     this.#post({ type: "advance", unit, count });
   }
@@ -103,14 +103,14 @@ export class Engine {
     this.#post({ type: "stop" });
   }
 
-  /** Asks for the last updates of a cell, now and after each result; null ends it. */
+  /** Requests the last updates of a cell, now and after each result; null stops this. */
   inspect(cell) {
     this.#inspected = cell;
     if (cell === null) this.#inspection = null;
     this.#post({ type: "inspect", cell });
   }
 
-  /** The action values of a run, as qtab's q_table has them: (tables, rows, actions) in one array. */
+  /** The action values of a run, in the layout of qtab's q_table: (tables, rows, actions) in one array. */
   table(seed = 0) {
     const token = (this.#token += 1);
     this.#post({ type: "table", token, seed });

@@ -26,7 +26,7 @@ function drawing(key, entry) {
   return svg;
 }
 
-/** Shows the environments as radio buttons with arrow keys, and the title and sentence of the one that is chosen. */
+/** Shows the environments as radio buttons with arrow keys, and the title and sentence of the chosen one. */
 export function setUpEnvironments(store, group, title, sentence) {
   const entries = Object.entries(store.definitions.environments);
   const buttons = entries.map(([key, entry]) => {
@@ -54,7 +54,7 @@ export function setUpEnvironments(store, group, title, sentence) {
   show(store.state);
 }
 
-/** Makes the arrow keys move between the radio buttons of a group, and choose. */
+/** Makes the arrow keys move between the radio buttons of a group, and select them. */
 export function moveWithArrows(group, choose) {
   group.addEventListener("keydown", (event) => {
     const step = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];

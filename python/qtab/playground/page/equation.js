@@ -1,4 +1,4 @@
-// An update as an equation: in symbols, and with its numbers, which are those that the learner used.
+// An update as an equation: in symbols, and with the numbers that the learner used.
 
 import { number, term } from "./format.js";
 
@@ -11,8 +11,8 @@ function nameOf(table, bootstraps) {
 }
 
 /**
- * The equation of updates in symbols. `bootstraps`: how the target takes the value of the next state, one text for each
- * table that the algorithm learns: Double Q-learning has two.
+ * The equation of updates in symbols. `bootstraps`: the term for the value of the next state, one text for each table
+ * that the algorithm learns: Double Q-learning has two.
  */
 export function symbolEquation({ kind, table, learningRate }, bootstraps) {
   const value = nameOf(table, bootstraps);
@@ -24,7 +24,7 @@ export function symbolEquation({ kind, table, learningRate }, bootstraps) {
   return `${source}${value} ← ${value} + α ${kind === "trace" ? "z " : ""}[${target} − ${value}]`;
 }
 
-/** The same with the numbers of an update, as parts: the last one is the new value. */
+/** The equation with the numbers of an update, as parts: the last one is the new value. */
 export function numberEquation(update, bootstraps) {
   const { kind, table, learningRate, trace, qOld } = update;
   const after = number(update.new ?? NaN, DIGITS);

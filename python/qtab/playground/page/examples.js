@@ -1,11 +1,11 @@
-// Examples: settings that fail and settings that learn, each with a sentence that says what to look at.
+// Examples: settings that fail and settings that learn, each with a sentence on what to look at.
 
 import { fit } from "./fit.js";
 import { copyGrid } from "./store.js";
 
 /**
- * For each environment its examples: `preset` names settings of the package, `settings` change some of them, `grid` names
- * a grid world to begin with.
+ * The examples of each environment: `preset` names settings of the package, `settings` change some of them, `grid`
+ * names a grid world to start from.
  */
 export const EXAMPLES = {
   "MountainCar-v0": [
@@ -169,7 +169,7 @@ export function exampleState(store, environment, index) {
   return { ...state, settings: fit(store.definitions, environment, { ...state.settings, ...settings }), example: index, seed: store.state.seed, seeds: store.state.seeds };
 }
 
-/** Shows the examples of the environment as buttons, and the sentence of the one that is chosen. */
+/** Shows the examples of the environment as buttons, and the sentence of the chosen one. */
 export function setUpExamples(store, buttons, look) {
   const show = ({ environment, example }) => {
     const examples = EXAMPLES[environment] ?? [];

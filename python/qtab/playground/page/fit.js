@@ -1,14 +1,14 @@
-// Settings that go together: what a control, a link or an example gives, cut to what the engine takes.
+// Makes settings compatible: the values of a control, a link or an example are limited to those the engine accepts.
 
 import { complete } from "./engine.js";
 import { highest } from "./numbers.js";
 
-// The limits of the others depend on these.
+// The limits of other settings depend on these.
 const FIRST = ["episodes", "learning_rate", "epsilon"];
 
 /**
- * All settings that apply in an environment, from those that are given: choices that others exclude go back to their
- * defaults, and numbers are cut to their ranges.
+ * All settings that apply in an environment, based on the given ones: choices that others exclude are reset to their
+ * defaults, and numbers are limited to their ranges.
  */
 export function fit(definitions, environment, given) {
   const known = definitions.environments[environment];

@@ -2,7 +2,7 @@
 
 const WHOLE = new Intl.NumberFormat("en-US", { maximumFractionDigits: 0 });
 
-/** A number with up to so many significant digits, a true minus sign, and words for what is not finite. */
+/** A number with up to `digits` significant digits, a true minus sign, and words for non-finite numbers. */
 export function number(value, digits = 4) {
   if (Number.isNaN(value)) return "not a number";
   if (!Number.isFinite(value)) return value > 0 ? "infinity" : "−infinity";
@@ -17,7 +17,7 @@ export function number(value, digits = 4) {
   return text.replace(/-/g, "−");
 }
 
-/** Numbers to compare: with as many digits as tell different ones apart. */
+/** Numbers to compare, with enough digits to distinguish different ones. */
 export function distinguished(values) {
   const different = new Set(values).size;
   for (let digits = 4; ; digits++) {
@@ -36,7 +36,7 @@ export function counted(value, noun) {
   return `${count(value)} ${noun}${value === 1 ? "" : "s"}`;
 }
 
-/** A factor inside an equation: a negative one in parentheses. */
+/** A factor inside an equation; negative ones are in parentheses. */
 export function term(value, digits = 4) {
   return value < 0 ? `(${number(value, digits)})` : number(value, digits);
 }

@@ -55,7 +55,7 @@ function valueTable({ actionValues, visits }, actions) {
 function updateItem(update, actions, first, bootstraps) {
   const end = ENDS[update.end];
   const reward = update.reward === null ? "" : `, reward ${number(update.reward)}`;
-  // The action of a delayed or planned update is not that of the step in which it is made.
+  // The action of a delayed or planned update is not that of the step during which it is made.
   const time = update.end === "other" ? "after step" : "step";
   const when = `Episode ${count(update.episode + 1)}, ${time} ${count(update.step + 1)}: ${actions[update.action]}${reward}`;
   const parts = numberEquation(update, bootstraps);

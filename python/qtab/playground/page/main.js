@@ -1,4 +1,4 @@
-// Brings the parts of the page together: the reader's choices, the engine that trains, and what shows its results.
+// Connects the parts of the page: the reader's choices, the engine that trains, and the view of its results.
 
 import { Controls } from "./controls.js";
 import { definitions, Engine } from "./engine.js";
@@ -64,7 +64,7 @@ function setUpPage(store, training, view, announce) {
   };
   for (const [id, action] of Object.entries(press)) element(id).addEventListener("click", action);
   const program = () => { element("python-code").textContent = pythonProgram(store, view.shownMeasure); };
-  // Following the link would replace the fragment, which holds the settings.
+  // Following the link would replace the fragment, which stores the settings.
   document.querySelector(".skip").addEventListener("click", (event) => {
     event.preventDefault();
     element("results").focus();
@@ -75,7 +75,7 @@ function setUpPage(store, training, view, announce) {
     const done = await copyText(text);
     const label = button.dataset.label ?? button.textContent;
     button.dataset.label = label;
-    button.textContent = done ? "Copied" : "Not allowed to copy";
+    button.textContent = done ? "Copied" : "Copying not allowed";
     setTimeout(() => { button.textContent = label; }, 1600);
     announce(done ? `${what} copied.` : "The browser does not allow copying.");
   };

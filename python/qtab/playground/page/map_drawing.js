@@ -1,4 +1,4 @@
-// What lies on a map's cells: colors, arrows of the policy, letters of a grid world, paths, marks.
+// The content of a map's cells: colors, arrows of the policy, letters of a grid world, paths, marks.
 
 import { css, inkOn, shade } from "./colormap.js";
 import { number } from "./format.js";
@@ -10,13 +10,13 @@ const NO_ACTION = 255;
 const MIN_ARROW_CELL = 13;
 const UNVISITED_ALPHA = 0.28;
 
-/** The direction of an action by the last word of its name; null for one without, such as "no push". */
+/** The direction of an action by the last word of its name; null without one, as for "no push". */
 export function direction(action) {
   const words = action.split(" ");
   return words.includes("no") ? null : (DIRECTIONS[words.at(-1)] ?? null);
 }
 
-/** Whether the agent never chooses an action in a cell: the goal, a hole, the cliff, from which it is set back. */
+/** Whether the agent never chooses an action in a cell: the goal, a hole, or the cliff, which resets it. */
 export function isEnd(layout, cell) {
   const columns = layout?.[0].length;
   return columns !== undefined && "GHC".includes(layout[Math.floor(cell / columns)][cell % columns]);
@@ -41,7 +41,7 @@ export function drawCells(g, frame, cells, palette, { share, isFaint, layout }) 
   g.globalAlpha = 1;
 }
 
-/** Draws the greedy actions as arrows, a dot for an action without a direction; of small cells only some. */
+/** Draws the greedy actions as arrows, or a dot for an action without a direction; only some if cells are small. */
 export function drawPolicy(g, frame, map, palette, { actions, greedy, share, isFaint, layout }) {
   const sample = frame.cell(0);
   const everyColumn = Math.max(Math.ceil(MIN_ARROW_CELL / sample.width), 1);
@@ -83,7 +83,7 @@ export function drawArrow(g, x, y, size, towards) {
   g.stroke();
 }
 
-/** Writes the letters of a grid world: S start, in its corner, and G goal, H hole, C cliff, which have no value. */
+/** Draws the letters of a grid world: S start, in its corner, and G goal, H hole, C cliff, which have no value. */
 export function drawLetters(g, frame, layout) {
   layout.join("").split("").forEach((letter, index) => {
     if (!"SGHC".includes(letter)) return;
@@ -107,7 +107,7 @@ export function drawLetters(g, frame, layout) {
   g.font = `12px ${FONT}`;
 }
 
-/** Writes the rewards of a painted grid, [row, column, reward], below the arrows of their cells. */
+/** Draws the rewards of a painted grid, [row, column, reward], below the arrows of their cells. */
 export function drawRewards(g, frame, columns, rewards) {
   for (const [row, column, reward] of rewards) {
     const { x, y, width, height } = frame.cell(row * columns + column);
@@ -126,7 +126,7 @@ export function drawRewards(g, frame, columns, rewards) {
   g.font = `12px ${FONT}`;
 }
 
-/** Draws a path through points with a light edge, so that it is seen on every color, and a dot at its start. */
+/** Draws a path through points with a light edge, to be visible on every color, and a dot at its start. */
 export function drawPath(g, frame, points) {
   if (!points.length) return;
   const { warm } = themeColors();

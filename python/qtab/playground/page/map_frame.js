@@ -1,10 +1,10 @@
-// Where a map's cells lie on its canvas, and its axes: a plane of two components, or the cells of a grid.
+// The positions of a map's cells on its canvas, and its axes: a plane of two components, or the cells of a grid.
 
 import { number } from "./format.js";
 import { scale, ticks } from "./surface.js";
 import { themeColors } from "./theme.js";
 
-/** Returns the places of a map's cells within a canvas; `plane` names its two components, null for grids. */
+/** Returns the positions of a map's cells within a canvas; `plane` names its two components, null for grids. */
 export function frameOf(map, plane, width, height) {
   if (plane) {
     const box = { left: 46, right: width - 8, top: 28, bottom: height - 38 };

@@ -1,14 +1,14 @@
-// What the learning curve is compared with, and the key of its lines.
+// The lines to compare the learning curve with, and their key.
 
 import { windowOf } from "./statistics.js";
 import { counted } from "./format.js";
 
-/** The expected return of the best policy, or of the best known one for the environment's own time limit; null if unknown. */
+/** The expected return of the best or, for the environment's default time limit, best known policy; null if unknown. */
 export function bestReturn(entry, settings, best) {
   return best?.return ?? (hasOwnLimit(entry, settings) ? entry.best_known : null);
 }
 
-/** Whether a run has the time limit for which the environment's threshold is made. */
+/** Whether a run has the time limit that the environment's threshold assumes. */
 function hasOwnLimit(entry, settings) {
   return settings.max_episode_steps === entry.max_episode_steps;
 }
@@ -20,7 +20,7 @@ export class Marks {
     this.shown = "";
   }
 
-  /** {name, value, dash} of each line to compare with. */
+  /** The lines to compare with, as {value, name, dash}. */
   of({ entry, state: { settings } }, { best }) {
     const marks = [];
     if (entry.threshold !== null && hasOwnLimit(entry, settings)) marks.push({ name: "threshold", value: entry.threshold, dash: [2, 4] });

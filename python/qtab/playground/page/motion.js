@@ -1,4 +1,4 @@
-// The greedy agent in motion: an episode on a canvas, with a button to pause and a slider of its steps.
+// The greedy agent in motion: an episode on a canvas, with a pause button and a slider for its steps.
 
 import { counted, number } from "./format.js";
 import { cartPole } from "./scene_cart_pole.js";
@@ -11,7 +11,7 @@ const SCENES = { mountain_car: mountainCar, cart_pole: cartPole };
 const PAUSE_AT_END = 1.2;
 const MAX_TRAIL = 60;
 
-/** Plays episodes. `onStep(step)` is called with the step that is shown, null when nothing is. */
+/** Plays episodes. `onStep(step)` is called with the step shown, or with null if none is shown. */
 export class Motion {
   constructor({ canvas, button, slider, caption, onStep }) {
     Object.assign(this, { canvas, button, slider, caption, onStep });
@@ -41,7 +41,7 @@ export class Motion {
     this.draw();
   }
 
-  /** Shows a greedy episode from its start, unless it is the one that is being shown. */
+  /** Shows a greedy episode from its start, unless it is already shown. */
   show(episode) {
     const same = this.episode && !this.episode.current && sameEpisode(this.episode, episode);
     this.episode = episode;
@@ -105,7 +105,7 @@ export class Motion {
       return;
     }
     const step = Math.floor(Math.min(this.time, this.episode.actions.length));
-    // Several frames show a step; the words for it change with the step alone.
+    // Several frames show the same step; its description changes only with the step.
     if (this.episode === this.described && step === this.describedStep) return;
     Object.assign(this, { described: this.episode, describedStep: step });
     this.describe(moment);
@@ -118,7 +118,7 @@ export class Motion {
     this.canvas.setAttribute("aria-label", `The agent: ${this.scene.alternative(moment)}.`);
   }
 
-  /** What the scene shows at this time: an observation and the action there, and the cells on a grid. */
+  /** The content of the scene at this time: an observation and the action, and the cells on a grid. */
   moment() {
     const { layout, wind, rewards, drawing } = this.world;
     if (!this.episode) return layout ? { layout, wind, rewards, drawing, cell: null, from: null, share: 1, trail: [] } : null;

@@ -1,8 +1,10 @@
-// Text that was typed, as numbers: what is not finite or out of range is refused with a message that names the setting.
+// Parses typed numbers. Values that are not finite or out of range are rejected with a message that names the setting.
 
 const NUMBER = /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;
 
-/** The largest learning rate: it may be up to 2 with tile coding, which divides it among the tilings. */
+/**
+ * The largest value of a setting. A learning rate may be up to 2 with tile coding, which divides it among the tilings.
+ */
 export function highest(name, definition, settings) {
   if (name === "learning_rate" && settings.discretizer === "tiles") return 2;
   if (name === "min_epsilon") return settings.epsilon;
@@ -27,7 +29,7 @@ export function readNumber(name, text, { low, high, integer }) {
   return { value };
 }
 
-/** A range's positions from 0 to 1000 and the values there, on a linear or logarithmic scale. */
+/** Converts between the positions 0 to 1000 of a slider and values, on a linear or logarithmic scale. */
 export function positions({ low, high, integer, log }) {
   const steps = 1000;
   const start = Math.log(Math.max(low, 1e-12));

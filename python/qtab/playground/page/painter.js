@@ -15,7 +15,7 @@ const TOOLS = [
   ["reward", "Reward"],
 ];
 
-/** The tools of the painted grid; `paint(cell)` changes a cell as the chosen tool does. */
+/** The tools of the painted grid. `paint(cell)` applies the chosen tool to a cell. */
 export class Painter {
   constructor(place, store, announce) {
     Object.assign(this, { place, store, announce });
@@ -135,7 +135,7 @@ export class Painter {
     this.store.update({ grid, example: null });
   }
 
-  /** Paints a cell; `how`: "press" begins a stroke of the pointer, "drag" continues it, "key" is a single cell. */
+  /** Paints a cell. `how`: "press" begins a stroke of the pointer, "drag" continues it, "key" is a single cell. */
   paint(cell, how) {
     const grid = copyGrid(this.store.state.grid);
     const columns = grid.layout[0].length;

@@ -1,11 +1,11 @@
-// The run as a Python program, which gives the same table.
+// The run as a Python program, which learns the same table.
 
 import { counted } from "./format.js";
 import { windowOf } from "./statistics.js";
 
 const INDENT = "    ";
 
-/** Python's literal of a value. */
+/** A value as a Python literal. */
 export function literal(value) {
   if (typeof value === "boolean") return value ? "True" : "False";
   if (value === null) return "None";
@@ -27,7 +27,7 @@ function gridLines(grid, asFunction) {
   return ["layout = (", ...rows, ")", ...made];
 }
 
-/** The figure below the learning curve: the mean of the last episodes. */
+/** The number below the learning curve: the mean of the last episodes. */
 function printedMean({ settings, seeds }, measure) {
   const width = windowOf(settings.episodes);
   const [array, words] = measure === "lengths" ? ["episode_lengths", "number of steps"] : ["episode_returns", "return"];
@@ -36,8 +36,8 @@ function printedMean({ settings, seeds }, measure) {
 }
 
 /**
- * The program of a store's state. It names every setting, so that no default or preset of Python decides. `measure` is
- * what the learning curve shows, "returns" or "lengths".
+ * The program of a store's state. It names every setting, so that it does not depend on Python's defaults or presets.
+ * `measure` is that of the learning curve, "returns" or "lengths".
  */
 export function pythonProgram(store, measure = "returns") {
   const { state, entry } = store;

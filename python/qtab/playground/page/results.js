@@ -1,11 +1,11 @@
-// What the maps show of a result: colors, policies and paths, in one scale for the learned and the optimal values.
+// The content of the maps for a result: colors, policies and paths, with one scale for learned and optimal values.
 
 import { gradient } from "./colormap.js";
 import { count, number } from "./format.js";
 import { isEnd } from "./map_drawing.js";
 import { themeColors } from "./theme.js";
 
-/** The range of the values to show: of the states that were visited, and of the optimal ones. */
+/** The range of the values to show: those of the visited states, and the optimal ones. */
 export function valueRange({ values, visits }, best, layout) {
   let [low, high] = [Infinity, -Infinity];
   const include = (value) => {
@@ -62,7 +62,7 @@ function describeSize({ columns, rows }) {
   return `${rows} rows and ${columns} columns`;
 }
 
-/** Shows the bar of colors with its ends, and what pale cells mean. */
+/** Shows the color bar with its limits, and the meaning of pale cells. */
 export function showLegend(place, palette, low, high, unvisited = false) {
   const bar = Object.assign(document.createElement("span"), { className: "bar" });
   bar.style.background = gradient(palette);
@@ -75,7 +75,7 @@ export function showLegend(place, palette, low, high, unvisited = false) {
   place.replaceChildren(...parts);
 }
 
-/** The greedy episode as a path on a map: places on a plane, or cells. */
+/** The greedy episode as a path on a map: positions on a plane, or cells. */
 export function pathOf(episode, plane) {
   if (!episode) return null;
   if (!plane) return Array.from(episode.cells);

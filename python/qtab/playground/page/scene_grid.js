@@ -14,7 +14,7 @@ const FLOORS = {
 export const gridWorld = {
   stepsPerSecond: 5,
 
-  /** `layout`: rows of letters; `wind`: the shift of each column or null; `cell`, `from`: where the agent is, and was. */
+  /** `layout`: rows of letters; `wind`: the shift of each column or null; `cell`, `from`: the agent's cell and its last one. */
   draw(g, width, height, { layout, wind, rewards, drawing, cell, from, share, trail }) {
     const colors = themeColors();
     const columns = layout[0].length;

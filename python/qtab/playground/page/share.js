@@ -1,4 +1,4 @@
-// The state in the fragment of the address. What an address holds is only ever taken as values of controls, each checked.
+// The state in the fragment of the address. The parts of an address are used only as values of controls, all checked.
 
 import { EXAMPLES, exampleState } from "./examples.js";
 import { readNumber } from "./numbers.js";
@@ -7,7 +7,7 @@ import { MANY_SEEDS, PAINTED } from "./store.js";
 const MAX_SIDE = 20;
 const MAX_LENGTH = 8000;
 const LARGEST_SEED = 2 ** 32 - 1 - MANY_SEEDS;
-/** What an address holds besides settings. */
+/** The parts of an address besides settings. */
 const GRID_NAMES = ["layout", "wind", "step_reward", "goal_reward", "rewards"];
 const NAMES = new Set(["env", "example", "seed", "seeds", ...GRID_NAMES]);
 
@@ -30,13 +30,13 @@ export function fragment({ state, definitions }) {
   return base.toString();
 }
 
-/** Sets a store to what an address holds; returns the names of the parts that do not fit: they are left out or cut. */
+/** Sets a store to the state of an address; returns the names of invalid parts, which are omitted or limited. */
 export function restore(store, text) {
   const given = new URLSearchParams(text.length > MAX_LENGTH ? "" : text);
   const left = text.length > MAX_LENGTH ? ["the whole address, which is too long"] : [];
   const { environments, settings: known } = store.definitions;
   left.push(...[...given.keys()].filter((name) => !NAMES.has(name) && !Object.hasOwn(known, name)).map((name) => name.slice(0, 40)));
-  // Not that of the page: a link shows the same in each tab.
+  // Not the page's last environment: a link shows the same in each tab.
   let [environment] = Object.keys(environments);
   const asked = given.get("env");
   if (asked !== null && Object.hasOwn(environments, asked)) environment = asked;
@@ -59,7 +59,7 @@ function whole(text, low, high) {
   return readNumber("", text, { low, high, integer: true });
 }
 
-/** The seeds of an address: the first one alone where it names none. */
+/** The seeds of an address; only the first one if it names none. */
 function readSeeds(given, left) {
   const { value: seed } = whole(given.get("seed") ?? "0", 0, LARGEST_SEED);
   const seeds = [1, MANY_SEEDS].find((count) => (given.get("seeds") ?? "1") === String(count));
@@ -85,7 +85,7 @@ function readSettings(store, given, state, left) {
   return asks;
 }
 
-/** The value of a setting; undefined for one that does not fit. */
+/** The value of a setting; undefined if it is invalid. */
 function readSetting(name, text, definition, components) {
   const integer = ["integer", "integers"].includes(definition.type);
   const high = name === "learning_rate" ? 2 : definition.high;
@@ -100,7 +100,7 @@ function readSetting(name, text, definition, components) {
   }
   if (parts.length === components) return parts;
   if (parts.length > 1) return undefined;
-  // One for all components: the package takes a single integer for bins and tiles, and limits and scales one by one.
+  // One value for all: the package accepts a single integer for bins and tiles, but a list for limits and scales.
   return integer ? parts[0] : Array(components).fill(parts[0]);
 }
 

@@ -1,6 +1,6 @@
-// Shortcuts of single keys, which can be turned off, and the dialog that lists them.
+// Single-key shortcuts, which can be turned off, and the dialog that lists them.
 
-/** Lists `shortcuts`, [key, what it does, function], in a table and listens for them. */
+/** Lists `shortcuts`, [key, description, function], in a table and listens for them. */
 export function setUpShortcuts(shortcuts, { table, isOn, isBlocked }) {
   const rows = [
     ...shortcuts.map(([key, text]) => [[key], text]),
@@ -23,7 +23,7 @@ export function setUpShortcuts(shortcuts, { table, isOn, isBlocked }) {
   });
 }
 
-/** Opens a dialog with a button, and closes it with its buttons that are marked so, and by a press beside it. */
+/** Opens a dialog with a button, and closes it with its close buttons or by a press beside it. */
 export function setUpDialog(dialog, opener, onOpen = () => {}) {
   const open = () => {
     onOpen();

@@ -1,4 +1,4 @@
-// What the learning curve shows: moving means, their mean over the seeds, and an interval of it.
+// The statistics of the learning curve: moving means, their mean over the seeds, and its interval.
 
 /** Two-sided 95 % quantiles of Student's t distribution, by degrees of freedom; 1.96 beyond the list. */
 const T_QUANTILES = [
@@ -6,12 +6,12 @@ const T_QUANTILES = [
   ...[2.201, 2.179, 2.16, 2.145, 2.131],
 ];
 
-/** How many episodes a moving mean covers, for a run of a number of episodes. */
+/** The number of episodes that a moving mean covers, for a run of `episodes` episodes. */
 export function windowOf(episodes) {
   return episodes >= 1000 ? 100 : Math.min(Math.max(Math.round(episodes / 20), 5), episodes);
 }
 
-/** The mean of the last so many numbers before each of the ends, which ascend; of fewer at the start. */
+/** The mean of the last `width` numbers before each of the ascending ends; of fewer at the start. */
 export function movingMeans(values, width, ends) {
   const sums = new Float64Array(values.length + 1);
   for (let index = 0; index < values.length; index++) sums[index + 1] = sums[index] + values[index];
@@ -21,7 +21,7 @@ export function movingMeans(values, width, ends) {
   });
 }
 
-/** About so many ends of windows up to a number of episodes, the last one always. */
+/** About `points` ends of windows up to a number of episodes, always including the last one. */
 export function windowEnds(episodes, points) {
   const step = Math.max(episodes / points, 1);
   const ends = [];
@@ -42,7 +42,7 @@ export function meanAndInterval(rows) {
   return { mean, half };
 }
 
-/** The number below which a share of the numbers lies, of a sample that is evenly spaced where there are many. */
+/** The number below which a share of the numbers lies, from an evenly spaced sample if there are many. */
 export function quantile(values, share) {
   const step = Math.max(Math.floor(values.length / 2000), 1);
   const sample = [];

@@ -2,7 +2,7 @@
 
 import { count, counted, number } from "./format.js";
 
-/** How far training is. */
+/** The progress of training. */
 export function statusText({ state, done, episodes, seconds, current, seeds }) {
   const many = seeds.length > 1 ? `, ${seeds.length} seeds` : "";
   if (state === "training") return `Training: ${count(done)} of ${counted(episodes, "episode")}${many}.`;
@@ -19,7 +19,7 @@ export function statusText({ state, done, episodes, seconds, current, seeds }) {
 export const DIVERGED =
   "The action values have diverged: they are no longer finite numbers. A smaller learning rate α helps.";
 
-/** A result for screen readers: how far it is, and how good. */
+/** A result for screen readers: its progress, and its returns. */
 export function spokenResult(result, summary, marks) {
   const compared = marks.map(({ name, value }) => `${name} ${number(value)}`).join(", ");
   return `${statusText(result)} ${summary}${compared ? ` To compare: ${compared}.` : ""}`;

@@ -1,14 +1,14 @@
-// What the reader chose: environment, settings, seeds, the painted grid. Everything else follows from it.
+// The reader's choices: environment, settings, seeds, the painted grid. Everything else follows from them.
 
 import { complete } from "./engine.js";
 import { fit } from "./fit.js";
 
 export const MANY_SEEDS = 16;
 export const PAINTED = "grid";
-/** How many rows and columns a map has where the table has no cells of two components. */
+/** The number of rows and columns of a map if the table has no cells of two components. */
 const RASTER = 48;
 
-/** The choices, their checks, and those who want to know of changes. */
+/** The choices, their checks, and the listeners for changes. */
 export class Store {
   constructor(definitions) {
     this.definitions = definitions;
@@ -16,7 +16,7 @@ export class Store {
     this.state = this.initial(Object.keys(definitions.environments)[0]);
   }
 
-  /** The state of an environment as its first preset gives it. */
+  /** The state of an environment with its first preset. */
   initial(environment, preset = null) {
     const entry = this.definitions.environments[environment];
     const name = preset ?? Object.keys(entry.presets)[0];
@@ -34,12 +34,12 @@ export class Store {
     return this.definitions.environments[this.state.environment];
   }
 
-  /** Calls a function with the state after each change, and the names of what changed. */
+  /** Calls a function with the state after each change, and the names of the changed parts. */
   subscribe(listener) {
     this.listeners.add(listener);
   }
 
-  /** Changes parts of the state. Settings are made to go together: what no longer applies is dropped. */
+  /** Changes parts of the state. Settings are made compatible: those that no longer apply are dropped. */
   update(changes) {
     const state = { ...this.state, ...changes };
     if (changes.settings) state.settings = fit(this.definitions, state.environment, changes.settings);
@@ -52,7 +52,7 @@ export class Store {
     this.update({ settings: { ...this.state.settings, [name]: value }, example: null });
   }
 
-  /** Why a choice is impossible beside the others; null if it is possible. */
+  /** The reason why a choice is impossible with the others; null if it is possible. */
   impossible(name, value) {
     if (name === "discretizer" && !this.entry.discretizers.includes(value)) {
       return this.entry.states === null
@@ -75,13 +75,13 @@ export class Store {
     return null;
   }
 
-  /** Changes the environment; its first preset begins. */
+  /** Changes the environment, starting from its first preset. */
   choose(environment) {
     const { seed, seeds } = this.state;
     this.update({ ...this.initial(environment), seed, seeds });
   }
 
-  /** What the engine is asked for. */
+  /** The request for the engine. */
   request() {
     const { environment, settings, seed, seeds, grid } = this.state;
     const asked = environment === PAINTED ? { id: environment, ...grid } : { id: environment };

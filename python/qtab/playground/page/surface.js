@@ -5,10 +5,12 @@ import { themeColors } from "./theme.js";
 
 export const FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', sans-serif";
 
-/** The sizes of canvases on the page, in CSS pixels: asking for one makes the browser lay out the page, in each frame. */
+/**
+ * The sizes of canvases on the page, in CSS pixels. Reading a size makes the browser compute the layout in each frame.
+ */
 let sizes = new WeakMap();
 
-/** Measures all canvases anew when they are drawn next, as the page around them has changed. */
+/** Measures all canvases again at their next drawing, as the page around them has changed. */
 export function forgetSizes() {
   sizes = new WeakMap();
 }
@@ -21,8 +23,8 @@ function sizeOf(canvas) {
 }
 
 /**
- * Clears a canvas and returns its context, scaled so that a unit is a CSS pixel, and its size in such pixels. It is as
- * large as `shown`, a canvas on the page that `onResize` watches.
+ * Clears a canvas and returns its context, scaled so that a unit is a CSS pixel, and its size in such pixels. It has
+ * the size of `shown`, a canvas on the page that `onResize` watches.
  */
 export function surface(canvas, shown = canvas) {
   const ratio = Math.min(globalThis.devicePixelRatio || 1, 3);
@@ -42,7 +44,7 @@ export function surface(canvas, shown = canvas) {
   return { g, width, height };
 }
 
-/** Draws again whenever one of the canvases has another size. */
+/** Draws again whenever the size of a canvas has changed. */
 export function onResize(canvases, draw) {
   const observer = new ResizeObserver((changes) => {
     for (const { target } of changes) sizes.delete(target);
@@ -51,7 +53,7 @@ export function onResize(canvases, draw) {
   for (const canvas of canvases) observer.observe(canvas);
 }
 
-/** Round numbers that divide a range into about so many parts. */
+/** Round numbers that divide a range into about `parts` parts. */
 export function ticks(low, high, parts) {
   const span = high - low;
   if (!(span > 0)) return [low];

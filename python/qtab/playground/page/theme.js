@@ -1,11 +1,11 @@
-// Light and dark colors: the reader's system decides, and the button overrides it.
+// Light and dark colors: the reader's system decides unless the button overrides it.
 
 const CHOICES = ["system", "light", "dark"];
 const NAMES = { system: "System colors", light: "Light colors", dark: "Dark colors" };
 const changed = new Set();
 let colors = null;
 
-/** The theme that is shown: "light" or "dark". */
+/** The current theme: "light" or "dark". */
 export function shownTheme() {
   const chosen = document.documentElement.dataset.theme;
   if (chosen === "light" || chosen === "dark") return chosen;
@@ -15,7 +15,7 @@ export function shownTheme() {
 /** The colors of style.css by their names without dashes, for canvases. */
 export function themeColors() {
   if (!colors) {
-    // The computed value of a variable is its text, with both colors; that of `color` is the one that is shown.
+    // The computed value of a variable is its text, with both colors; that of `color` is the one shown.
     const probe = document.body.appendChild(document.createElement("i"));
     const shown = getComputedStyle(probe);
     const colorOf = (name) => {

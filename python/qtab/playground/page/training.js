@@ -1,4 +1,4 @@
-// The run that the engine trains: what the buttons do with it, and what its messages mean.
+// The run that the engine trains: the actions of the buttons, and the handling of its messages.
 
 /** Starts, pauses and continues runs of a store's state. */
 export class Training {
@@ -36,7 +36,7 @@ export class Training {
     }
   }
 
-  /** Continues to the end; a finished run begins anew. */
+  /** Resumes the run to its end; a finished run starts again. */
   run() {
     if (this.state === "paused") {
       this.state = "training";
@@ -48,7 +48,7 @@ export class Training {
     if (this.state === "training") this.engine.stop();
   }
 
-  /** A single step or episode; of a run that is finished, the first one. The state of a step is then selected. */
+  /** Takes a single step or episode; of a finished run, the first one. The state of a step is then selected. */
   advance(unit) {
     if (this.state === "training") this.engine.stop();
     else if (this.state !== "paused") this.start(false);
@@ -57,7 +57,7 @@ export class Training {
     this.engine.advance(unit);
   }
 
-  /** The agent before its first step. */
+  /** Shows the agent before its first step. */
   reset() {
     this.start(false);
   }
@@ -69,7 +69,7 @@ export class Training {
     this.engine.inspect(cell);
   }
 
-  /** The cell to watch in the next run, with the size of its map; null for that of the first state. */
+  /** The cell to watch in the next run, with the size of its map; null to watch that of the first state. */
   watched() {
     const { map, cell } = this;
     return cell !== null && map?.environment === this.store.state.environment ? { cell, columns: map.columns, rows: map.rows } : null;
@@ -81,7 +81,7 @@ export class Training {
     requestAnimationFrame(() => setTimeout(() => id === this.id && this.keepInspecting(result)));
   }
 
-  /** Inspects the cell that was chosen in a new run, too, if its map has it; else the start of the greedy episode. */
+  /** Keeps inspecting the chosen cell in a new run if its map has it, otherwise the start of the greedy episode. */
   keepInspecting({ map, episode }) {
     const { environment } = this.store.state;
     const { columns, rows } = map;

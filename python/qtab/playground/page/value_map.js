@@ -46,7 +46,7 @@ export class StateMap {
     this.draw();
   }
 
-  /** Shows the agent at a place: [x, y] in the plane's units, or a cell; null hides it. */
+  /** Shows the agent at a position: [x, y] in the plane's units, or a cell; null hides it. */
   showAgent(place) {
     this.agent = place;
     if (this.frame) this.drawMarks();
@@ -66,7 +66,7 @@ export class StateMap {
     this.placeCell();
   }
 
-  /** Draws all but the agent and the selection, which move often, aside. */
+  /** Draws everything but the agent and the selection, which move often, on a separate canvas. */
   drawStates() {
     const { g, width, height } = surface(this.states, this.canvas);
     const { map, plane, layout, rewards, greedy, palette, path } = this.content;

@@ -1,4 +1,4 @@
-// What one sees of a result: status, learning curve, motion, maps and the selected state.
+// The view of a result: status, learning curve, motion, maps and the selected state.
 
 import { LearningCurve } from "./curve.js";
 import { count, counted, number } from "./format.js";
@@ -16,7 +16,7 @@ import { bestReturn, Marks } from "./marks.js";
 
 const element = (id) => document.getElementById(id);
 
-/** Shows results: the last one of a run at once, of those during training the newest one in each frame of the screen. */
+/** Shows results: the last one of a run at once, and during training the newest one in each frame. */
 export class View {
   constructor(store, announce, inspect) {
     Object.assign(this, { store, announce, inspect });
@@ -46,13 +46,13 @@ export class View {
     onThemeChange(() => this.isStale || this.draw());
   }
 
-  /** Keeps what is shown, but draws none of it again: it belongs to choices that have changed since. */
+  /** Keeps the current view, but does not redraw it: it belongs to choices that have changed since. */
   expectAnother() {
     this.isStale = true;
     this.note = null;
   }
 
-  /** Shows a result, or an inspection alone. */
+  /** Shows a result, or only an inspection. */
   show(message) {
     if (message.type === "inspection") {
       if (this.isStale) return;
@@ -80,7 +80,7 @@ export class View {
   showMessage(message) {
     const place = element("problem");
     place.hidden = message === null;
-    // A text that is set again would be read aloud again.
+    // Setting the same text again would have it read aloud again.
     if (place.textContent !== (message ?? "")) place.textContent = message ?? "";
   }
 
@@ -115,10 +115,10 @@ export class View {
     this.showState();
   }
 
-  /** What the learning curve shows: "returns", or "lengths" for the numbers of steps. */
+  /** The measure of the learning curve: "returns", or "lengths" for the numbers of steps. */
   get shownMeasure() {
     const { environment, grid } = this.store.state;
-    // Where steps cost nothing, their number shows how good the agent is.
+    // If steps cost nothing, their number shows how good the agent is.
     return this.measure ?? (environment === PAINTED && grid.step_reward === 0 ? "lengths" : "returns");
   }
 
@@ -223,7 +223,7 @@ export class View {
     showLegend(element("best-legend"), "values", low, high);
     const word = best.kind === "optimal" ? "optimal" : "best known";
     const value = bestReturn(entry, state.settings, best);
-    // The return is not discounted: with γ < 1 the policy that is shown may be another than the one that earns it.
+    // The return is not discounted: with γ < 1 the policy shown may differ from the one that earns it.
     const subject = best.kind === "optimal" && discount < 1 ? "The greatest expected return, without discounting," : "Its expected return";
     const expected = value === null ? "" : ` ${subject} is ${number(value)}.`;
     element("best-caption").textContent = `The ${word} values for γ = ${number(discount)} and an ${word} policy, in the same colors.${expected}`.replace("an best", "the best");
@@ -256,7 +256,7 @@ export class View {
     return `${place}${kind}: value ${number(map.values[cell])}${policy}, visited ${counted(Math.round(map.visits[cell]), "time")}.`;
   }
 
-  /** The state of an inspected cell: its observation, or its place on the grid. */
+  /** The state of an inspected cell: its observation, or its position on the grid. */
   stateText({ cell, observation }) {
     const { observations } = this.store.entry;
     const { columns } = this.result.map;

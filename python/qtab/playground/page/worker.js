@@ -1,19 +1,19 @@
-// The worker: trains in WebAssembly, in slices, so that a newer request stops an older one within a few milliseconds.
+// The worker: trains in WebAssembly in slices, so that a newer request stops an older one within a few milliseconds.
 
-const SLICE = 10; // milliseconds of training between two looks at the messages
+const SLICE = 10; // milliseconds of training between two checks for messages
 const FIRST_REPORT = 100; // milliseconds of training before a result is sent: drawing one would delay a run that takes no longer
 const REPORT_EVERY = 45; // milliseconds between two results while training
 const EPISODE_EVERY = 250; // milliseconds between two greedy episodes while training
 
 let source = null; // the bytes of the module, or its address
-let version = null; // that of the page, which the module must share
-let wasm = null; // its exports
-let pending = null; // the newest request that was not begun
-let run = null; // what is trained
+let version = null; // the page's version, which the module's must equal
+let wasm = null; // the exports of the module
+let pending = null; // the newest request, not yet begun
+let run = null; // the current run
 let scheduled = false;
 const channel = new MessageChannel();
 
-/** Lets the messages that wait be handled first. */
+/** Lets waiting messages be handled first. */
 function pause() {
   return new Promise((resolve) => {
     channel.port1.onmessage = resolve;
@@ -30,14 +30,14 @@ async function load() {
   try {
     built = call({ call: "version" }).version;
   } catch {
-    // It does not know the call.
+    // It does not support the call.
   }
   if (built === version) return;
   wasm = null;
   throw new Error(`qtab.wasm is ${built}, and the page ${version}: rebuild it with python rust/web/build_backend.py`);
 }
 
-/** Calls the module. Throws an Error with `setting` where it refuses the request. */
+/** Calls the module. Throws an Error with `setting` if it rejects the request. */
 function call(request) {
   const text = new TextEncoder().encode(JSON.stringify(request));
   const address = wasm.request(text.length);
@@ -95,7 +95,7 @@ function advance() {
     answer = call({ call: "advance", work: run.work, ...(run.goal === Infinity ? {} : { episodes: run.goal }) });
     const taken = performance.now() - begun - elapsed;
     elapsed += taken;
-    // Calls of 2 to 5 milliseconds.
+    // Aim for calls of 2 to 5 milliseconds.
     if (taken < 2) run.work = Math.min(run.work * 2, 2_000_000);
     else if (taken > 5) run.work = Math.max(run.work >> 1, 500);
   } while (answer.state === "training" && answer.done < run.goal && elapsed < SLICE);
@@ -130,7 +130,7 @@ function report() {
   });
 }
 
-/** Finds the last updates of the inspected cell, unless a newer message comes first. */
+/** Finds the last updates of the inspected cell, unless a newer message arrives first. */
 async function inspect() {
   const { id, inspected: cell } = run;
   let answer;
@@ -177,7 +177,7 @@ async function work() {
       run = null;
       // Without the module no request can be answered.
       if (!wasm) pending = null;
-      // A fault of the module leaves it in no state to go on.
+      // After a fault the module cannot continue.
       if (error instanceof WebAssembly.RuntimeError) wasm = null;
       fail(id, error instanceof WebAssembly.RuntimeError ? new Error(`training stopped: ${error.message}`) : error);
     }
@@ -228,7 +228,7 @@ const handlers = {
   },
 };
 
-// These act on the run that was asked for last, even if it has not begun.
+// These act on the run that was requested last, even if it has not begun.
 const ACTS_ON_RUN = ["advance", "run", "stop"];
 
 onmessage = ({ data }) => {
