@@ -86,9 +86,7 @@ def _expected_updates(count: int) -> float:
     ],
 )
 def test_values_beyond_the_range_of_float64_are_errors(compute: Callable[[], Any]) -> None:
-    with pytest.raises(
-        OverflowError, match=r"rewards must be smaller: the return from state [01] exceeds the range"
-    ):
+    with pytest.raises(OverflowError, match=r"rewards must be smaller: the return from state [01] exceeds the range"):
         compute()
 
 

@@ -104,7 +104,7 @@ def test_an_environment_without_a_table_is_refused() -> None:
 
 
 def test_probabilities_of_a_function_must_sum_to_1_in_float64() -> None:
-    thirds = np.float32([1 / 3, 1 / 3, 1 / 3, 0])
+    thirds = np.array([1 / 3, 1 / 3, 1 / 3, 0], np.float32)
     assert thirds.sum() == 1
     with pytest.raises(ValueError, match="must sum to 1 in every state, got 1 in row 0"):
         qtab.policy_values("FrozenLake-v1", lambda observation: thirds)
