@@ -101,7 +101,7 @@ def test_only_one_thread_at_a_time_advances_a_trainer():
     resolved = resolve("MountainCar-v0", {"seed": 0, "episodes": 2000})
     trainer = _core.Trainer(resolved.spec(), resolved.seed)
     errors = [error for error in at_once(lambda _: trainer.advance(2000)) if error is not None]
-    assert all(isinstance(error, RuntimeError) and "at work in another thread" in str(error) for error in errors)
+    assert all(isinstance(error, RuntimeError) and "busy in another thread" in str(error) for error in errors)
     trainer.advance(2000)
     expected = qtab.train("MountainCar-v0", seed=0, episodes=2000)
     assert trainer.episodes()[0].tobytes() == expected.episode_returns.tobytes()

@@ -86,7 +86,7 @@ def test_no_error_quotes_a_presets_number_as_the_users(name: str, wrap: Any, set
 
 def test_a_value_of_the_preset_that_does_not_fit_the_users_is_named() -> None:
     with pytest.raises(
-        ValueError, match=r"high must .* got \(2.4, .*\); this is the high of preset 'tuned', give another"
+        ValueError, match=r"high must .* got \(2.4, .*\); this is the high of preset 'tuned'; give another"
     ):
         qtab.train("CartPole-v1", low=(3, 3, 3, 3))
     with pytest.raises(ValueError, match=r"high must lie above low = .* got \(2.4, [^;]*\)$"):

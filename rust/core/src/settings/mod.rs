@@ -9,7 +9,7 @@ pub use policy::PolicySpec;
 pub use schedule::{LearningRateSpec, SCHEDULES, ScheduleSpec};
 
 /// The smallest number above 0, as a bound of [`SettingSource::number`].
-pub(crate) const ABOVE_ZERO: f64 = f64::from_bits(1);
+pub const ABOVE_ZERO: f64 = f64::from_bits(1);
 
 /// A source of settings. Each reader returns an error for a missing setting, and `None` for one of another type.
 pub trait SettingSource {
