@@ -29,7 +29,7 @@ class VecEnv:
         self.metadata: dict[str, Any] = {}
 
     def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
-        raise NotImplementedError
+        raise NotImplementedError  # abstract, as in Stable-Baselines3: the class under test implements it
 
     def _reset_seeds(self) -> None:
         self._seeds: list[int | None] = [None] * self.num_envs

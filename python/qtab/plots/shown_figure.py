@@ -16,4 +16,4 @@ class ShownFigure(Figure):
         """
         if "inline" in matplotlib.get_backend().lower():
             plt.close(self)  # an open figure would be shown again at the end of the cell
-        raise NotImplementedError
+        raise NotImplementedError  # IPython's protocol: it then uses its other ways to show an object

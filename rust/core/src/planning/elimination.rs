@@ -5,7 +5,7 @@ use crate::StopFlag;
 use super::PlanningError;
 
 /// A matrix I - γP after Gaussian elimination, which solves the equations for any right-hand side.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(super) struct Eliminated {
     /// Row by row: the factors of the rows above, then the remaining entries of the row.
     entries: Vec<f64>,

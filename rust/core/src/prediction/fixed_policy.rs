@@ -62,12 +62,6 @@ impl FixedPolicy {
         }
         thresholds.iter().take_while(|&&threshold| threshold <= random).count()
     }
-
-    /// π(a|s).
-    #[inline]
-    pub fn probability(&self, state: u32, action: usize) -> f64 {
-        self.probabilities[state as usize * self.num_actions + action]
-    }
 }
 
 /// A policy over numbered states.
