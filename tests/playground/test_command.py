@@ -67,13 +67,22 @@ def test_without_the_module_the_error_says_how_to_build_it(tmp_path, opened, cap
 
 @needs_module
 @pytest.mark.browser
-def test_a_module_of_another_version_is_refused(tmp_path, chromium):
-    path = tmp_path / "page.html"
+@pytest.mark.parametrize("requested_while_loading", [False, True])
+def test_a_module_of_another_version_is_refused(tmp_path, chromium, requested_while_loading):
     html = playground.page()
     version = f'"version":"{qtab.__version__}"'
-    assert html.count(version) == 1
-    path.write_text(html.replace(version, '"version":"9.9.9"'), encoding="utf-8")
+    instantiate = "const { instance } = await WebAssembly"
+    assert html.count(version) == html.count(instantiate) == 1
+    html = html.replace(version, '"version":"9.9.9"')
     page = chromium.new_page()
+    if requested_while_loading:
+        html = html.replace(instantiate, f"await new Promise((done) => setTimeout(done, 1000)); {instantiate}")
+        page.add_init_script(
+            "const post = Worker.prototype.postMessage; Worker.prototype.postMessage = function (message, ...rest) "
+            "{ setTimeout(() => post.call(this, message, ...rest), message.type === 'load' ? 0 : 200); };"
+        )
+    path = tmp_path / "page.html"
+    path.write_text(html, encoding="utf-8")
     page.goto(path.as_uri())
     problem = page.locator("#problem")
     problem.wait_for()

@@ -158,7 +158,7 @@ async function work() {
   scheduled = true;
   for (;;) {
     await pause();
-    const id = pending?.id ?? run?.id;
+    let id = pending?.id ?? run?.id;
     try {
       if (!wasm) await load().then(() => send({ type: "ready", memory: wasm.memory.buffer.byteLength }));
       if (pending) {
@@ -175,8 +175,11 @@ async function work() {
       }
     } catch (error) {
       run = null;
-      // Without the module no request can be answered.
-      if (!wasm) pending = null;
+      if (!wasm) {
+        // Without the module no request can be answered, nor the one that came while it was loaded.
+        id = pending?.id ?? id;
+        pending = null;
+      }
       // After a fault the module cannot continue.
       if (error instanceof WebAssembly.RuntimeError) wasm = null;
       fail(id, error instanceof WebAssembly.RuntimeError ? new Error(`training stopped: ${error.message}`) : error);
