@@ -60,6 +60,19 @@ CRATE_ORDERS = {
         {"envs"},
         {"planning", "training"},
     ),
+    "web": (
+        {"episode", "failure", "json", "updates"},
+        {"any_learner", "grid_world"},
+        {"environment", "step_terms"},
+        {"settings", "update_recorder"},
+        {"memory", "plane", "run"},
+        {"subject"},
+        {"training"},
+        {"best"},
+        {"report"},
+        {"playground"},
+        {"exports"},
+    ),
 }
 """The top-level modules of each crate in the order of their uses: each uses only those in the sets before its own."""
 

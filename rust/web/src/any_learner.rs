@@ -10,7 +10,7 @@ use qtab_core::learners::{
 };
 use qtab_core::{Learner, QTable, StopFlag, delegate_learner};
 
-use crate::subject::Failure;
+use crate::failure::Failure;
 
 /// One of the learners for states with active rows `R`.
 pub(crate) enum AnyLearner<R: ActiveRows> {

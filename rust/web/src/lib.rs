@@ -8,6 +8,7 @@ mod best;
 mod environment;
 mod episode;
 pub mod exports;
+mod failure;
 mod grid_world;
 mod json;
 mod memory;

@@ -4,10 +4,10 @@ use serde::Serialize;
 use serde_json::Value;
 
 use crate::best::Planner;
+use crate::failure::Failure;
 use crate::json::{integer, written};
 use crate::report::{Arrays, inspection, report, table};
 use crate::settings::SettingError;
-use crate::subject::Failure;
 use crate::training::{Position, State, Training};
 
 /// The largest amount of work per call: a tenth of a second or less.

@@ -5,7 +5,7 @@ use qtab_core::random::AgentRng;
 use qtab_core::tasks::BoxedTask;
 use qtab_core::{Budget, EpisodeLog, Learner, Task, Trainer};
 
-use crate::subject::Failure;
+use crate::failure::Failure;
 use crate::update_recorder::UpdateRecorder;
 use crate::updates::Watch;
 

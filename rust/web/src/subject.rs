@@ -5,43 +5,18 @@ use std::sync::{Arc, Mutex, PoisonError};
 use qtab_core::checkpoint::{Checkpoint, CheckpointError};
 use qtab_core::features::{Features, Identity, OutOfBounds};
 use qtab_core::learners::TransformedSteps;
-use qtab_core::memory::AllocationError;
 use qtab_core::random::{Pcg64, SeedSequence};
 use qtab_core::tasks::{BoxedTask, NativeTask, TimedState, Transition, VisitCounter};
-use qtab_core::{Env, StopFlag, Task, Trainer, TrainingError};
+use qtab_core::{Env, StopFlag, Task, Trainer};
 
 use crate::any_learner::AnyLearner;
 use crate::environment::Environment;
 use crate::episode::{Episode, greedy_action};
+use crate::failure::Failure;
 use crate::run::Run;
 use crate::settings::{Discretizer, Settings};
 use crate::update_recorder::UpdateRecorder;
 use crate::updates::Watch;
-
-/// The reason why a run cannot be made or continued.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Failure(pub(crate) String);
-
-impl From<OutOfBounds> for Failure {
-    fn from(error: OutOfBounds) -> Self {
-        Self(error.to_string())
-    }
-}
-
-impl From<AllocationError> for Failure {
-    fn from(error: AllocationError) -> Self {
-        Self(format!("the run does not fit into memory: {error}"))
-    }
-}
-
-impl From<TrainingError<Failure>> for Failure {
-    fn from(error: TrainingError<Failure>) -> Self {
-        match error {
-            TrainingError::Task(failure) => failure,
-            TrainingError::Allocation(error) => error.into(),
-        }
-    }
-}
 
 /// Observations as numbers.
 pub(crate) trait Numbers: Sized {

@@ -4,12 +4,13 @@ use serde::Serialize;
 use serde_json::Value;
 
 use crate::environment::Environment;
+use crate::failure::Failure;
 use crate::json::integer;
 use crate::memory;
 use crate::plane::Cells;
 use crate::run::Run;
 use crate::settings::{SettingError, Settings};
-use crate::subject::{Failure, StartedRun, Subject, subject};
+use crate::subject::{StartedRun, Subject, subject};
 use crate::updates::Watch;
 
 const MAX_SEEDS: usize = 64;
