@@ -9,8 +9,8 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 
 import qtab
-from qtab.envs.dyna_maze import scaled_maze
-from qtab.envs.racetrack import TRACKS
+from qtab.envs.book.mazes import scaled_maze
+from qtab.envs.book.racetrack import TRACKS
 from support.parity import assert_same_run
 
 IDS = [f"qtab/{name}-v0" for name in ("AccessControlQueue", "BlockingMaze", "DynaMaze", "Racetrack", "ShortcutMaze")]

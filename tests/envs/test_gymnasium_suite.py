@@ -19,7 +19,7 @@ from gymnasium.utils.env_checker import data_equivalence
 from gymnasium.utils.env_match import check_environments_match
 from gymnasium.vector import SyncVectorEnv
 
-from qtab.envs.k_armed_bandit import KArmedBanditEnv
+from qtab.envs.book.k_armed_bandit import KArmedBanditEnv
 from qtab.envs.registry import EXTRA, gymnasium_id
 
 IDS = sorted(name for name in gym.registry if name.startswith("qtab/"))

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 import qtab
 from qtab import _core
-from qtab.envs import known_tables
-from qtab.envs.known_tables import known_table
+from qtab.envs import native
+from qtab.envs.native import known_table
 from support.parity import assert_same_run
 
 IDS = ("CliffWalking-v1", "CliffWalkingSlippery-v1", "FrozenLake-v1", "FrozenLake8x8-v1", "Taxi-v4")
@@ -204,4 +204,4 @@ def test_a_replaced_class_or_map_and_other_directions_are_gymnasiums(monkeypatch
 def test_another_version_of_gymnasium_makes_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(gym, "__version__", "1.5.0")
     assert all(known_table(gym.spec(name), {}) is None for name in IDS)
-    assert gym.__version__ != known_tables.VERSION
+    assert gym.__version__ != native.VERSION

@@ -7,11 +7,10 @@ import numpy as np
 import pytest
 
 import qtab
-from qtab.envs.gamblers_problem import gamblers_problem
-from qtab.envs.grid_worlds import DOWN, LEFT, RIGHT, UP
-from qtab.envs.jacks_car_rental import MAX_MOVED, cars_moved, jacks_car_rental
-from qtab.envs.random_mdp import random_mdp
-from qtab.envs.small_grid_worlds import grid_world_4x4, grid_world_5x5
+from qtab.envs.book.gamblers_problem import gamblers_problem
+from qtab.envs.book.jacks_car_rental import MAX_MOVED, cars_moved, jacks_car_rental
+from qtab.envs.book.random_mdp import random_mdp
+from qtab.envs.grid_worlds import DOWN, LEFT, RIGHT, UP, grid_world_4x4, grid_world_5x5
 
 IDS = ("GridWorld5x5-v0", "GridWorld4x4-v0", "GamblersProblem-v0", "JacksCarRental-v0", "RandomMdp-v0")
 

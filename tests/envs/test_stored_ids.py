@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 import qtab
 from qtab import plots
-from qtab.envs.stored import StoredId, stored_id
+from qtab.envs.registry import StoredId, stored_id
 from qtab.rendering.sweep_report import write_report
 from qtab.sweeps.run_records import study_digest, to_text
 from support.environments import Walk

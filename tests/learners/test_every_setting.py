@@ -12,7 +12,7 @@ import pytest
 import qtab
 from qtab.config.choices import Algorithm
 from qtab.config.options import FIXED, PREFERENCES
-from qtab.envs.random_mdp import random_mdp
+from qtab.envs.book.random_mdp import random_mdp
 
 CAR = "MountainCarContinuous-v0"
 

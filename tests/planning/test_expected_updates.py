@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import qtab
-from qtab.envs.random_mdp import random_mdp
+from qtab.envs.book.random_mdp import random_mdp
 from qtab.reference import dynamic_programming as reference
 
 

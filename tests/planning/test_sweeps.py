@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import qtab
-from qtab.envs.random_mdp import random_mdp
-from qtab.envs.small_grid_worlds import grid_world_4x4
+from qtab.envs.book.random_mdp import random_mdp
+from qtab.envs.grid_worlds import grid_world_4x4
 from qtab.reference import dynamic_programming as reference
 
 

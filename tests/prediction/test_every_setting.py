@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import qtab
-from qtab.envs.random_mdp import random_mdp
+from qtab.envs.book.random_mdp import random_mdp
 from qtab.prediction import state_aggregation
 from qtab.prediction.settings import METHODS
 

@@ -20,7 +20,7 @@ pytestmark = pytest.mark.filterwarnings("ignore:.*CartPole-v0 is out of date")
 @pytest.mark.parametrize("name", IDS)
 def test_make_vec_makes_the_vector_environment_in_rust(name):
     env = ours(name, 3)
-    assert type(env.unwrapped).__module__ == "qtab.envs.vector"
+    assert type(env.unwrapped).__module__ == "qtab.envs.vector.rust_vector_env"
     assert env.is_native
     assert env.num_envs == 3
     other = theirs(name, 3)

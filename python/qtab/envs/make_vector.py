@@ -10,7 +10,7 @@ from gymnasium.vector import SyncVectorEnv, VectorEnv
 from qtab._utils import checks
 from qtab.envs.registry import PREFIX
 from qtab.envs.vector import RustVectorEnv
-from qtab.envs.vector_arguments import spec_to_step
+from qtab.envs.vector.arguments import spec_to_step
 
 _SYNC_OPTIONS = {"copy", "autoreset_mode"}
 """The arguments of ``SyncVectorEnv`` that Rust has as well."""

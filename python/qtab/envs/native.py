@@ -1,13 +1,143 @@
-"""Gymnasium's environments as the extension module steps them: by their parameters, their table or their rules."""
+"""Gymnasium's environments as the extension module steps them: by their parameters, their table or their rules.
 
+Rust also makes the transition tables for which Gymnasium's constructors take milliseconds.
+"""
+
+from collections.abc import Callable, Mapping
+from functools import lru_cache
+from importlib import import_module
 from typing import Any
 
+import gymnasium as gym
 import numpy as np
+from gymnasium import spaces
+from gymnasium.envs.registration import EnvSpec
 from gymnasium.envs.toy_text.blackjack import BlackjackEnv
 
 from qtab import _core
 from qtab.envs.actions import Actions
-from qtab.envs.registry import TABULAR
+from qtab.envs.class_code import changed_library_code
+from qtab.envs.registry import ENTRIES, TABULAR, gymnasium_id
+
+VERSION = "1.4."
+"""The version of Gymnasium that has these tables. With any other version, Gymnasium makes them."""
+
+_DIRECTIONS = {0: [-1, 0], 1: [0, 1], 2: [1, 0], 3: [0, -1]}
+"""The move of each action of CliffWalking: rows and columns."""
+_LEFT_DOWN_RIGHT_UP = (0, 1, 2, 3)
+"""The actions of FrozenLake."""
+_LETTERS = frozenset("SFHG")
+"""The letters of a frozen lake: start, frozen, hole, goal."""
+
+
+class KnownTable(gym.Env[int, int]):
+    """The spaces and the transition table of a Gymnasium environment, which suffice for training in Rust.
+
+    Python cannot step it; for that, ``gymnasium.make`` makes the environment.
+
+    Args:
+        table: The transition table.
+        attributes: Other attributes that Rust reads.
+    """
+
+    def __init__(self, table: _core.TransitionTable, **attributes: Any) -> None:
+        self.P = table
+        self.observation_space = spaces.Discrete(table.states)  # type: ignore[assignment]
+        self.action_space = spaces.Discrete(table.actions)  # type: ignore[assignment]
+        vars(self).update(attributes)
+
+
+def known_table(spec: EnvSpec, kwargs: Mapping[str, Any]) -> KnownTable | None:
+    """Returns the table of ``gymnasium.make(spec, **kwargs)``; None if only Gymnasium can make it.
+
+    Args:
+        spec: The spec of an environment that Rust steps.
+        kwargs: Keyword arguments of the constructor.
+    """
+    name = gymnasium_id(spec.id)
+    known = _KNOWN.get(name)
+    if known is None or not gym.__version__.startswith(VERSION):
+        return None
+    defaults, make_table = known
+    arguments = {**defaults, **spec.kwargs, **kwargs}
+    if arguments.keys() != defaults.keys() or any(type(arguments[key]) is not type(defaults[key]) for key in defaults):
+        return None
+    module_name, _, class_name = ENTRIES[name].gymnasium_entry_point.partition(":")
+    module: Any = import_module(module_name)
+    cls = getattr(module, class_name)
+    if cls.__module__ != module_name or changed_library_code(cls) is not None:
+        return None
+    try:
+        return make_table(module, **arguments)
+    except (OverflowError, ValueError):  # arguments that Gymnasium refuses, or a map of another size
+        return None
+
+
+def _cliff_walking(module: Any, *, is_slippery: bool) -> KnownTable | None:
+    own = module.POSITION_MAPPING == _DIRECTIONS
+    return KnownTable(_core.TransitionTable.cliff_walking(is_slippery)) if own else None
+
+
+def _frozen_lake(
+    module: Any,
+    *,
+    desc: None,  # noqa: ARG001 - a map of the user's is left to Gymnasium
+    map_name: str,
+    is_slippery: bool,
+    success_rate: float,
+    reward_schedule: tuple[float, ...],
+) -> KnownTable | None:
+    lines = module.MAPS.get(map_name)
+    if (
+        (module.LEFT, module.DOWN, module.RIGHT, module.UP) != _LEFT_DOWN_RIGHT_UP
+        or not isinstance(lines, list)
+        or not all(isinstance(line, str) and len(line) > 1 and _LETTERS.issuperset(line) for line in lines)
+        or len(reward_schedule) != 3
+        or not all(type(reward) in (int, float) for reward in reward_schedule)
+    ):
+        return None
+    rate = success_rate if is_slippery else None
+    return KnownTable(_core.TransitionTable.frozen_lake([line.encode() for line in lines], rate, reward_schedule))
+
+
+def _taxi(
+    module: Any, *, is_rainy: bool, fickle_passenger: bool, rainy_probability: float, fickle_probability: float
+) -> KnownTable:
+    rain = rainy_probability if is_rainy else None
+    table = _taxi_table(tuple(line.encode("ascii") for line in module.MAP), rain)
+    return KnownTable(table, fickle_passenger=fickle_passenger, fickle_probability=fickle_probability)
+
+
+@lru_cache(maxsize=4)
+def _taxi_table(lines: tuple[bytes, ...], rain: float | None) -> _core.TransitionTable:
+    # Cached: making it takes as long as everything else before the first step, and nothing can change it.
+    return _core.TransitionTable.taxi(lines, rain)
+
+
+_Maker = Callable[..., KnownTable | None]
+_CLIFF_WALKING: tuple[Mapping[str, Any], _Maker] = ({"is_slippery": False}, _cliff_walking)
+_FROZEN_LAKE: tuple[Mapping[str, Any], _Maker] = (
+    {
+        "desc": None,
+        "map_name": "4x4",
+        "is_slippery": True,
+        "success_rate": 1.0 / 3.0,
+        "reward_schedule": (1, 0, 0),
+    },
+    _frozen_lake,
+)
+_TAXI: tuple[Mapping[str, Any], _Maker] = (
+    {"is_rainy": False, "fickle_passenger": False, "rainy_probability": 0.8, "fickle_probability": 0.3},
+    _taxi,
+)
+_KNOWN = {
+    "CliffWalking-v1": _CLIFF_WALKING,
+    "CliffWalkingSlippery-v1": _CLIFF_WALKING,
+    "FrozenLake-v1": _FROZEN_LAKE,
+    "FrozenLake8x8-v1": _FROZEN_LAKE,
+    "Taxi-v4": _TAXI,
+}
+"""The keyword arguments of the constructor with their defaults, and the function that makes the table, by the id."""
 
 
 def native_env(name: str, env: Any, actions: Actions | None = None) -> _core.NativeEnv:

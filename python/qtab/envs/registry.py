@@ -1,14 +1,18 @@
-"""The environments that Rust implements: one entry for each Gymnasium id, and the lookup of entries."""
+"""The environments that Rust implements: one entry for each Gymnasium id, and the lookup of entries and specs.
+
+Environments that a file names are used if they are registered, and never imported.
+"""
 
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
+from importlib import import_module
 from typing import Any
 
 import gymnasium as gym
 from gymnasium.envs.registration import EnvSpec, find_highest_version, get_env_id, parse_env_id
 
 from qtab._utils.shown import shown
-from qtab.envs.stored import StoredId, import_package, unregistered
 
 PACKAGE = "qtab"
 PREFIX = "qtab/"
@@ -67,7 +71,7 @@ _CART_POLE = _classic_control(
     "CartPole",
     "cartpole:CartPoleEnv",
     "sutton_barto_reward",
-    vector_entry_point="qtab.envs.cart_pole_vector:CartPoleVectorEnv",
+    vector_entry_point="qtab.envs.classic_control:CartPoleVectorEnv",
 )
 
 ENTRIES: Mapping[str, EnvEntry] = {
@@ -90,33 +94,33 @@ ENTRIES: Mapping[str, EnvEntry] = {
 
 _BOOK = {
     "AccessControlQueue-v0": (_TABLE, "access_control_queue:AccessControlQueueEnv"),
-    "BlockingMaze-v0": ("ChangingMaze", "changing_mazes:BlockingMazeEnv"),
-    "DynaMaze-v0": (_TABLE, "dyna_maze:DynaMazeEnv"),
+    "BlockingMaze-v0": ("ChangingMaze", "mazes:BlockingMazeEnv"),
+    "DynaMaze-v0": (_TABLE, "mazes:DynaMazeEnv"),
     "Racetrack-v0": ("Racetrack", "racetrack:RacetrackEnv"),
-    "ShortcutMaze-v0": ("ChangingMaze", "changing_mazes:ShortcutMazeEnv"),
+    "ShortcutMaze-v0": ("ChangingMaze", "mazes:ShortcutMazeEnv"),
 }
 """The names in the extension module, and the classes, of environments of Sutton & Barto's book."""
 
 EXTRA: Mapping[str, EnvEntry] = {
     **{
-        f"{PREFIX}{name}": EnvEntry(of_extension, "", f"qtab.envs.{entry_point}", has_table=True)
+        f"{PREFIX}{name}": EnvEntry(of_extension, "", f"qtab.envs.book.{entry_point}", has_table=True)
         for name, (of_extension, entry_point) in _BOOK.items()
     },
     f"{PREFIX}KArmedBandit-v0": EnvEntry(
-        "KArmedBandit", "", "qtab.envs.k_armed_bandit:KArmedBanditEnv", has_table=True
+        "KArmedBandit", "", "qtab.envs.book.k_armed_bandit:KArmedBanditEnv", has_table=True
     ),
     f"{PREFIX}MaximizationBias-v0": EnvEntry(
-        "MaximizationBias", "", "qtab.envs.maximization_bias:MaximizationBiasEnv", has_table=True
+        "MaximizationBias", "", "qtab.envs.book.maximization_bias:MaximizationBiasEnv", has_table=True
     ),
     f"{PREFIX}ShortCorridor-v0": EnvEntry(
-        "ShortCorridor", "", "qtab.envs.short_corridor:ShortCorridorEnv", has_table=True
+        "ShortCorridor", "", "qtab.envs.book.short_corridor:ShortCorridorEnv", has_table=True
     ),
-    f"{PREFIX}RandomWalk-v0": _table("qtab.envs.random_walk:RandomWalkEnv"),
-    f"{PREFIX}GridWorld5x5-v0": _table("qtab.envs.small_grid_worlds:grid_world_5x5"),
-    f"{PREFIX}GridWorld4x4-v0": _table("qtab.envs.small_grid_worlds:grid_world_4x4"),
-    f"{PREFIX}GamblersProblem-v0": _table("qtab.envs.gamblers_problem:gamblers_problem"),
-    f"{PREFIX}JacksCarRental-v0": _table("qtab.envs.jacks_car_rental:jacks_car_rental"),
-    f"{PREFIX}RandomMdp-v0": _table("qtab.envs.random_mdp:random_mdp"),
+    f"{PREFIX}RandomWalk-v0": _table("qtab.envs.book.random_walk:RandomWalkEnv"),
+    f"{PREFIX}GridWorld5x5-v0": _table("qtab.envs.grid_worlds:grid_world_5x5"),
+    f"{PREFIX}GridWorld4x4-v0": _table("qtab.envs.grid_worlds:grid_world_4x4"),
+    f"{PREFIX}GamblersProblem-v0": _table("qtab.envs.book.gamblers_problem:gamblers_problem"),
+    f"{PREFIX}JacksCarRental-v0": _table("qtab.envs.book.jacks_car_rental:jacks_car_rental"),
+    f"{PREFIX}RandomMdp-v0": _table("qtab.envs.book.random_mdp:random_mdp"),
 }
 """Environments that Gymnasium does not have, by their id."""
 
@@ -204,3 +208,57 @@ def spec_of(env: str) -> EnvSpec:
         if isinstance(env, StoredId):
             raise unregistered(env) from None
         raise
+
+
+class StoredId(str):
+    """The id of an environment that was read from a file. It equals the id as a plain string.
+
+    Gymnasium imports ``package`` for an id such as ``"package:Name-v0"``, which would let a file choose a module. For
+    an id of this class it is not imported: the environment has to be registered already.
+    """
+
+    __slots__ = ()
+
+
+def stored_id(env: Any) -> Any:
+    """Returns an id from a file as a :class:`StoredId` if it names a package; anything else unchanged."""
+    return StoredId(env) if isinstance(env, str) and ":" in env else env
+
+
+def import_package(env: str) -> None:
+    """Imports the package that an id names (``"package:id"``), unless the id was read from a file.
+
+    Raises:
+        ModuleNotFoundError: if the package is not installed.
+    """
+    package = env.rpartition(":")[0]
+    if package and not isinstance(env, StoredId):
+        import_module(package)
+
+
+def spec_of_run(env: str) -> EnvSpec:
+    """Returns the spec of a run's environment, whose id is complete.
+
+    Raises:
+        gymnasium.error.UnregisteredEnv: if it is not registered; the message names the remedy.
+        ModuleNotFoundError: if the package that the id names is not installed.
+    """
+    import_package(env)
+    spec = gym.registry.get(env.rpartition(":")[2])
+    if spec is None:
+        raise unregistered(env)
+    return spec
+
+
+def is_registered(env: str) -> bool:
+    """Returns whether the environment of a run can be made from its id."""
+    with suppress(gym.error.UnregisteredEnv, ModuleNotFoundError):
+        return bool(spec_of_run(env))
+    return False
+
+
+def unregistered(env: str) -> gym.error.UnregisteredEnv:
+    """Returns the error for a run whose environment is not registered."""
+    package = env.rpartition(":")[0]
+    advice = f"import {package} first, or pass env=" if package else "pass env="
+    return gym.error.UnregisteredEnv(f"the run's environment {str(env)!r} is not registered with Gymnasium: {advice}")

@@ -19,7 +19,7 @@ from qtab.envs.goals import UNLIMITED_MAX_EPISODE_STEPS, has_quick_optimum, rewa
 from qtab.envs.matching import time_limit
 from qtab.envs.origin.describe import describe
 from qtab.envs.origin.description import EnvironmentDescription
-from qtab.envs.stored import spec_of_run
+from qtab.envs.registry import spec_of_run
 from qtab.planning.classic_control import GridSolver, search_grid
 from qtab.planning.grid_environments import GridEnvironment, grid_environment
 from qtab.planning.optimum import Optimum

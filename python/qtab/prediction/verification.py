@@ -12,8 +12,7 @@ from qtab._utils.arrays import same_bytes
 from qtab._utils.fields import with_fields
 from qtab._utils.shown import shown
 from qtab.config.config import replace_checked
-from qtab.envs.registry import ENTRIES, gymnasium_id
-from qtab.envs.stored import spec_of_run
+from qtab.envs.registry import ENTRIES, gymnasium_id, spec_of_run
 from qtab.prediction.reference import estimate
 
 if TYPE_CHECKING:

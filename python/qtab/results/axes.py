@@ -60,9 +60,17 @@ def run_quantities(config: Config, discretizer: "Discretizer") -> Quantities:
     if environment is None:  # a file of an earlier version
         return known
     entry = entry_for_id(config.env.rpartition(":")[2])
-    if entry is None or environment.cls not in (entry.gymnasium_entry_point, entry.entry_point):
+    if entry is None or _bare_class(environment.cls) not in (
+        entry.gymnasium_entry_point,
+        _bare_class(entry.entry_point),
+    ):
         return known if environment.cls == TABULAR.entry_point else UNKNOWN
     return behind(known, (wrapper.cls for wrapper in environment.wrappers))
+
+
+def _bare_class(cls: str) -> str:
+    """Returns a class without its module if it is one of this package's: files of earlier versions name another."""
+    return cls.rpartition(":")[2] if cls.startswith("qtab.") else cls
 
 
 def axes_of(known: Quantities, discretizer: "Discretizer") -> tuple[Axis, ...]:

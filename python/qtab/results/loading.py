@@ -21,7 +21,7 @@ from qtab.config.stored import corrected_settings, implied_settings
 from qtab.discretizers.base import MAX_TABLE_SIZE
 from qtab.envs.origin.description import from_json
 from qtab.envs.origin.values import with_types
-from qtab.envs.stored import stored_id
+from qtab.envs.registry import stored_id
 from qtab.results import run_file
 from qtab.results.consistency import check_consistent, check_consistent_runs
 from qtab.results.optional_arrays import checked_masks, restore_optional

@@ -19,7 +19,7 @@ from qtab.config.layers import Base, over
 from qtab.config.stored import corrected_settings, stored_settings
 from qtab.config.unknown import check_names
 from qtab.envs.origin import EnvironmentDescription
-from qtab.envs.stored import stored_id
+from qtab.envs.registry import stored_id
 from qtab.sweeps import designs
 from qtab.training.resolved_run import ResolvedRun
 from qtab.training.run_env import environment_of

@@ -23,8 +23,7 @@ from qtab.config.unknown import suggesting
 from qtab.discretizers import AssignedRows
 from qtab.envs.goals import threshold_of
 from qtab.envs.matching import time_limit
-from qtab.envs.registry import make_env, spec_of
-from qtab.envs.stored import spec_of_run
+from qtab.envs.registry import make_env, spec_of, spec_of_run
 from qtab.results.action_values import greedy_table
 from qtab.results.run import Run
 from qtab.training.options import TrainingOptions

@@ -23,9 +23,8 @@ from qtab.discretizers import AssignedRows, Discretizer
 from qtab.envs.actions import Actions, choose_actions
 from qtab.envs.class_code import LIBRARY, is_of_library
 from qtab.envs.goals import UNLIMITED_MAX_EPISODE_STEPS
-from qtab.envs.known_tables import KnownTable, known_table
 from qtab.envs.matching import NotInRustError, changed_entry_code, entry_for_env, rust_unavailable, time_limit
-from qtab.envs.native import native_env
+from qtab.envs.native import KnownTable, known_table, native_env
 from qtab.envs.origin.describe import describe, describe_known
 from qtab.envs.origin.description import EnvironmentDescription
 from qtab.envs.registry import EnvEntry, entry_for_spec, make_env, spec_of, versioned

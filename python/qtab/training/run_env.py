@@ -22,8 +22,7 @@ from qtab.envs.origin.again import cannot_be_made, make_again, needs_object
 from qtab.envs.origin.describe import describe
 from qtab.envs.origin.description import EnvironmentDescription
 from qtab.envs.origin.differences import differences
-from qtab.envs.registry import ENTRIES, gymnasium_id, make_env, spec_of
-from qtab.envs.stored import spec_of_run
+from qtab.envs.registry import ENTRIES, gymnasium_id, make_env, spec_of, spec_of_run
 from qtab.results.run import Run
 from qtab.training.resolve import resolve
 from qtab.training.resolved_run import ResolvedRun

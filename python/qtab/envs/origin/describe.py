@@ -25,8 +25,7 @@ from gymnasium.wrappers import TimeLimit as TimeLimitWrapper
 from qtab.envs.class_code import LIBRARY, class_code, is_of_library, state_attributes
 from qtab.envs.matching import layers, time_limit
 from qtab.envs.origin.description import EnvironmentDescription, WrapperDescription
-from qtab.envs.origin.spaces import space_text
-from qtab.envs.origin.values import describe_value, is_plain, same
+from qtab.envs.origin.values import describe_value, is_plain, same, space_text
 from qtab.envs.registry import EnvEntry, entry_for_id
 
 NEUTRAL = (

@@ -6,8 +6,7 @@ from typing import Any
 
 from qtab.envs.class_code import LIBRARY
 from qtab.envs.origin.description import EnvironmentDescription, WrapperDescription
-from qtab.envs.origin.spaces import without_digest
-from qtab.envs.origin.values import comparable, in_words, same
+from qtab.envs.origin.values import comparable, in_words, same, without_digest
 from qtab.envs.registry import gymnasium_id
 
 _LOGGER = logging.getLogger("qtab")

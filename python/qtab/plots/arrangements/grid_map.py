@@ -9,7 +9,7 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab.envs.stored import spec_of_run
+from qtab.envs.registry import spec_of_run
 from qtab.plots.arrangements.raster import Raster, outline
 from qtab.plots.subject import Subject
 

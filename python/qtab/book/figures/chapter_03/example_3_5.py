@@ -7,7 +7,7 @@ from qtab.book.exact_experiment import ExactExperiment
 from qtab.book.figures.grid import as_grid, grid_text
 from qtab.book.line import Line, exact_line
 from qtab.book.result import Result
-from qtab.envs.small_grid_worlds import GRID_WORLD_5X5, grid_world_5x5
+from qtab.envs.grid_worlds import GRID_WORLD_5X5, grid_world_5x5
 from qtab.planning.policy_values import policy_values
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from qtab.book.figures.grid import as_grid, grid_text
 from qtab.book.line import Line, exact_line
 from qtab.book.result import Result
 from qtab.book.runner import FloatArray
-from qtab.envs.small_grid_worlds import GRID_WORLD_4X4, grid_world_4x4
+from qtab.envs.grid_worlds import GRID_WORLD_4X4, grid_world_4x4
 from qtab.planning.policy_values import policy_values
 from qtab.planning.sweeps import policy_evaluation
 

@@ -11,7 +11,7 @@ from qtab.book.exact_experiment import ExactExperiment
 from qtab.book.figures.grid import as_grid
 from qtab.book.line import Line, exact_line
 from qtab.book.result import Result
-from qtab.envs.jacks_car_rental import MAX_MOVED, cars_moved, jacks_car_rental
+from qtab.envs.book.jacks_car_rental import MAX_MOVED, cars_moved, jacks_car_rental
 from qtab.planning.sweeps import policy_iteration
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from qtab.book.exact_experiment import ExactExperiment
 from qtab.book.line import Line, exact_line
 from qtab.book.result import Result
 from qtab.book.runner import FloatArray
-from qtab.envs.gamblers_problem import gamblers_problem
+from qtab.envs.book.gamblers_problem import gamblers_problem
 from qtab.planning.solve import optimum
 from qtab.planning.sweeps import value_iteration
 from qtab.plots.labels import finish

@@ -17,7 +17,7 @@ from qtab.book.experiment import Experiment
 from qtab.book.line import Line, LineStyle, line_from_samples
 from qtab.book.result import Result
 from qtab.book.runner import FloatArray
-from qtab.envs.dyna_maze import MOST_DOUBLINGS, DynaMazeEnv
+from qtab.envs.book.mazes import MOST_DOUBLINGS, DynaMazeEnv
 from qtab.training.resolve import resolve
 
 ENV = "qtab/DynaMaze-v0"

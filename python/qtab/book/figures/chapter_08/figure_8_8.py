@@ -16,7 +16,7 @@ from qtab.book.experiment import Experiment
 from qtab.book.line import Line, LineStyle, line_from_samples
 from qtab.book.result import Result
 from qtab.book.runner import FloatArray
-from qtab.envs.random_mdp import random_mdp
+from qtab.envs.book.random_mdp import random_mdp
 from qtab.planning.expected_updates import ExpectedUpdates
 from qtab.plots.labels import finish
 

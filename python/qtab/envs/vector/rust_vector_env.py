@@ -14,8 +14,8 @@ from gymnasium.vector.utils import batch_space
 from qtab import _core
 from qtab._utils import checks
 from qtab.envs.native import native_env
-from qtab.envs.python_vector import PythonVectorEnv, restore
-from qtab.envs.vector_arguments import check_reset_mask, entry_to_step, seeds_of, spec_to_step
+from qtab.envs.vector.arguments import check_reset_mask, entry_to_step, seeds_of, spec_to_step
+from qtab.envs.vector.python_vector_env import PythonVectorEnv, restore
 
 _MAX_RESET_BOUND = 1e6
 """First states beyond this may overflow. Gymnasium's code then decides what happens."""

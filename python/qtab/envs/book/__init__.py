@@ -1,0 +1,1 @@
+"""Environments of Sutton & Barto's book that Gymnasium does not have; its grid worlds are in ``grid_worlds``."""
