@@ -16,7 +16,7 @@ from sphinx.application import Sphinx
 from sphinx.domains.python import _annotations
 
 from qtab.config import Config
-from qtab.config.explanations import default
+from qtab.config.help import default
 from qtab.config.settings import Settings
 
 SHORTER = (

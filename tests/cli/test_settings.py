@@ -8,7 +8,7 @@ from qtab.cli.command import parser_of
 from qtab.cli.commands import train
 from qtab.cli.commands.train import env_and_settings
 from qtab.cli.errors import UsageError
-from qtab.config.explanations import explanations
+from qtab.config.help import explanations
 from support.command import qtab_here
 
 

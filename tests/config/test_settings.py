@@ -11,8 +11,8 @@ import pytest
 import qtab
 from qtab import _core
 from qtab.config import DEFAULTS, choices
-from qtab.config.discretizer import FUNCTION, MAPPING
-from qtab.config.explanations import explanations, groups
+from qtab.config.functions import FUNCTION, MAPPING
+from qtab.config.help import explanations, groups
 from qtab.config.options import OPTIONS, SETTINGS
 from qtab.config.settings import ConfigSettings, Settings, SharedSettings
 

@@ -11,9 +11,9 @@ import pytest
 from numpy.typing import NDArray
 
 import qtab
-from qtab.config.compatibility import defaults
 from qtab.config.config import DEFAULTS
 from qtab.config.options import OPTIONS, is_set
+from qtab.config.validation import defaults
 from qtab.playground import definitions
 from qtab.playground.assemble import data_script
 from qtab.playground.bundle import bundle

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import qtab
+from qtab.config.origin import copied
 from qtab.discretizers import Discretizer, Identity
 from qtab.envs.quantities import QUANTITIES, UNKNOWN, quantities_of
 from qtab.envs.registry import ENTRIES, EXTRA
@@ -153,6 +154,15 @@ def test_a_class_of_the_same_name_has_neutral_names() -> None:
     assert run.action_names == ("action 0", "action 1", "action 2", "action 3")
     assert qtab.explain(run, steps=1, env=CliffWalking())[0].action_name.startswith("action ")
     assert qtab.plots.policy(run).get_xlabel() == "state"  # not Gymnasium's map
+
+
+def test_a_run_of_an_earlier_version_keeps_its_names() -> None:
+    run = qtab.train("qtab/KArmedBandit-v0", episodes=1, seed=0)
+    assert run.config.origin is not None
+    assert run.config.origin.environment is not None
+    earlier = dataclasses.replace(run.config.origin.environment, cls="qtab.envs.k_armed_bandit:KArmedBanditEnv")
+    config = copied(run.config, dataclasses.replace(run.config.origin, environment=earlier))
+    assert run_quantities(config, run.discretizer) == run_quantities(run.config, run.discretizer) != UNKNOWN
 
 
 @pytest.mark.parametrize("version", ["CliffWalking-v7", "mine/CliffWalking-v1"])

@@ -15,7 +15,7 @@ from qtab.cli.parser import Parser, Together
 from qtab.cli.toml_file import read_toml
 from qtab.config import DEFAULTS, Config
 from qtab.config.choices import CHOICES
-from qtab.config.explanations import applicability, explanations, groups
+from qtab.config.help import applicability, explanations, groups
 from qtab.config.unknown import check_names
 from qtab.results.loading import load
 

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from qtab._utils import html
 from qtab._utils.fields import with_fields
-from qtab.config.action_mask import Mask
 from qtab.config.choices import (
     Algorithm,
     Backend,
@@ -29,10 +28,10 @@ from qtab.config.choices import (
     Ties,
     Traces,
 )
-from qtab.config.followers import with_followers
+from qtab.config.functions import Mask
+from qtab.config.implied import implied_schedules, with_followers
 from qtab.config.options import PREFERENCES, fixed_settings
 from qtab.config.origin import WithOrigin, copied
-from qtab.config.rates import implied_schedules
 from qtab.config.unknown import check_names
 from qtab.config.validation import validated
 

@@ -9,7 +9,7 @@ import gymnasium as gym
 
 from qtab._utils.shown import shown
 from qtab._utils.suggestions import did_you_mean
-from qtab.config import book_presets, tile_coding_presets
+from qtab.config import preset_settings
 from qtab.config.settings import SharedSettings
 from qtab.envs.registry import gymnasium_id, spec_of
 
@@ -150,31 +150,31 @@ _SOLVED_BLACKJACK: SharedSettings = {**_BLACKJACK, "learning_rate": 0.005, "epis
 
 # An environment's first preset is its default.
 _PRESETS: Mapping[str, Mapping[str, SharedSettings]] = {
-    "MountainCar-v0": {"article": _ARTICLE, "solved": tile_coding_presets.SOLVED_MOUNTAIN_CAR},
-    "MountainCarContinuous-v0": {"solved": tile_coding_presets.CONTINUOUS_MOUNTAIN_CAR},
-    "CartPole-v0": {"tuned": _CART_POLE, "solved": tile_coding_presets.SOLVED_CART_POLE},
-    "CartPole-v1": {"tuned": _CART_POLE, "solved": tile_coding_presets.SOLVED_CART_POLE},
-    "Acrobot-v1": {"solved": tile_coding_presets.ACROBOT},
-    "Pendulum-v1": {"tuned": tile_coding_presets.PENDULUM},
-    "LunarLander-v3": {"solved": tile_coding_presets.LUNAR_LANDER},
+    "MountainCar-v0": {"article": _ARTICLE, "solved": preset_settings.SOLVED_MOUNTAIN_CAR},
+    "MountainCarContinuous-v0": {"solved": preset_settings.CONTINUOUS_MOUNTAIN_CAR},
+    "CartPole-v0": {"tuned": _CART_POLE, "solved": preset_settings.SOLVED_CART_POLE},
+    "CartPole-v1": {"tuned": _CART_POLE, "solved": preset_settings.SOLVED_CART_POLE},
+    "Acrobot-v1": {"solved": preset_settings.ACROBOT},
+    "Pendulum-v1": {"tuned": preset_settings.PENDULUM},
+    "LunarLander-v3": {"solved": preset_settings.LUNAR_LANDER},
     "FrozenLake-v1": {"tuned": _LAKE, "solved": _SOLVED_LAKE, "time_aware": _TIME_AWARE_LAKE},
     "FrozenLake8x8-v1": {
         "tuned": _LARGE_LAKE,
         "solved": _SOLVED_LARGE_LAKE,
         "time_aware": _TIME_AWARE_LARGE_LAKE,
     },
-    "CliffWalking-v1": {"tuned": _CLIFF, "book": book_presets.CLIFF_WALKING, "solved": _SOLVED_CLIFF},
+    "CliffWalking-v1": {"tuned": _CLIFF, "book": preset_settings.CLIFF_WALKING, "solved": _SOLVED_CLIFF},
     "CliffWalkingSlippery-v1": {"tuned": _SLIPPERY_CLIFF, "solved": _SOLVED_SLIPPERY_CLIFF},
     "Taxi-v4": {"tuned": _TAXI, "solved": _SOLVED_TAXI},
     "Blackjack-v1": {"tuned": _BLACKJACK, "solved": _SOLVED_BLACKJACK},
-    "KArmedBandit-v0": {"book": book_presets.K_ARMED_BANDIT},
-    "MaximizationBias-v0": {"book": book_presets.MAXIMIZATION_BIAS},
-    "AccessControlQueue-v0": {"book": book_presets.ACCESS_CONTROL_QUEUE},
-    "BlockingMaze-v0": {"book": book_presets.BLOCKING_MAZE},
-    "DynaMaze-v0": {"book": book_presets.DYNA_MAZE},
+    "KArmedBandit-v0": {"book": preset_settings.K_ARMED_BANDIT},
+    "MaximizationBias-v0": {"book": preset_settings.MAXIMIZATION_BIAS},
+    "AccessControlQueue-v0": {"book": preset_settings.ACCESS_CONTROL_QUEUE},
+    "BlockingMaze-v0": {"book": preset_settings.BLOCKING_MAZE},
+    "DynaMaze-v0": {"book": preset_settings.DYNA_MAZE},
     "Racetrack-v0": {"solved": _SOLVED_RACETRACK},
-    "ShortcutMaze-v0": {"book": book_presets.SHORTCUT_MAZE},
-    "ShortCorridor-v0": {"book": book_presets.SHORT_CORRIDOR},
+    "ShortcutMaze-v0": {"book": preset_settings.SHORTCUT_MAZE},
+    "ShortCorridor-v0": {"book": preset_settings.SHORT_CORRIDOR},
 }
 
 

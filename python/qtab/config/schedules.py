@@ -1,10 +1,13 @@
-"""The schedules of the learning rate and the exploration rate over a run."""
+"""The schedules, the policy and the options of the algorithm of a complete config."""
 
 from dataclasses import dataclass
+from types import SimpleNamespace
 from typing import TypeAlias
 
 from qtab._utils.checks import required
+from qtab.config.choices import Ties
 from qtab.config.config import Config
+from qtab.config.options import options_of
 
 
 @dataclass(frozen=True)
@@ -90,3 +93,53 @@ def epsilon(config: Config) -> Schedule:
     if kind == "linear":
         return Linear(value, minimum, warm_up)
     return Exponential(value, minimum, required("epsilon_decay", config.epsilon_decay), warm_up)
+
+
+@dataclass(frozen=True)
+class EpsilonGreedy:
+    """A random action with probability epsilon, otherwise a greedy one."""
+
+    epsilon: Schedule
+    ties: Ties
+    """The choice among several greedy actions."""
+
+
+@dataclass(frozen=True)
+class Softmax:
+    """Each action with probability proportional to exp(Q / temperature)."""
+
+    temperature: float
+
+
+@dataclass(frozen=True)
+class Ucb:
+    """The action with the largest upper confidence bound of its value."""
+
+    confidence: float
+    ties: Ties
+
+
+Policy: TypeAlias = EpsilonGreedy | Softmax | Ucb
+
+
+def policy(config: Config) -> Policy:
+    """Returns the policy of a complete config.
+
+    Raises:
+        ValueError: if one of its options is None.
+    """
+    if config.exploration == "softmax":
+        return Softmax(required("temperature", config.temperature))
+    if config.exploration == "ucb":
+        return Ucb(required("confidence", config.confidence), required("ties", config.ties))
+    return EpsilonGreedy(epsilon(config), required("ties", config.ties))
+
+
+def algorithm_options(config: Config) -> SimpleNamespace:
+    """Returns the options of the algorithm of a complete config, as attributes.
+
+    Raises:
+        ValueError: if one of them is None.
+    """
+    names = options_of("algorithm", config.algorithm)
+    return SimpleNamespace(**{name: required(name, getattr(config, name)) for name in names})

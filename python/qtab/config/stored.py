@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from typing import Any
 
-from qtab.config.action_mask import STORED
 from qtab.config.config import DEFAULTS, Config
+from qtab.config.functions import STORED
 from qtab.config.options import OPTIONS, SETTINGS, fixed_settings
 
 ADDED = tuple(name for name, setting in SETTINGS.items() if setting.added)

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 
 from qtab.config import DEFAULTS, Config
-from qtab.config.compatibility import mismatch
 from qtab.config.options import OPTIONS, is_set
+from qtab.config.validation import mismatch
 
 _LOWEST = {"min_epsilon": "epsilon", "min_learning_rate": "learning_rate"}
 """The lower limits of rates that fall."""

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from qtab._discretizer_spec import IdentitySpec
 from qtab._utils.shown import shown
 from qtab.config import Config
-from qtab.config.discretizer import function_name
+from qtab.config.functions import function_name
 from qtab.discretizers.base import Discretizer, check_table_size
 from qtab.discretizers.layout import Layout
 

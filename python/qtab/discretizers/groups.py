@@ -10,10 +10,10 @@ from gymnasium import spaces
 from qtab._utils.shown import shown
 from qtab._utils.suggestions import did_you_mean
 from qtab.config import Config
-from qtab.config.compatibility import defaults
 from qtab.config.config import replace_checked
-from qtab.config.discretizer import MAPPING, kind
+from qtab.config.functions import MAPPING, kind
 from qtab.config.options import OPTIONS
+from qtab.config.validation import defaults
 from qtab.discretizers.bins import Bins
 from qtab.discretizers.box import BoxDiscretizer
 from qtab.discretizers.edges import Edges

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from qtab.config import Config
 from qtab.config.choices import DiscretizerName
-from qtab.config.discretizer import FUNCTION, MAPPING, kind
+from qtab.config.functions import FUNCTION, MAPPING, kind
 from qtab.discretizers.assigned_rows import AssignedRows
 from qtab.discretizers.base import Discretizer
 from qtab.discretizers.bins import Bins

@@ -5,10 +5,10 @@ from collections.abc import Mapping
 from typing import Any
 
 from qtab.config.choices import ALGORITHM_NAMES
-from qtab.config.compatibility import mismatch
 from qtab.config.config import DEFAULTS
-from qtab.config.explanations import default, explanations, groups
+from qtab.config.help import default, explanations, groups
 from qtab.config.options import OPTIONS
+from qtab.config.validation import mismatch
 
 OFFERED: Mapping[str, tuple[str, ...]] = {
     "algorithm": (

@@ -5,9 +5,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from qtab._utils import checks
-from qtab.config.policies import Softmax, Ucb
-from qtab.config.policies import policy as policy_of
-from qtab.config.schedules import ByVisits, learning_rate
+from qtab.config.schedules import ByVisits, Softmax, Ucb, learning_rate
+from qtab.config.schedules import policy as policy_of
 from qtab.plots.axes import axes_or_new
 from qtab.plots.colors import color
 from qtab.plots.labels import check_title, earlier_limits, finish, set_x_limits

@@ -6,8 +6,8 @@ from typing import Any, get_args
 from qtab._utils import checks
 from qtab._utils.shown import shown
 from qtab.config.choices import LearningRateSchedule
+from qtab.config.implied import implied_schedule
 from qtab.config.options import listed
-from qtab.config.rates import implied_schedule
 
 ONE_STEP_SIZE = ("td_lambda", "true_online_td_lambda")
 """The methods with traces, which need a single step size for all weights."""

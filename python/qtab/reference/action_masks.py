@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab.config import Config
-from qtab.config.action_mask import FORGOTTEN
+from qtab.config.functions import FORGOTTEN
 
 
 class ActionMasks:

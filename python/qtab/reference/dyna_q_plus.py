@@ -6,7 +6,7 @@ import gymnasium as gym
 import numpy as np
 
 from qtab.config import Config
-from qtab.config.algorithms import algorithm_options
+from qtab.config.schedules import algorithm_options
 from qtab.reference.dyna_q import largest
 from qtab.reference.task import Result, Rows, Task
 

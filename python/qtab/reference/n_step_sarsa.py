@@ -3,7 +3,7 @@
 import gymnasium as gym
 
 from qtab.config import Config
-from qtab.config.algorithms import algorithm_options
+from qtab.config.schedules import algorithm_options
 from qtab.reference.task import Result, Task, value
 
 

@@ -5,7 +5,7 @@ import heapq
 import gymnasium as gym
 
 from qtab.config import Config
-from qtab.config.algorithms import algorithm_options
+from qtab.config.schedules import algorithm_options
 from qtab.reference.dyna_q import largest
 from qtab.reference.task import Result, Rows, Task
 

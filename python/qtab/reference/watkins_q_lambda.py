@@ -4,7 +4,7 @@ import gymnasium as gym
 import numpy as np
 
 from qtab.config import Config
-from qtab.config.algorithms import algorithm_options
+from qtab.config.schedules import algorithm_options
 from qtab.reference.task import Result, Task
 from qtab.reference.traces import decay, learn, mark
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from qtab._utils.shown import shown
 from qtab.config import Config
-from qtab.config.action_mask import FORGOTTEN, checked_mask
+from qtab.config.functions import FORGOTTEN, checked_mask
 from qtab.config.options import PREFERENCES, WITH_STATE_VALUES
 from qtab.results.time_steps import rows_of
 

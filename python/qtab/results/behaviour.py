@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab.config import Config
-from qtab.config.policies import EpsilonGreedy, Ucb, policy
+from qtab.config.schedules import EpsilonGreedy, Ucb, policy
 
 
 def action_probabilities(config: Config, episodes: int, values: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -12,12 +12,11 @@ from qtab import discretizers
 from qtab._utils import checks
 from qtab._utils.shown import shown
 from qtab.config import DEFAULTS, Config
-from qtab.config.action_mask import STORED
-from qtab.config.compatibility import defaults
 from qtab.config.config import replace_checked
-from qtab.config.discretizer import MissingFunction
+from qtab.config.functions import STORED, MissingFunction
 from qtab.config.origin import Origin, copied, trained_on
 from qtab.config.stored import corrected_settings, implied_settings
+from qtab.config.validation import defaults
 from qtab.discretizers.base import MAX_TABLE_SIZE
 from qtab.envs.origin.description import from_json
 from qtab.envs.origin.values import with_types

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab.config.config import replace_checked
-from qtab.config.discretizer import stored_function
+from qtab.config.functions import stored_function
 from qtab.config.stored import stored_settings
 from qtab.results import run_file
 from qtab.results.saved_actions import describe_parts

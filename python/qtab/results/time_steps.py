@@ -8,7 +8,7 @@ import numpy as np
 from qtab._utils import checks
 from qtab._utils.shown import shown
 from qtab.config.config import DEFAULTS, replace_checked
-from qtab.config.followers import with_followers
+from qtab.config.implied import with_followers
 from qtab.discretizers.time_aware import TimeAware
 from qtab.results.snapshots import Snapshots
 

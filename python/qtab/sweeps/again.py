@@ -10,7 +10,7 @@ import numpy as np
 from qtab._utils import checks
 from qtab._utils.versions import versions
 from qtab.config import Config
-from qtab.config.layers import over
+from qtab.config.merge import over
 from qtab.config.origin import Origin, copied
 from qtab.envs.origin import differences
 from qtab.envs.origin.values import with_types

@@ -14,8 +14,8 @@ from qtab._utils import checks
 from qtab._utils.memory import check_memory
 from qtab._utils.memory import memory_limit as memory_limit_in_bytes
 from qtab.config import DEFAULTS
-from qtab.config.discretizer import function_name
-from qtab.config.layers import Base, over
+from qtab.config.functions import function_name
+from qtab.config.merge import Base, over
 from qtab.config.stored import corrected_settings, stored_settings
 from qtab.config.unknown import check_names
 from qtab.envs.origin import EnvironmentDescription

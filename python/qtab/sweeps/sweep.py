@@ -15,9 +15,9 @@ from qtab._utils import checks, memory
 from qtab._utils.attach import attach
 from qtab.config import Config
 from qtab.config.config import replace_checked
-from qtab.config.layers import collect, over
+from qtab.config.help import with_settings
+from qtab.config.merge import collect, over
 from qtab.config.settings import SharedSettings
-from qtab.config.signature import with_settings
 from qtab.envs.registry import spec_of
 from qtab.sweeps.connection import store_path
 from qtab.sweeps.environments import stored_environments

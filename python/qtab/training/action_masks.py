@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._spec import ActionMasksSpec, MaskSourceSpec
-from qtab.config.action_mask import FORGOTTEN, Mask, checked_mask
+from qtab.config.functions import FORGOTTEN, Mask, checked_mask
 from qtab.discretizers import Discretizer, TimeAware
 from qtab.discretizers.identity import Identity
 

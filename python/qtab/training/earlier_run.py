@@ -14,10 +14,9 @@ from qtab._utils import checks
 from qtab._utils.shown import shown
 from qtab._utils.versions import versions
 from qtab.config import Config
-from qtab.config.action_mask import STORED
 from qtab.config.config import replace_checked
-from qtab.config.discretizer import MissingFunction
-from qtab.config.layers import over
+from qtab.config.functions import STORED, MissingFunction
+from qtab.config.merge import over
 from qtab.config.options import is_set
 from qtab.config.origin import copied, trained_on
 from qtab.discretizers import AssignedRows

@@ -18,7 +18,7 @@ from qtab._utils.progress import check_progress
 from qtab._utils.shown import counted, shown
 from qtab.config import Config
 from qtab.config.config import replace_checked
-from qtab.config.layers import over
+from qtab.config.merge import over
 from qtab.config.unknown import suggesting
 from qtab.discretizers import AssignedRows
 from qtab.envs.goals import threshold_of

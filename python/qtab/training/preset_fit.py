@@ -8,10 +8,10 @@ import numpy as np
 from gymnasium import spaces
 
 from qtab.config import DEFAULTS, Config
-from qtab.config.compatibility import mismatch
 from qtab.config.config import replace_checked
-from qtab.config.discretizer import uses_tiles
+from qtab.config.functions import uses_tiles
 from qtab.config.options import OPTIONS, is_set
+from qtab.config.validation import mismatch
 from qtab.discretizers import is_plain
 from qtab.discretizers.groups import is_discrete
 from qtab.discretizers.identity import integer_bounds

@@ -13,12 +13,12 @@ from gymnasium.envs.registration import EnvSpec
 from qtab import discretizers
 from qtab._utils.shown import shown
 from qtab.config import DEFAULTS, Config
-from qtab.config.compatibility import defaults
 from qtab.config.config import replace_checked
 from qtab.config.merge import config_of, merge_layers, naming_preset
 from qtab.config.options import WITH_STATE_VALUES, n_tables
 from qtab.config.origin import Origin, copied
 from qtab.config.presets import preset
+from qtab.config.validation import defaults
 from qtab.discretizers import AssignedRows, Discretizer
 from qtab.envs.actions import Actions, choose_actions
 from qtab.envs.class_code import LIBRARY, is_of_library

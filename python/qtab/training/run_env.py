@@ -14,7 +14,7 @@ from qtab._utils import checks
 from qtab._utils.shown import shown
 from qtab.config import Config
 from qtab.config.config import replace_checked
-from qtab.config.layers import Base, collect, over
+from qtab.config.merge import Base, collect, over
 from qtab.config.options import is_set
 from qtab.config.origin import copied, trained_on
 from qtab.envs.actions import choose_actions
@@ -155,7 +155,7 @@ def _check_plain(config: Config, description: EnvironmentDescription) -> None:
 def collect_for(
     env: Any, function: Callable[..., Any], config: Base | None, settings: Mapping[str, Any]
 ) -> tuple[Any, Base]:
-    """Calls :func:`qtab.config.layers.collect`; keeps derived settings if an object is the config's environment."""
+    """Calls :func:`qtab.config.merge.collect`; keeps derived settings if an object is the config's environment."""
     given, base = collect(function, env, config, settings)
     if isinstance(env, gym.Env) and isinstance(config, Config):
         description = trained_on(config)

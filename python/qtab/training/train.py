@@ -16,9 +16,9 @@ from qtab._utils.attach import attach, is_raised_in
 from qtab._utils.progress import ProgressBar
 from qtab._utils.versions import versions
 from qtab.config import Config
-from qtab.config.layers import over
+from qtab.config.help import with_settings
+from qtab.config.merge import over
 from qtab.config.settings import Settings
-from qtab.config.signature import with_settings
 from qtab.results.recording import Recording, generator_states
 from qtab.results.run import Run
 from qtab.results.snapshots import SnapshotCollector

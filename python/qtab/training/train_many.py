@@ -22,9 +22,9 @@ from qtab._utils.memory import memory_limit as bytes_limit
 from qtab._utils.shown import shown
 from qtab._utils.versions import versions
 from qtab.config import Config
-from qtab.config.layers import collect
+from qtab.config.help import with_settings
+from qtab.config.merge import collect
 from qtab.config.settings import SharedSettings
-from qtab.config.signature import with_settings
 from qtab.discretizers import AssignedRows
 from qtab.envs.matching import equal_environments
 from qtab.results.runs import Runs

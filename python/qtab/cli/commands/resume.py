@@ -10,7 +10,7 @@ from qtab.cli.parser import ENV_OF_RUN, Parser
 from qtab.cli.reporting import Report
 from qtab.cli.training_report import OPTIMUM, Training, backend_words, optimum_of
 from qtab.cli.values import integer
-from qtab.config.layers import over
+from qtab.config.merge import over
 from qtab.results.loading import load
 from qtab.results.run import Run
 from qtab.training.earlier_run import check_agrees, counts_visits, has_finished, resolve_again, snapshots_of

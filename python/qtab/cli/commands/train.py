@@ -16,7 +16,7 @@ from qtab.cli.settings import add_settings, given_settings, read_config, with_in
 from qtab.cli.training_report import OPTIMUM, Training, backend_words, optimum_of
 from qtab.cli.values import integer
 from qtab.config import DEFAULTS, Config
-from qtab.config.explanations import default
+from qtab.config.help import default
 from qtab.config.merge import merge
 from qtab.config.options import is_set
 from qtab.envs.registry import spec_of, versioned

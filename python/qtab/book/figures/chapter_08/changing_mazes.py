@@ -4,7 +4,7 @@ from typing import Any
 
 from qtab.book.measures import reward_by
 from qtab.book.setting import Setting
-from qtab.config.book_presets import CHANGING_MAZE
+from qtab.config.preset_settings import CHANGING_MAZE
 
 _DYNA: dict[str, Any] = {
     name: value for name, value in CHANGING_MAZE.items() if name not in ("algorithm", "time_weight", "episodes")

@@ -3,7 +3,7 @@
 from qtab.book.measures import lengths
 from qtab.book.setting import Setting
 from qtab.book.training_experiment import TrainingExperiment
-from qtab.config.book_presets import DYNA_MAZE
+from qtab.config.preset_settings import DYNA_MAZE
 from qtab.envs.grid_worlds import dyna_maze
 
 EXPERIMENT = TrainingExperiment(

@@ -1,0 +1,120 @@
+"""Settings that follow from others: with an algorithm, with a rate, and with a change to a config."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import gymnasium as gym
+
+from qtab.config.options import FIXED, OPTIONS, fixed_settings, freed_settings, is_set
+from qtab.config.origin import Origin
+from qtab.config.validation import applicable
+
+_AVERAGES: Mapping[str, Any] = {"learning_rate": 1.0, "learning_rate_schedule": "visits"}
+"""Averages of returns as values."""
+
+_OF_ALGORITHM: Mapping[str, Mapping[str, Any]] = {
+    "monte_carlo": _AVERAGES,
+    "monte_carlo_es": {**_AVERAGES, "epsilon": 0.0},  # exploring starts are the only exploration
+    "off_policy_monte_carlo": _AVERAGES,
+    **{algorithm: fixed.values for algorithm, fixed in FIXED.items()},
+}
+"""The settings of each algorithm that differ from those of :class:`qtab.Config`."""
+
+
+def algorithm_defaults(preset: Mapping[str, Any], asked: Mapping[str, Any]) -> dict[str, Any]:
+    """Returns the settings that come with the requested algorithm, over those of a preset for another algorithm.
+
+    A requested learning rate stays constant, unless the algorithm needs averages.
+    """
+    algorithm = asked.get("algorithm")
+    if not isinstance(algorithm, str) or preset.get("algorithm") == algorithm:
+        return {}
+    own = {name: value for name, value in _OF_ALGORITHM.get(algorithm, {}).items() if not is_set(asked.get(name))}
+    rate_is_asked_for = is_set(asked.get("learning_rate")) or is_set(asked.get("learning_rate_schedule"))
+    if rate_is_asked_for and algorithm != "off_policy_monte_carlo":
+        for name in _AVERAGES:
+            own.pop(name, None)
+    return own
+
+
+_SCHEDULES: Mapping[str, tuple[str, tuple[str, ...]]] = {
+    "learning_rate": ("learning_rate_schedule", ("min_learning_rate", "learning_rate_warm_up")),
+    "epsilon": ("epsilon_schedule", ("min_epsilon", "epsilon_warm_up")),
+}
+"""For each rate that can fall, the setting that names its schedule, and the settings that apply only to a falling
+rate."""
+
+
+def implied_schedules(asked: Mapping[str, Any], fields: Mapping[str, Any]) -> dict[str, str]:
+    """Returns the schedules of the rates that were requested without naming one; see :func:`implied_schedule`.
+
+    Args:
+        asked: The requested settings.
+        fields: All settings.
+    """
+    found = {name: implied_schedule(rate, asked, fields[name]) for rate, (name, _) in _SCHEDULES.items()}
+    return applicable({name: schedule for name, schedule in found.items() if schedule is not None}, fields)
+
+
+def implied_schedule(rate: str, asked: Mapping[str, Any], otherwise: str | None) -> str | None:
+    """Returns the schedule of a rate that was requested without naming one; None if nothing implies one.
+
+    A rate given alone is constant. With a minimum or a warm-up it falls: linearly, unless the rate itself was not
+    requested and already falls in another way.
+
+    Args:
+        rate: ``"learning_rate"`` or ``"epsilon"``.
+        asked: The requested settings.
+        otherwise: The schedule of the rate if none was requested.
+    """
+    name, falling = _SCHEDULES[rate]
+    if is_set(asked.get(name)):
+        return None
+    falls = any(is_set(asked.get(option)) for option in falling)
+    if is_set(asked.get(rate)):
+        return "linear" if falls else "constant"
+    return "linear" if falls and otherwise in (None, "constant") else None
+
+
+def without_rates(start: Mapping[str, Any], asked: Mapping[str, Any]) -> dict[str, Any]:
+    """Returns the settings of a preset without the schedules of the requested rates.
+
+    The schedule of a preset belongs to its rate: a requested rate does not fall because the preset's does.
+    """
+    replaced = tuple(rate for rate in _SCHEDULES if is_set(asked.get(rate)))
+    return {name: value for name, value in start.items() if not any(_belongs(name, rate) for rate in replaced)}
+
+
+def _belongs(name: str, rate: str) -> bool:
+    return name == _SCHEDULES[rate][0] or (name in OPTIONS and OPTIONS[name].choice == _SCHEDULES[rate][0])
+
+
+def with_followers(
+    config: Any, changes: Mapping[str, Any], defaults: Mapping[str, Any]
+) -> tuple[dict[str, Any], Origin | None]:
+    """Returns the changes to a config together with those that follow from them, and the new origin.
+
+    Args:
+        config: The config.
+        changes: The settings that are changed.
+        defaults: The default of each setting.
+    """
+    own: dict[str, Any] = {}
+    origin: Origin | None = config.origin
+    if origin is not None and changes.get("env", config.env) != config.env:
+        spec = gym.registry.get(config.env.rpartition(":")[2])
+        registered = {} if spec is None else spec.kwargs
+        kwargs = config.env_kwargs.items()
+        own |= {name: defaults[name] for name in (*origin.derived, "preset")}
+        own["env_kwargs"] = {
+            name: value for name, value in kwargs if name not in registered or registered[name] != value
+        }
+        origin = None
+    algorithm = changes.get("algorithm", config.algorithm)
+    own |= {name: defaults[name] for name in freed_settings(config.algorithm, algorithm)}
+    if changes.get("time_aware", config.time_aware):
+        own["on_truncation"] = "terminate"
+    elif config.time_aware:
+        own["on_truncation"] = defaults["on_truncation"]
+    own |= fixed_settings(algorithm)
+    return {**own, **changes}, None if origin is None else origin.without(changes)
