@@ -9,7 +9,7 @@ from qtab import _core, _spec
 from qtab.config import choices
 from qtab.config.options import options_of
 from qtab.discretizers import DISCRETIZERS
-from qtab.training.resolve import resolve
+from qtab.training.setup.resolve import resolve
 
 
 def words(union: Any) -> set[str]:

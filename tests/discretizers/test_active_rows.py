@@ -9,7 +9,7 @@ import pytest
 from qtab import _core
 from qtab._discretizer_spec import DiscretizerSpec
 from qtab.reference.observations import discretizer as numpy_discretizer
-from qtab.training.resolve import resolve
+from qtab.training.setup.resolve import resolve
 
 TILES = {"discretizer": "tiles", "tilings": 8, "tiles": (8, 8)}
 SETTINGS: dict[str, tuple[str, dict[str, Any]]] = {

@@ -96,7 +96,7 @@ def test_one_run_is_saved_evaluated_and_asked_by_many_threads(tmp_path: Path):
 
 
 def test_only_one_thread_at_a_time_advances_a_trainer():
-    from qtab.training.resolve import resolve
+    from qtab.training.setup.resolve import resolve
 
     resolved = resolve("MountainCar-v0", {"seed": 0, "episodes": 2000})
     trainer = _core.Trainer(resolved.spec(), resolved.seed)

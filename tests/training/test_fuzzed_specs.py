@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from qtab import _core
-from qtab.training.resolve import resolve
+from qtab.training.setup.resolve import resolve
 from support.environments import Sampled
 from support.wild import NUMBERS, SCALARS, VALUES, limited_memory, paths_of, replaced
 

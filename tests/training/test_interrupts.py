@@ -126,7 +126,7 @@ def test_a_run_that_was_interrupted_within_a_step_goes_on_to_the_same_table():
     # Each step plans for 10 ms or more; an alarm interrupts it again and again.
     done = in_a_process("""
 from qtab import _core
-from qtab.training.resolve import resolve
+from qtab.training.setup.resolve import resolve
 settings = {"algorithm": "dyna_q", "planning_steps": 10**6, "episodes": 2, "max_episode_steps": 3, "seed": 0}
 resolved = resolve("CliffWalking-v1", settings)
 signal.signal(signal.SIGALRM, signal.default_int_handler)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import qtab
-from qtab.training import resolve
+from qtab.training.setup import resolve
 from support.environments import ScriptedEnv
 
 UNLIMITED = "CliffWalking-v1 has no time limit: an episode ends after 10,000 steps"

@@ -9,7 +9,7 @@ import pytest
 
 import qtab
 from qtab import _core
-from qtab.training.resolve import resolve
+from qtab.training.setup.resolve import resolve
 from support.parity import assert_same_run
 
 SETTINGS = {

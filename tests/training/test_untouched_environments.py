@@ -12,7 +12,7 @@ from gymnasium.wrappers import RecordEpisodeStatistics, TimeLimit
 
 import qtab
 from qtab.envs.registry import ENTRIES, EXTRA
-from qtab.training import resolve
+from qtab.training.setup import resolve
 from qtab.training.train_many import resolve_template
 from support.environments import Walk
 from support.parity import assert_same_run

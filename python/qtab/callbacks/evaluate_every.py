@@ -12,7 +12,7 @@ from qtab.config import Config
 from qtab.training.callbacks import BaseCallback
 from qtab.training.evaluate import Evaluation, evaluate
 from qtab.training.progress import Progress
-from qtab.training.run_env import make_run_env
+from qtab.training.setup.run_env import make_run_env
 
 if TYPE_CHECKING:
     from qtab.results.run import Run

@@ -14,10 +14,10 @@ from qtab.config.presets import presets
 from qtab.envs.goals import BEST_KNOWN_MOUNTAIN_CAR, has_quick_optimum, is_usual_mountain_car
 from qtab.results.run import Run
 from qtab.results.summary import FINAL_EPISODES, SOLVED_EPISODES, best_mean_returns, default_block, summarize
-from qtab.training.options import TrainingOptions
+from qtab.training.callbacks import TrainingOptions
 from qtab.training.progress import Progress
-from qtab.training.resolved_run import ResolvedRun
-from qtab.training.run_env import make_run_env
+from qtab.training.setup.resolved_run import ResolvedRun
+from qtab.training.setup.run_env import make_run_env
 from qtab.training.train import train_resolved
 from qtab.training.verdict import Verdict, judge
 

@@ -18,7 +18,7 @@ from qtab.results.action_values import are_finite, initial_tables
 from qtab.results.rates import repeatable
 from qtab.results.run import Run
 from qtab.results.runs import Runs
-from qtab.training.run_env import can_be_made
+from qtab.training.setup.run_env import can_be_made
 from qtab.training.train import train
 from qtab.training.train_many import seed_sequence, train_many
 from qtab.training.verdict import Verdict, judge

@@ -2,7 +2,7 @@
 
 from qtab.config import Config
 from qtab.planning.optimum import Optimum
-from qtab.training.run_env import make_run_env
+from qtab.training.setup.run_env import make_run_env
 
 EPISODES = 20
 MOST_STEPS = 20_000

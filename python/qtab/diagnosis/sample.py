@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from qtab.envs.actions import flat
 from qtab.results.run import Run
 from qtab.results.time_steps import rows_of
-from qtab.training.run_env import make_run_env
+from qtab.training.setup.run_env import make_run_env
 from qtab.training.train import train
 
 SAMPLE_STEPS = 20_000

@@ -15,7 +15,7 @@ from qtab.config.origin import copied
 from qtab.diagnosis.facts import Facts
 from qtab.diagnosis.finding import Finding, as_keywords, number_text
 from qtab.results.runs import Runs
-from qtab.training.run_env import as_in_training, make_run_env
+from qtab.training.setup.run_env import as_in_training, make_run_env
 from qtab.training.train_many import resolve_template, seed_numbers, train_many
 from qtab.training.verdict import judge
 

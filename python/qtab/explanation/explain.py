@@ -25,7 +25,7 @@ from qtab.results.axes import run_quantities
 from qtab.results.rates import ONLY_FIRST, repeatable
 from qtab.results.run import Run
 from qtab.results.time_steps import rows_of
-from qtab.training.run_env import check_same, make_run_env
+from qtab.training.setup.run_env import check_same, make_run_env
 
 N_STEP = ("n_step_sarsa", "n_step_tree_backup", "n_step_q_sigma")
 """The algorithms whose updates wait for n steps."""

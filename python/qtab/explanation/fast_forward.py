@@ -16,7 +16,7 @@ from qtab.reference.schedules import epsilon_schedule
 from qtab.reference.streams import AgentStream, agent_stream
 from qtab.results.recording import generator_states
 from qtab.results.run import Run
-from qtab.training.run_env import resolve_run
+from qtab.training.setup.run_env import resolve_run
 
 CHOOSE_FIRST = ("q_learning", "expected_sarsa", "double_q_learning", *PREFERENCES)
 """The algorithms that choose an action before each step; the others choose the next one after it."""

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from qtab.discretizers import Edges, Rounding
 from qtab.planning.grid_environments import GridEnvironment, even_points
 from qtab.results.run import Run
-from qtab.training.run_env import make_run_env
+from qtab.training.setup.run_env import make_run_env
 
 SAMPLES_PER_CELL = 30
 MOST_SAMPLES = 60_000

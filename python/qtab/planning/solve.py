@@ -27,7 +27,7 @@ from qtab.planning.table import check_wrappers, has_transition_table, opened_env
 from qtab.planning.tabular import METHODS, TabularSolver
 from qtab.results.run import Run
 from qtab.results.runs import Runs
-from qtab.training.run_env import make_run_env
+from qtab.training.setup.run_env import make_run_env
 
 SEARCH = "search"
 SEARCH_STAGES = 2

@@ -17,7 +17,7 @@ from qtab.plots.subject import subject_of
 from qtab.plots.values import values
 from qtab.results.action_values import mask_of_step
 from qtab.results.run import Run
-from qtab.training.run_env import make_run_env
+from qtab.training.setup.run_env import make_run_env
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

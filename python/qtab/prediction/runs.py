@@ -21,7 +21,7 @@ from qtab.prediction.features import Rows, feature_rows
 from qtab.prediction.learning_rates import AVERAGES_ONLY, rate_settings
 from qtab.prediction.observation_policies import ObservationPolicies, observation_policy, reads_observations
 from qtab.prediction.settings import PredictionSettings
-from qtab.training.resolved_run import ResolvedRun
+from qtab.training.setup.resolved_run import ResolvedRun
 
 BYTES_PER_WEIGHT = 8 + 4
 """The memory of a run in progress for each weight, besides the features: the weight and its number of updates."""

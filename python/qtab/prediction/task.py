@@ -15,8 +15,8 @@ from qtab.planning.policies import GivenPolicy
 from qtab.prediction.settings import PredictionSettings
 from qtab.prediction.storage import DISCRETIZER
 from qtab.results.run import Run
-from qtab.training.resolve import resolve
-from qtab.training.resolved_run import ResolvedRun
+from qtab.training.setup.resolve import resolve
+from qtab.training.setup.resolved_run import ResolvedRun
 
 OF_OBSERVATIONS = (*DISCRETIZER, "actions")
 """The settings of a run that map observations to features, and actions to columns."""

@@ -16,7 +16,7 @@ from qtab.rendering.replay import check_render_mode, make_render_env, render_env
 from qtab.results.action_values import greedy_table
 from qtab.results.run import Run
 from qtab.results.time_steps import rows_of
-from qtab.training.run_env import check_env, check_spaces
+from qtab.training.setup.run_env import check_env, check_spaces
 
 
 @dataclass(frozen=True)

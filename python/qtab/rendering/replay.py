@@ -12,7 +12,7 @@ from qtab._utils.progress import ProgressBar
 from qtab.config import Config
 from qtab.results.run import Recording, Run
 from qtab.training.restore import continue_after
-from qtab.training.run_env import make_run_env
+from qtab.training.setup.run_env import make_run_env
 
 
 def make_render_env(

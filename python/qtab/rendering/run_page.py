@@ -30,7 +30,7 @@ from qtab.rendering.learning import PANELS, draw_learning, runs_at_snapshots
 from qtab.rendering.player import episode_player, slider
 from qtab.results.run import Run
 from qtab.results.summary import FINAL_EPISODES
-from qtab.training.run_env import check_env
+from qtab.training.setup.run_env import check_env
 
 MAX_SNAPSHOTS = 50
 """The largest number of snapshots to show."""

@@ -17,9 +17,9 @@ from qtab.envs.origin.values import with_types
 from qtab.results.run import Run
 from qtab.results.summary import summarize
 from qtab.sweeps.study import Study
-from qtab.training.resolve import resolve
-from qtab.training.resolved_run import ResolvedRun
-from qtab.training.run_env import as_in_training, environment_of
+from qtab.training.setup.resolve import resolve
+from qtab.training.setup.resolved_run import ResolvedRun
+from qtab.training.setup.run_env import as_in_training, environment_of
 from qtab.training.train import train_resolved
 from qtab.training.train_many import resolve_template
 

@@ -18,8 +18,8 @@ from qtab.envs.origin.values import with_types
 from qtab.envs.registry import entry_for_id, make_env, spec_of
 from qtab.sweeps.connection import StoreError, damaged, name_of
 from qtab.training.repetition import encoded
-from qtab.training.resolved_run import ResolvedRun
-from qtab.training.run_env import environment_of
+from qtab.training.setup.resolved_run import ResolvedRun
+from qtab.training.setup.run_env import environment_of
 
 if TYPE_CHECKING:
     from qtab.sweeps.results import Sweep

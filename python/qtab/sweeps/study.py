@@ -21,9 +21,9 @@ from qtab.config.unknown import check_names
 from qtab.envs.origin import EnvironmentDescription
 from qtab.envs.registry import stored_id
 from qtab.sweeps import designs
-from qtab.training.resolved_run import ResolvedRun
-from qtab.training.run_env import environment_of
-from qtab.training.run_memory import bytes_of_run
+from qtab.training.setup.resolved_run import ResolvedRun
+from qtab.training.setup.run_env import environment_of
+from qtab.training.setup.run_memory import bytes_of_run
 from qtab.training.train_many import resolve_template, seed_numbers
 
 BYTES_PER_STORED_RUN = 1000

@@ -15,8 +15,8 @@ from qtab._utils.versions import versions
 from qtab.results.summary import block_means, summarize
 from qtab.sweeps.run_records import RunRecord
 from qtab.training.process_pool import trained_in_python
-from qtab.training.resolved_run import ResolvedRun
-from qtab.training.run_memory import bytes_of_run
+from qtab.training.setup.resolved_run import ResolvedRun
+from qtab.training.setup.run_memory import bytes_of_run
 from qtab.training.train_many import allocate_results, resolve_template, train_in_threads
 
 if TYPE_CHECKING:

@@ -1,20 +1,22 @@
-"""Callbacks: a base class for your own, and a list that calls each callback when it is due."""
+"""The arguments of ``train`` that are not settings and change no result: callbacks, and the options beside them."""
 
 import inspect
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from contextlib import ExitStack
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import gymnasium as gym
 
 from qtab._utils import checks
+from qtab._utils.memory import memory_limit as bytes_limit
 from qtab._utils.shown import shown
 from qtab.config import Config
-from qtab.training.environment import PythonEnvironment
 from qtab.training.progress import Callback, Progress
-from qtab.training.resolved_run import ResolvedRun
+from qtab.training.setup.environment import PythonEnvironment
+from qtab.training.setup.resolved_run import ResolvedRun
 
 if TYPE_CHECKING:
     from qtab.results.run import Run
@@ -152,3 +154,37 @@ def _checked(name: str, callback: Any) -> Any:
 
 def _interval(callback: Callback) -> int | None:
     return callback.every if isinstance(callback, BaseCallback) else None
+
+
+CALLBACK_EVERY = 100
+
+
+@dataclass(frozen=True)
+class TrainingOptions:
+    """The arguments of :func:`qtab.train` and :func:`qtab.resume` that are not settings, checked.
+
+    Raises:
+        TypeError: for an argument of the wrong type.
+        ValueError: for an argument out of range.
+    """
+
+    callback: Callbacks | None = None
+    callback_every: int = CALLBACK_EVERY
+    record: int = 0
+    visits: bool = False
+    snapshots: int | Sequence[int] | None = None
+    """Checked once the number of episodes is known."""
+    progress: bool | None = None
+    memory_limit: int | None = None
+
+    def __post_init__(self) -> None:
+        """Checks the arguments before the environment is made."""
+        checks.integer("callback_every", self.callback_every, least=1)
+        checks.count("record", self.record, least=0)
+        checks.boolean("visits", self.visits)
+        bytes_limit(self.memory_limit)
+        self.callbacks()
+
+    def callbacks(self) -> CallbackList:
+        """Returns the callbacks as one callback."""
+        return CallbackList(self.callback, int(self.callback_every))

@@ -26,10 +26,10 @@ from qtab.results.loading import load, with_action_mask
 from qtab.results.rates import extensions, falling_rates
 from qtab.results.run import Run
 from qtab.results.snapshots import resumed_snapshot_episodes, snapshot_episodes
-from qtab.training.options import TrainingOptions
-from qtab.training.resolve import resolve
-from qtab.training.resolved_run import ResolvedRun
-from qtab.training.run_env import environment_of, resolve_run
+from qtab.training.callbacks import TrainingOptions
+from qtab.training.setup.resolve import resolve
+from qtab.training.setup.resolved_run import ResolvedRun
+from qtab.training.setup.run_env import environment_of, resolve_run
 
 _LOGGER = logging.getLogger("qtab")
 _OF_ENV = ("env_kwargs", "max_episode_steps")

@@ -26,9 +26,9 @@ from qtab.envs.matching import time_limit
 from qtab.envs.registry import make_env, spec_of, spec_of_run
 from qtab.results.action_values import greedy_table
 from qtab.results.run import Run
-from qtab.training.options import TrainingOptions
-from qtab.training.resolve import log_python_stepping, resolve
-from qtab.training.run_env import check_env, check_spaces, resolve_run
+from qtab.training.callbacks import TrainingOptions
+from qtab.training.setup.resolve import log_python_stepping, resolve
+from qtab.training.setup.run_env import check_env, check_spaces, resolve_run
 from qtab.training.train import train_resolved
 
 if TYPE_CHECKING:

@@ -19,8 +19,8 @@ import cloudpickle
 from qtab import _core
 from qtab._spec import Results
 from qtab.envs.registry import spec_of
-from qtab.training.resolve import resolve
-from qtab.training.resolved_run import ResolvedRun, masks_of
+from qtab.training.setup.resolve import resolve
+from qtab.training.setup.resolved_run import ResolvedRun, masks_of
 
 POLL_SECONDS = 0.2
 """The interval of checks for Ctrl-C, which cannot interrupt a wait on Windows, and, in workers, for the pool's end."""

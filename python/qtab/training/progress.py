@@ -19,7 +19,7 @@ from qtab.results.summary import FINAL_EPISODES
 
 if TYPE_CHECKING:
     from qtab.results.run import Run
-    from qtab.training.resolved_run import ResolvedRun
+    from qtab.training.setup.resolved_run import ResolvedRun
 
 
 @with_fields

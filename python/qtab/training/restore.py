@@ -10,8 +10,8 @@ from qtab import _core
 from qtab._utils.checks import required
 from qtab.results.run import Run
 from qtab.results.run_state import RunState, generator_state
-from qtab.training.environment import PythonEnvironment
-from qtab.training.resolved_run import ResolvedRun
+from qtab.training.setup.environment import PythonEnvironment
+from qtab.training.setup.resolved_run import ResolvedRun
 
 _LOGGER = logging.getLogger("qtab")
 

@@ -6,9 +6,8 @@ from collections.abc import Sequence
 import gymnasium as gym
 
 from qtab.results.run import Run
-from qtab.training.callbacks import Callbacks
+from qtab.training.callbacks import CALLBACK_EVERY, Callbacks, TrainingOptions
 from qtab.training.earlier_run import counts_visits, earlier_run, has_finished, resolve_again
-from qtab.training.options import CALLBACK_EVERY, TrainingOptions
 from qtab.training.train import train_resolved
 
 

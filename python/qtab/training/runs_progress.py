@@ -15,7 +15,7 @@ from qtab._utils import checks
 from qtab._utils.progress import ProgressBar
 from qtab.results.runs import Runs
 from qtab.training.callbacks import BaseCallback, as_tuple
-from qtab.training.resolved_run import ResolvedRun
+from qtab.training.setup.resolved_run import ResolvedRun
 
 SECONDS_PER_PART = 1.0
 """The approximate time between two calls if ``callback_every`` is not set."""

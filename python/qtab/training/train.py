@@ -22,7 +22,7 @@ from qtab.config.settings import Settings
 from qtab.results.recording import Recording, generator_states
 from qtab.results.run import Run
 from qtab.results.snapshots import SnapshotCollector
-from qtab.training.callbacks import Callbacks
+from qtab.training.callbacks import CALLBACK_EVERY, Callbacks, TrainingOptions
 from qtab.training.earlier_run import (
     check_agrees,
     counts_visits,
@@ -33,13 +33,12 @@ from qtab.training.earlier_run import (
     snapshots_of,
     with_function,
 )
-from qtab.training.options import CALLBACK_EVERY, TrainingOptions
 from qtab.training.progress import EpisodeReader
-from qtab.training.resolve import log_default_limit, log_python_stepping
-from qtab.training.resolved_run import ResolvedRun, masks_of
 from qtab.training.restore import restore, state_of
-from qtab.training.run_env import collect_for, resolve_made, resolve_over
-from qtab.training.run_memory import check_run_memory, tables_shape
+from qtab.training.setup.resolve import log_default_limit, log_python_stepping
+from qtab.training.setup.resolved_run import ResolvedRun, masks_of
+from qtab.training.setup.run_env import collect_for, resolve_made, resolve_over
+from qtab.training.setup.run_memory import check_run_memory, tables_shape
 
 
 @with_settings

@@ -20,7 +20,7 @@ from qtab.results.known_optimum import KnownOptimum
 from qtab.results.run import Run
 from qtab.results.summary import SOLVED_EPISODES
 from qtab.training.evaluate import evaluate
-from qtab.training.run_env import can_be_made
+from qtab.training.setup.run_env import can_be_made
 
 EVALUATION_EPISODES = 100
 """The number of episodes to play with the greedy policy if its return is not computed exactly."""

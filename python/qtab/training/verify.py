@@ -23,8 +23,8 @@ from qtab.reference import LEARNERS
 from qtab.results.rates import ONLY_FIRST, repeatable
 from qtab.results.run import Run
 from qtab.training.repetition import repeats_itself, wrapper_with_statistics
-from qtab.training.resolve import resolve
-from qtab.training.run_env import check_env, check_same, make_run_env, resolve_run
+from qtab.training.setup.resolve import resolve
+from qtab.training.setup.run_env import check_env, check_same, make_run_env, resolve_run
 
 
 @with_fields

@@ -13,10 +13,10 @@ from qtab.cli.values import integer
 from qtab.config.merge import over
 from qtab.results.loading import load
 from qtab.results.run import Run
+from qtab.training.callbacks import TrainingOptions
 from qtab.training.earlier_run import check_agrees, counts_visits, has_finished, resolve_again, snapshots_of
-from qtab.training.options import TrainingOptions
-from qtab.training.resolve import resolve
-from qtab.training.resolved_run import ResolvedRun
+from qtab.training.setup.resolve import resolve
+from qtab.training.setup.resolved_run import ResolvedRun
 
 
 def add_arguments(parser: Parser) -> None:

@@ -18,7 +18,7 @@ from qtab.book.line import Line, LineStyle, line_from_samples
 from qtab.book.result import Result
 from qtab.book.runner import FloatArray
 from qtab.envs.book.mazes import MOST_DOUBLINGS, DynaMazeEnv
-from qtab.training.resolve import resolve
+from qtab.training.setup.resolve import resolve
 
 ENV = "qtab/DynaMaze-v0"
 PLANNING_STEPS = 5

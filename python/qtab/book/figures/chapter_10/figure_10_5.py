@@ -13,7 +13,7 @@ from qtab.book.drawing import figure_of_several, line_colors
 from qtab.book.experiment import Experiment
 from qtab.book.line import LineStyle, line_from_samples
 from qtab.book.result import Result
-from qtab.training.resolve import resolve
+from qtab.training.setup.resolve import resolve
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

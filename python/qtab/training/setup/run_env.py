@@ -24,8 +24,8 @@ from qtab.envs.origin.description import EnvironmentDescription
 from qtab.envs.origin.differences import differences
 from qtab.envs.registry import ENTRIES, gymnasium_id, make_env, spec_of, spec_of_run
 from qtab.results.run import Run
-from qtab.training.resolve import resolve
-from qtab.training.resolved_run import ResolvedRun
+from qtab.training.setup.resolve import resolve
+from qtab.training.setup.resolved_run import ResolvedRun
 
 Attempt = Callable[[Any, dict[str, Any]], ResolvedRun]
 """Resolves settings in an environment, given as an id or as a function that makes it."""

@@ -12,8 +12,7 @@ from qtab.config.config import replace_checked
 from qtab.config.options import is_set
 from qtab.discretizers import Discretizer
 from qtab.envs.actions import Actions
-from qtab.training.action_masks import ActionMasks
-from qtab.training.environment import Environment, NativeEnvironment, ObservedEnv
+from qtab.training.setup.environment import ActionMasks, Environment, NativeEnvironment, ObservedEnv
 
 
 @dataclass(frozen=True, eq=False)

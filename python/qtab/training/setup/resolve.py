@@ -28,10 +28,17 @@ from qtab.envs.native import KnownTable, known_table, native_env
 from qtab.envs.origin.describe import describe, describe_known
 from qtab.envs.origin.description import EnvironmentDescription
 from qtab.envs.registry import EnvEntry, entry_for_spec, make_env, spec_of, versioned
-from qtab.training.action_masks import NO_MASKS, asks_for_masks, known_masks, observed_masks
-from qtab.training.environment import Environment, NativeEnvironment, PythonEnvironment
-from qtab.training.preset_fit import infer_discretizer, set_aside
-from qtab.training.resolved_run import ResolvedRun, derived_settings
+from qtab.training.setup.environment import (
+    NO_MASKS,
+    Environment,
+    NativeEnvironment,
+    PythonEnvironment,
+    asks_for_masks,
+    known_masks,
+    observed_masks,
+)
+from qtab.training.setup.preset_fit import infer_discretizer, set_aside
+from qtab.training.setup.resolved_run import ResolvedRun, derived_settings
 
 _LOGGER = logging.getLogger("qtab")
 _logged: set[str] = set()

@@ -7,10 +7,9 @@ from qtab._utils.memory import memory_limit as bytes_limit
 from qtab._utils.shown import shown
 from qtab.config.options import n_tables
 from qtab.results.run import Run
-from qtab.training.action_masks import mask_bytes
-from qtab.training.environment import PythonEnvironment
-from qtab.training.options import TrainingOptions
-from qtab.training.resolved_run import ResolvedRun
+from qtab.training.callbacks import TrainingOptions
+from qtab.training.setup.environment import PythonEnvironment, mask_bytes
+from qtab.training.setup.resolved_run import ResolvedRun
 
 BYTES_PER_VALUE = {
     "sarsa_lambda": 24,

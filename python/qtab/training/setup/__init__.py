@@ -1,0 +1,1 @@
+"""What precedes the first episode: the environment is found, all settings are filled in, and the memory is computed."""
