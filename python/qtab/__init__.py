@@ -32,7 +32,7 @@ _MODULES = {
     "Runs": "qtab.results.runs",
     "RunsProgress": "qtab.training.runs_progress",
     "RustVectorEnv": "qtab.envs.vector",
-    "Snapshots": "qtab.results.snapshots",
+    "Snapshots": "qtab.results.recording",
     "StoreError": "qtab.sweeps.connection",
     "Sweep": "qtab.sweeps.results",
     "SweepProgress": "qtab.sweeps.training",
@@ -103,9 +103,9 @@ if TYPE_CHECKING:
     from qtab.results.loading import load as load
     from qtab.results.loading import load_runs as load_runs
     from qtab.results.recording import Recording as Recording
+    from qtab.results.recording import Snapshots as Snapshots
     from qtab.results.run import Run as Run
     from qtab.results.runs import Runs as Runs
-    from qtab.results.snapshots import Snapshots as Snapshots
     from qtab.sweeps import designs as designs
     from qtab.sweeps.confirm import Confirmation as Confirmation
     from qtab.sweeps.connection import StoreError as StoreError

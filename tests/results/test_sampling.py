@@ -10,7 +10,7 @@ import qtab
 from qtab.config.schedules import epsilon
 from qtab.reference import agent_stream
 from qtab.reference.schedules import epsilon_schedule
-from qtab.results.behaviour import action_probabilities, sample
+from qtab.results.action_values import action_probabilities, sample
 
 LAKE = "FrozenLake-v1"
 

@@ -15,7 +15,6 @@ from qtab.config import DEFAULTS, Config
 from qtab.config.config import replace_checked
 from qtab.config.functions import STORED, MissingFunction
 from qtab.config.origin import Origin, copied, trained_on
-from qtab.config.stored import corrected_settings, implied_settings
 from qtab.config.validation import defaults
 from qtab.discretizers.base import MAX_TABLE_SIZE
 from qtab.envs.origin.description import from_json
@@ -23,11 +22,16 @@ from qtab.envs.origin.values import with_types
 from qtab.envs.registry import stored_id
 from qtab.results import run_file
 from qtab.results.consistency import check_consistent, check_consistent_runs
-from qtab.results.optional_arrays import checked_masks, restore_optional
+from qtab.results.file_parts import (
+    checked_masks,
+    corrected_settings,
+    implied_settings,
+    restore_actions,
+    restore_optional,
+)
 from qtab.results.run import Run
 from qtab.results.run_state import RunState
 from qtab.results.runs import Runs
-from qtab.results.saved_actions import restore_actions
 
 _LOGGER = logging.getLogger("qtab")
 Result = TypeVar("Result", Run, Runs)

@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     import gymnasium as gym
     from gymnasium.envs.registration import EnvSpec
 
-    from qtab.results.known_optimum import KnownOptimum
+    from qtab.results.summary import KnownOptimum
 
 WRITER = ""
 """The name of the module that writes the page. ``qtab`` sets it, because that module imports :class:`qtab.Run`."""

@@ -17,14 +17,13 @@ from qtab.config.origin import trained_on
 from qtab.discretizers import Discretizer
 from qtab.envs.actions import Actions
 from qtab.envs.origin.description import EnvironmentDescription
-from qtab.results import action_values, behaviour, plain_data, run_file, saving, time_steps
+from qtab.results import action_values, file_parts, plain_data, run_file, time_steps
 from qtab.results.axes import Axis, action_names, axes_of, run_quantities
 from qtab.results.consistency import check_consistent
-from qtab.results.optional_arrays import optional_arrays
 from qtab.results.page import WithPage
 from qtab.results.recording import Recording as Recording
+from qtab.results.recording import Snapshots
 from qtab.results.run_state import RunState
-from qtab.results.snapshots import Snapshots
 from qtab.results.summary import FINAL_EPISODES, block_means, default_block
 
 if TYPE_CHECKING:
@@ -236,8 +235,8 @@ class Run(WithPage):
             columns = np.argmax(values, axis=-1)
         else:
             rows = values.reshape(-1, values.shape[-1])
-            probabilities = behaviour.action_probabilities(self.config, len(self.episode_returns), rows)
-            columns = behaviour.sample(probabilities, self._generator).reshape(values.shape[:-1])
+            probabilities = action_values.action_probabilities(self.config, len(self.episode_returns), rows)
+            columns = action_values.sample(probabilities, self._generator).reshape(values.shape[:-1])
         action = self.actions.take(columns) if columns.ndim else self.actions[int(columns)]
         return action, time_steps.next_state(self.discretizer, steps, columns.shape)
 
@@ -289,8 +288,8 @@ class Run(WithPage):
             check_consistent(self)
         except ValueError as error:
             raise ValueError(f"this run cannot be saved: {error}") from None
-        arrays = {name: getattr(self, name) for name in run_file.ARRAYS} | optional_arrays(self)
+        arrays = {name: getattr(self, name) for name in run_file.ARRAYS} | file_parts.optional_arrays(self)
         header = {} if self.state is None else self.state.header()
         if self.state is not None:
             arrays["state"] = self.state.array()
-        saving.write(checks.file_path("path", path), run_file.RUN, self, header, arrays)
+        file_parts.write(checks.file_path("path", path), run_file.RUN, self, header, arrays)

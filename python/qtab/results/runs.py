@@ -18,7 +18,7 @@ from qtab.config.origin import trained_on
 from qtab.discretizers import Discretizer
 from qtab.envs.actions import Actions
 from qtab.envs.origin.description import EnvironmentDescription
-from qtab.results import run_file, saving
+from qtab.results import file_parts, run_file
 from qtab.results.consistency import check_consistent_runs
 from qtab.results.run import Run
 from qtab.results.summary import FINAL_EPISODES, block_means, default_block, summarize
@@ -215,7 +215,7 @@ class Runs:
             raise ValueError(f"these runs cannot be saved: {error}") from None
         arrays = {name: getattr(self, name) for name in (*run_file.ARRAYS, "action_masks")}
         arrays = {name: array for name, array in arrays.items() if array is not None}
-        saving.write(path, run_file.RUNS, self, {"seeds": self.seeds, "rows": self.discretizer.n_rows}, arrays)
+        file_parts.write(path, run_file.RUNS, self, {"seeds": self.seeds, "rows": self.discretizer.n_rows}, arrays)
 
     def to_pandas(self) -> "pd.DataFrame":
         """Returns the columns of :meth:`summaries` as a data frame with one row per run.

@@ -1,6 +1,6 @@
-"""Summaries of runs: a few numbers for each run."""
+"""Summaries of runs: a few numbers for each run, and what they are compared with."""
 
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,3 +58,27 @@ def best_mean_returns(returns: NDArray[np.float64], window: int = SOLVED_EPISODE
     sums = np.cumsum(np.pad(returns, ((0, 0), (1, 0))), axis=1)
     best: NDArray[np.float64] = np.max((sums[:, window:] - sums[:, :-window]) / window, axis=1)
     return best
+
+
+class KnownOptimum(Protocol):
+    """A result of :func:`qtab.optimum`, whose class is in a package that imports this one."""
+
+    @property
+    def expected_return(self) -> float:
+        """The expected return of the best policy."""
+
+    @property
+    def label(self) -> str:
+        """``"optimum"``, or ``"best known"`` if the result is not exact."""
+
+    @property
+    def exact(self) -> bool:
+        """True if it is proven that no policy has a higher expected return."""
+
+    @property
+    def stationary(self) -> Any:
+        """The best policy that ignores the number of steps taken; None if unknown."""
+
+    @property
+    def solver(self) -> Any:
+        """The solver, which computes the expected return of other policies."""

@@ -10,7 +10,7 @@ from qtab._utils.shown import shown
 from qtab.config.config import DEFAULTS, replace_checked
 from qtab.config.implied import with_followers
 from qtab.discretizers.time_aware import TimeAware
-from qtab.results.snapshots import Snapshots
+from qtab.results.recording import Snapshots
 
 if TYPE_CHECKING:
     from qtab.results.run import Run

@@ -16,10 +16,10 @@ from qtab._utils.memory import memory_limit as memory_limit_in_bytes
 from qtab.config import DEFAULTS
 from qtab.config.functions import function_name
 from qtab.config.merge import Base, over
-from qtab.config.stored import corrected_settings, stored_settings
 from qtab.config.unknown import check_names
 from qtab.envs.origin import EnvironmentDescription
 from qtab.envs.registry import stored_id
+from qtab.results.file_parts import corrected_settings, stored_settings
 from qtab.sweeps import designs
 from qtab.training.setup.resolved_run import ResolvedRun
 from qtab.training.setup.run_env import environment_of

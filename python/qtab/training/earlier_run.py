@@ -24,8 +24,8 @@ from qtab.envs.origin.differences import differences
 from qtab.envs.registry import versioned
 from qtab.results.loading import load, with_action_mask
 from qtab.results.rates import extensions, falling_rates
+from qtab.results.recording import resumed_snapshot_episodes, snapshot_episodes
 from qtab.results.run import Run
-from qtab.results.snapshots import resumed_snapshot_episodes, snapshot_episodes
 from qtab.training.callbacks import TrainingOptions
 from qtab.training.setup.resolve import resolve
 from qtab.training.setup.resolved_run import ResolvedRun

@@ -19,9 +19,8 @@ from qtab.config import Config
 from qtab.config.help import with_settings
 from qtab.config.merge import over
 from qtab.config.settings import Settings
-from qtab.results.recording import Recording, generator_states
+from qtab.results.recording import Recording, SnapshotCollector, generator_states
 from qtab.results.run import Run
-from qtab.results.snapshots import SnapshotCollector
 from qtab.training.callbacks import CALLBACK_EVERY, Callbacks, TrainingOptions
 from qtab.training.earlier_run import (
     check_agrees,

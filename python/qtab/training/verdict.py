@@ -16,9 +16,8 @@ from qtab.envs.goals import (
     why_no_threshold,
 )
 from qtab.results.action_values import are_finite
-from qtab.results.known_optimum import KnownOptimum
 from qtab.results.run import Run
-from qtab.results.summary import SOLVED_EPISODES
+from qtab.results.summary import SOLVED_EPISODES, KnownOptimum
 from qtab.training.evaluate import evaluate
 from qtab.training.setup.run_env import can_be_made
 

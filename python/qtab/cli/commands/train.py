@@ -20,7 +20,7 @@ from qtab.config.help import default
 from qtab.config.merge import merge
 from qtab.config.options import is_set
 from qtab.envs.registry import spec_of, versioned
-from qtab.results.snapshots import snapshot_episodes
+from qtab.results.recording import snapshot_episodes
 from qtab.training.setup.resolve import resolve, time_limit_notice
 from qtab.training.setup.resolved_run import ResolvedRun
 
