@@ -11,7 +11,7 @@ import pytest
 import qtab
 from qtab.config.choices import ALGORITHM_NAMES
 from qtab.config.options import PREFERENCES, TABLES_ONLY
-from qtab.diagnosis.changes import change
+from qtab.diagnosis.finding import change
 
 LAKE, CAR = "FrozenLake-v1", "MountainCar-v0"
 FALLING: dict[str, Any] = {"learning_rate_schedule": "linear"}

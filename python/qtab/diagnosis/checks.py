@@ -3,22 +3,14 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from qtab.diagnosis.coarse_grid import coarse_grid
-from qtab.diagnosis.coverage import coverage
-from qtab.diagnosis.divergence import divergence
-from qtab.diagnosis.exploration import exploration
+from qtab.diagnosis.cells import coarse_grid, narrow_limits, wide_limits
+from qtab.diagnosis.exploration import coverage, exploration, lasting_bonus, lasting_exploration
 from qtab.diagnosis.facts import Facts
 from qtab.diagnosis.finding import Finding, Unchecked
-from qtab.diagnosis.horizon import horizon
 from qtab.diagnosis.initial_values import too_optimistic, too_pessimistic
-from qtab.diagnosis.lasting_exploration import lasting_bonus, lasting_exploration
-from qtab.diagnosis.learning_rate import noisy_values, slow_learning
-from qtab.diagnosis.limits import narrow_limits, wide_limits
-from qtab.diagnosis.not_solved import not_solved
-from qtab.diagnosis.time_limit import time_limit
-from qtab.diagnosis.too_short import too_short
-from qtab.diagnosis.truncation import truncation
-from qtab.diagnosis.unlucky_seed import unlucky_seed
+from qtab.diagnosis.learning_rate import divergence, noisy_values, slow_learning
+from qtab.diagnosis.returns import not_solved, too_short, unlucky_seed
+from qtab.diagnosis.time_limits import horizon, time_limit, truncation
 
 
 @dataclass(frozen=True)

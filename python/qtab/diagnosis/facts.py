@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 from qtab._utils.memory import memory_limit
 from qtab.config import Config
 from qtab.config.options import AVERAGE_REWARD, MONTE_CARLO, PREFERENCES
-from qtab.diagnosis.routes import shortest_best_episode
-from qtab.diagnosis.sample import Sample, repeat, sample_steps
+from qtab.diagnosis.sample import Sample, repeat, sample_steps, shortest_best_episode
 from qtab.envs.goals import BEST_KNOWN_MOUNTAIN_CAR, is_usual_mountain_car
 from qtab.planning.optimum import Optimum
 from qtab.planning.solve import quick_optimum

@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from qtab.diagnosis.changes import changes
 from qtab.diagnosis.facts import Facts
-from qtab.diagnosis.finding import Finding, Unchecked, percent
+from qtab.diagnosis.finding import Finding, Unchecked, changes, percent
 from qtab.results.rates import epsilons
 
 MOST_STATES = 0.3

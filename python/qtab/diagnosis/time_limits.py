@@ -1,11 +1,11 @@
-"""Horizon: the discount hides the goal."""
+"""Time: the discount hides what is far away, the limit is too short, or time-outs are treated as terminal states."""
 
 import numpy as np
 
 from qtab.config.options import FIXED, fixed_settings
-from qtab.diagnosis.changes import changes
 from qtab.diagnosis.facts import LONGEST_MOUNTAIN_CAR, Facts
-from qtab.diagnosis.finding import Finding, Unchecked, as_keywords, percent
+from qtab.diagnosis.finding import Finding, Unchecked, as_keywords, changes, percent
+from qtab.envs.goals import own_time_limit
 
 LEAST_WEIGHT = 0.05
 """A smaller weight of the goal at the start is reported: with it, a goal is hard to tell from no goal."""
@@ -68,4 +68,50 @@ def horizon(facts: Facts) -> Finding | Unchecked | None:
         meaning=meaning,
         advice=advice + (": with a cost for each step the values stay finite" if costs else ""),
         changes=changes(facts.config, other),
+    )
+
+
+MOST_TIMED_OUT = 0.99
+"""A larger share of episodes that time out is reported if the limit is below the environment's own."""
+
+
+def time_limit(facts: Facts) -> Finding | None:
+    """Finds that hardly any episode ends before a time limit that is shorter than the environment's own."""
+    limit, own = facts.config.max_episode_steps, own_time_limit(facts.config.env)
+    if limit is None or own is None or limit >= own:
+        return None
+    timed_out = float((~facts.run.terminated).mean())
+    if timed_out <= MOST_TIMED_OUT:
+        return None
+    return Finding(
+        name="short time limit",
+        title="The time limit may be too short to reach the goal.",
+        evidence={
+            "time limit": limit,
+            "the environment's own": own,
+            "share of episodes that time out": timed_out,
+        },
+        meaning=f"{percent(timed_out)} of the episodes end by the time limit, after fewer steps than the environment "
+        "allows.",
+        # Returns under different limits cannot be compared, so that what_if does not try this.
+        advice=f"use the environment's own limit, max_episode_steps={own}",
+    )
+
+
+def truncation(facts: Facts) -> Finding | None:
+    """Finds time-outs that are treated as terminal states."""
+    timed_out = int((~facts.run.terminated).sum())
+    if facts.config.on_truncation != "terminate" or facts.config.time_aware or timed_out == 0:
+        return None
+    if "on_truncation" in fixed_settings(facts.config.algorithm):
+        return None
+    share = timed_out / len(facts.run.terminated)
+    return Finding(
+        name="time-outs treated as terminal",
+        title="Time-outs are treated as terminal states.",
+        evidence={"episodes that timed out": timed_out, "share of all episodes": share},
+        meaning=f"{percent(share)} of the episodes end by the time limit. The state where that happens depends on the "
+        "clock, which the agent does not see, and its value is learned as if nothing followed.",
+        advice="use on_truncation='bootstrap': the value of the last state then counts",
+        changes=changes(facts.config, {"on_truncation": "bootstrap"}),
     )
