@@ -11,7 +11,7 @@ from qtab.book.drawing import draw_lines
 from qtab.book.drawing.colors import line_colors
 from qtab.book.drawing.end_labels import label_ends
 from qtab.book.line import Line
-from qtab.plots.colors import sequential
+from qtab.plots.parts.colors import sequential
 
 plt: Any = pytest.importorskip("matplotlib.pyplot")
 

@@ -10,9 +10,9 @@ from matplotlib.colors import to_rgb
 import qtab
 from qtab import plots
 from qtab.config.choices import ALGORITHM_NAMES, CHOICES
-from qtab.plots.axes import new_figure
-from qtab.plots.colors import COLORS
-from qtab.plots.labels import finish
+from qtab.plots.parts.axes import new_figure
+from qtab.plots.parts.colors import COLORS
+from qtab.plots.parts.labels import finish
 
 RETURNS = np.cumsum(np.random.default_rng(0).normal(1, 5, size=(12, 300)), axis=1)
 RUN = qtab.train("MountainCar-v0", seed=0, episodes=120)

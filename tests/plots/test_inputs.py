@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 import qtab
 from qtab import plots
-from qtab.plots.axes import not_shown
+from qtab.plots.parts.axes import not_shown
 
 RETURNS = np.cumsum(np.random.default_rng(0).normal(1, 5, size=(12, 300)), axis=1)
 RUN = qtab.train("MountainCar-v0", seed=0, episodes=50)

@@ -12,7 +12,7 @@ import qtab
 from qtab import plots
 from qtab.envs import grid_worlds
 from qtab.envs.registry import ENTRIES, EXTRA
-from qtab.plots.colors import brightness, is_dark
+from qtab.plots.parts.colors import brightness, is_dark
 
 PICTURES: tuple[Any, ...] = (plots.values, plots.policy, plots.visits, plots.trajectory)
 SHORT: dict[str, Any] = {"episodes": 5, "seed": 0, "visits": True, "max_episode_steps": 40}

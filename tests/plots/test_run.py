@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import qtab
-from qtab.plots.axes import check_format
+from qtab.plots.parts.axes import check_format
 from qtab.plots.run import save_plot
 from support.command import QTAB, environment
 

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 import qtab
 from qtab import plots
 from qtab.cli import main
-from qtab.plots.axes import not_shown
+from qtab.plots.parts.axes import not_shown
 
 RETURNS = np.random.default_rng(0).normal(size=(4, 20))
 

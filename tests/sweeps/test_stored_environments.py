@@ -10,7 +10,7 @@ import pytest
 from gymnasium.wrappers import RescaleObservation, TransformReward
 
 import qtab
-from qtab.plots.inputs import entries
+from qtab.plots.parts.inputs import entries
 from qtab.rendering.sweep_report import _optimum
 from qtab.sweeps.environments import sweep_threshold
 from support.parity import assert_same_run

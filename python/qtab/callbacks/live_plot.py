@@ -47,7 +47,7 @@ class LivePlot(BaseCallback):
         self._shows, self._display, self._drawn = in_notebook(), None, -float("inf")
         self._waiting = None
         if self._shows:
-            from qtab.plots.axes import new_figure
+            from qtab.plots.parts.axes import new_figure
 
             new_figure()  # without matplotlib this fails now, and not in the middle of the training
 

@@ -49,7 +49,7 @@ class Outputs:
         if asked.watch is not None:
             checks.integer("watch", asked.watch, least=1)
         if asked.plot is not None:
-            from qtab.plots.axes import check_format
+            from qtab.plots.parts.axes import check_format
 
             check_format("plot", asked.plot)
             check_writable("plot", asked.plot)

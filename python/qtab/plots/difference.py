@@ -10,10 +10,10 @@ from qtab.envs.registry import gymnasium_id
 from qtab.planning.optimum import Optimum
 from qtab.plots.arrangements import Raster, arrange
 from qtab.plots.arrangements.grid_map import Layout
-from qtab.plots.colors import is_dark
-from qtab.plots.labels import check_title
-from qtab.plots.panels import axes_for, color_bar, draw_cells, finish_panel, shade_unknown, write_numbers
-from qtab.plots.subject import Subject, subject_of
+from qtab.plots.parts.colors import is_dark
+from qtab.plots.parts.labels import check_title
+from qtab.plots.parts.panels import axes_for, color_bar, draw_cells, finish_panel, shade_unknown, write_numbers
+from qtab.plots.parts.subject import Subject, subject_of
 from qtab.results.run import Run
 from qtab.results.runs import Runs
 

@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils import checks
-from qtab.plots.axes import axes_or_new, check_axes
-from qtab.plots.colors import line_style, palette
-from qtab.plots.inputs import color_keys, entries, only_threshold
-from qtab.plots.labels import finish
-from qtab.plots.marks import check_threshold, mark_threshold
+from qtab.plots.parts.axes import axes_or_new, check_axes
+from qtab.plots.parts.colors import line_style, palette
+from qtab.plots.parts.inputs import color_keys, entries, only_threshold
+from qtab.plots.parts.labels import finish
+from qtab.plots.parts.marks import check_threshold, mark_threshold
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -8,12 +8,11 @@ from numpy.typing import NDArray
 
 from qtab._utils import checks
 from qtab._utils.shown import counted
-from qtab.plots.axes import axes_or_new, check_axes
-from qtab.plots.blocks import common_block
-from qtab.plots.colors import line_style, palette
-from qtab.plots.inputs import Entry, color_keys, entries, only_threshold
-from qtab.plots.labels import episode_ticks, finish, joined
-from qtab.plots.marks import check_optimum, check_threshold, mark_optimum, mark_threshold
+from qtab.plots.parts.axes import axes_or_new, check_axes
+from qtab.plots.parts.colors import line_style, palette
+from qtab.plots.parts.inputs import Entry, color_keys, entries, only_threshold
+from qtab.plots.parts.labels import episode_ticks, finish, joined
+from qtab.plots.parts.marks import check_optimum, check_threshold, common_block, mark_optimum, mark_threshold
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -5,11 +5,11 @@ from typing import TYPE_CHECKING
 
 from qtab._utils import checks
 from qtab.plots.arrangements.grid_map import Layout
-from qtab.plots.axes import shown_figure
+from qtab.plots.parts.axes import shown_figure
+from qtab.plots.parts.subject import subject_of
 from qtab.plots.policy import policy
 from qtab.plots.run import plot
 from qtab.plots.schedule import schedule
-from qtab.plots.subject import subject_of
 from qtab.plots.values import values
 from qtab.plots.visits import visits
 from qtab.results.run import Run

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 from qtab.plots.arrangements import Raster
 from qtab.plots.arrangements.grid_map import Layout
 from qtab.plots.arrangements.raster import DIRECTIONS
-from qtab.plots.colors import COLORS, brightness, is_dark
-from qtab.plots.labels import below_label
-from qtab.plots.panels import arranged, axes_for, cell_font_size, draw_cells, finish_panel, shade_unknown
-from qtab.plots.subject import Drawable, Subject
+from qtab.plots.parts.colors import COLORS, brightness, is_dark
+from qtab.plots.parts.labels import below_label
+from qtab.plots.parts.panels import arranged, axes_for, cell_font_size, draw_cells, finish_panel, shade_unknown
+from qtab.plots.parts.subject import Drawable, Subject
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

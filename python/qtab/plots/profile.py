@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qtab._utils import arrays, checks
-from qtab.plots.axes import axes_or_new, check_axes
-from qtab.plots.colors import line_style, palette
-from qtab.plots.inputs import color_keys, entries, final_returns
-from qtab.plots.labels import finish, joined
+from qtab.plots.parts.axes import axes_or_new, check_axes
+from qtab.plots.parts.colors import line_style, palette
+from qtab.plots.parts.inputs import color_keys, entries, final_returns
+from qtab.plots.parts.labels import finish, joined
 from qtab.results.run import Run
 from qtab.results.runs import Runs
 from qtab.sweeps.results import Sweep

@@ -10,11 +10,10 @@ from numpy.typing import NDArray
 from qtab._utils import checks
 from qtab._utils.shown import counted
 from qtab.envs.goals import threshold_of
-from qtab.plots.axes import axes_or_new, check_axes, new_figure, save_figure
-from qtab.plots.blocks import fitting_block
-from qtab.plots.colors import palette
-from qtab.plots.labels import earlier_limits, episode_ticks, finish, set_x_limits
-from qtab.plots.marks import check_optimum, check_threshold, mark_optimum, mark_threshold
+from qtab.plots.parts.axes import axes_or_new, check_axes, new_figure, save_figure
+from qtab.plots.parts.colors import palette
+from qtab.plots.parts.labels import earlier_limits, episode_ticks, finish, set_x_limits
+from qtab.plots.parts.marks import check_optimum, check_threshold, fitting_block, mark_optimum, mark_threshold
 from qtab.results.run import Run
 
 if TYPE_CHECKING:

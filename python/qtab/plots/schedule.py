@@ -7,9 +7,9 @@ import numpy as np
 from qtab._utils import checks
 from qtab.config.schedules import ByVisits, Softmax, Ucb, learning_rate
 from qtab.config.schedules import policy as policy_of
-from qtab.plots.axes import axes_or_new
-from qtab.plots.colors import color
-from qtab.plots.labels import check_title, earlier_limits, finish, set_x_limits
+from qtab.plots.parts.axes import axes_or_new
+from qtab.plots.parts.colors import color
+from qtab.plots.parts.labels import check_title, earlier_limits, finish, set_x_limits
 from qtab.results.rates import rates_of
 from qtab.results.run import Run
 

@@ -12,8 +12,8 @@ from qtab._utils import checks
 from qtab.planning.optimum import Optimum
 from qtab.plots.arrangements import Raster, arrange
 from qtab.plots.arrangements.grid_map import Layout
-from qtab.plots.labels import check_title
-from qtab.plots.subject import subject_of
+from qtab.plots.parts.labels import check_title
+from qtab.plots.parts.subject import subject_of
 from qtab.plots.values import values
 from qtab.results.action_values import mask_of_step
 from qtab.results.run import Run

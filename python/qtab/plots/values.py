@@ -8,9 +8,8 @@ from numpy.typing import NDArray
 
 from qtab._utils import checks
 from qtab.plots.arrangements.grid_map import Layout
-from qtab.plots.heat_maps import draw_heat_maps
-from qtab.plots.panels import arranged
-from qtab.plots.subject import Drawable, Learned, Subject
+from qtab.plots.parts.panels import arranged, draw_heat_maps
+from qtab.plots.parts.subject import Drawable, Learned, Subject
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -8,9 +8,8 @@ from numpy.typing import NDArray
 
 from qtab.plots.arrangements import Raster
 from qtab.plots.arrangements.grid_map import Layout
-from qtab.plots.heat_maps import draw_heat_maps
-from qtab.plots.panels import arranged
-from qtab.plots.subject import Subject
+from qtab.plots.parts.panels import arranged, draw_heat_maps
+from qtab.plots.parts.subject import Subject
 from qtab.results.run import Run
 from qtab.results.time_steps import over_all_steps
 

@@ -21,7 +21,7 @@ from qtab.prediction.settings import PredictionSettings
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from qtab.plots.subject import Subject
+    from qtab.plots.parts.subject import Subject
     from qtab.prediction.verification import ValuesVerification
 
 

@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab.envs.quantities import observation_quantities, observed_quantities, quantities_of
-from qtab.plots.axes import axes_or_new
-from qtab.plots.labels import finish
-from qtab.plots.subject import Subject
+from qtab.plots.parts.axes import axes_or_new
+from qtab.plots.parts.labels import finish
+from qtab.plots.parts.subject import Subject
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -11,11 +11,10 @@ from qtab._utils.progress import ProgressBar
 from qtab._utils.shown import counted
 from qtab.plots.arrangements import Raster, arrange
 from qtab.plots.arrangements.grid_map import Layout
-from qtab.plots.axes import new_figure
-from qtab.plots.heat_maps import draw_heat_map
-from qtab.plots.panels import color_bar
+from qtab.plots.parts.axes import new_figure
+from qtab.plots.parts.panels import color_bar, draw_heat_map
+from qtab.plots.parts.subject import Subject, subject_of
 from qtab.plots.policy import policy
-from qtab.plots.subject import Subject, subject_of
 from qtab.plots.values import common_norm, value_label, value_text
 from qtab.rendering.frames import Frames
 from qtab.results.run import Run

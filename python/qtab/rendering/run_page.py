@@ -21,7 +21,7 @@ from qtab.diagnosis.diagnosis import Diagnosis
 from qtab.envs.goals import threshold_of
 from qtab.planning.optimum import Optimum
 from qtab.plots.arrangements.grid_map import Layout
-from qtab.plots.axes import new_figure
+from qtab.plots.parts.axes import new_figure
 from qtab.plots.run import plot
 from qtab.rendering.agent import agent_of
 from qtab.rendering.film import Scene

@@ -14,7 +14,7 @@ import numpy as np
 from qtab._utils.files import replacing
 from qtab._utils.page import page, paragraph, picture, section, table
 from qtab.envs.goals import what_changes_returns
-from qtab.plots.axes import not_shown
+from qtab.plots.parts.axes import not_shown
 from qtab.sweeps.environments import environments_of, sweep_threshold
 from qtab.sweeps.results import Sweep
 from qtab.sweeps.run_versions import by_name, in_words, versions_note

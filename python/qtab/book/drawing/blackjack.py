@@ -10,8 +10,7 @@ from qtab.book.drawing.figures import figure_of_several
 from qtab.book.result import Result
 from qtab.plots.arrangements import Raster
 from qtab.plots.arrangements.blackjack import blackjack
-from qtab.plots.heat_maps import draw_heat_map
-from qtab.plots.panels import color_bar, finish_panel
+from qtab.plots.parts.panels import color_bar, draw_heat_map, finish_panel
 from qtab.plots.policy import draw_regions
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from itertools import cycle
 from typing import TYPE_CHECKING, Any
 
 from qtab.book.line import Line
-from qtab.plots.colors import COLORS, algorithm_color, readable, sequential
+from qtab.plots.parts.colors import COLORS, algorithm_color, readable, sequential
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -4,8 +4,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from qtab.book.result import Result
-from qtab.plots.axes import not_shown, save_figure, shown_figure
-from qtab.plots.labels import fitted
+from qtab.plots.parts.axes import not_shown, save_figure, shown_figure
+from qtab.plots.parts.labels import fitted
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

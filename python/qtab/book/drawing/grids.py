@@ -11,8 +11,7 @@ from qtab.book.drawing.figures import figure_of_several
 from qtab.book.result import Result
 from qtab.book.runner import FloatArray
 from qtab.plots.arrangements.grid_map import grid_map
-from qtab.plots.heat_maps import draw_heat_map
-from qtab.plots.panels import finish_panel
+from qtab.plots.parts.panels import draw_heat_map, finish_panel
 from qtab.plots.policy import draw_moves
 from qtab.plots.values import common_norm
 

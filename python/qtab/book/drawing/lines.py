@@ -9,8 +9,8 @@ import numpy as np
 from qtab.book.drawing.colors import line_colors
 from qtab.book.drawing.end_labels import label_ends
 from qtab.book.result import Result
-from qtab.plots.axes import axes_or_new
-from qtab.plots.labels import finish
+from qtab.plots.parts.axes import axes_or_new
+from qtab.plots.parts.labels import finish
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

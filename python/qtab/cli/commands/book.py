@@ -9,7 +9,7 @@ from qtab._utils.progress import print_above
 from qtab.cli.errors import UsageError, usage_errors
 from qtab.cli.parser import Parser
 from qtab.cli.values import integer
-from qtab.plots.axes import check_format
+from qtab.plots.parts.axes import check_format
 
 ALL = "all"
 

@@ -10,7 +10,7 @@ from qtab.plots.arrangements.grid_map import Layout, checked_layout, grid_map, k
 from qtab.plots.arrangements.plane import plane
 from qtab.plots.arrangements.raster import Raster
 from qtab.plots.arrangements.taxi import taxi
-from qtab.plots.subject import Subject
+from qtab.plots.parts.subject import Subject
 
 TAXI_STATES = 500
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from qtab.envs.registry import spec_of_run
 from qtab.plots.arrangements.raster import Raster, outline
-from qtab.plots.subject import Subject
+from qtab.plots.parts.subject import Subject
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -10,9 +10,9 @@ from qtab.book.exact_experiment import ComputedExperiment
 from qtab.book.line import Line, exact_line
 from qtab.book.result import Result
 from qtab.book.testbed import ENV
-from qtab.plots.axes import axes_or_new
-from qtab.plots.colors import COLORS, readable
-from qtab.plots.labels import finish
+from qtab.plots.parts.axes import axes_or_new
+from qtab.plots.parts.colors import COLORS, readable
+from qtab.plots.parts.labels import finish
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

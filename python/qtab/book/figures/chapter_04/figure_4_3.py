@@ -13,7 +13,7 @@ from qtab.book.runner import FloatArray
 from qtab.envs.book.gamblers_problem import gamblers_problem
 from qtab.planning.solve import optimum
 from qtab.planning.sweeps import value_iteration
-from qtab.plots.labels import finish
+from qtab.plots.parts.labels import finish
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

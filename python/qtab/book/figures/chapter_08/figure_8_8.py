@@ -18,7 +18,7 @@ from qtab.book.result import Result
 from qtab.book.runner import FloatArray
 from qtab.envs.book.random_mdp import random_mdp
 from qtab.planning.expected_updates import ExpectedUpdates
-from qtab.plots.labels import finish
+from qtab.plots.parts.labels import finish
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

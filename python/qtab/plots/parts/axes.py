@@ -52,7 +52,7 @@ def shown_figure(width: float = 8, height: float = 4.5) -> "Figure":
     try:
         from matplotlib import pyplot as plt
 
-        from qtab.plots.shown_figure import ShownFigure
+        from qtab.plots.parts.shown_figure import ShownFigure
     except ModuleNotFoundError as error:
         raise missing(error, "plot") from None
     return plt.figure(figsize=(width, height), layout="constrained", FigureClass=ShownFigure)

@@ -4,7 +4,7 @@ import re
 from typing import TYPE_CHECKING, Any
 
 from qtab._utils import checks
-from qtab.plots.colors import text_color
+from qtab.plots.parts.colors import text_color
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
