@@ -8,7 +8,7 @@ import pytest
 
 from qtab import _core
 from qtab._discretizer_spec import DiscretizerSpec
-from qtab.reference.observations import discretizer as numpy_discretizer
+from qtab.reference.parts.observations import discretizer as numpy_discretizer
 from qtab.training.setup.resolve import resolve
 
 TILES = {"discretizer": "tiles", "tilings": 8, "tiles": (8, 8)}

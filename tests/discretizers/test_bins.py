@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import qtab
-from qtab.reference.discretizers import Bins
+from qtab.reference.parts.discretizers import Bins
 from support.environments import ScriptedEnv
 from support.parity import run_of
 

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import qtab
-from qtab.reference.discretizers import TileCoding
+from qtab.reference.parts.discretizers import TileCoding
 
 
 class Shown(gym.Env[Any, Any]):

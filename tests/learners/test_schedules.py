@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import qtab
-from qtab.reference.schedules import Schedule
+from qtab.reference.parts.schedules import Schedule
 
 
 def course(kind: str, value: float, least: float, decay: float | None, warm_up: int, episodes: int) -> list[float]:

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import qtab
-from qtab.reference.observations import discretizer
+from qtab.reference.parts.observations import discretizer
 
 STEPS = 25
 

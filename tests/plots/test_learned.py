@@ -265,7 +265,7 @@ def test_what_cannot_be_drawn_is_refused(car: qtab.Run, wrong: Any, message: str
 def test_the_schedule_is_that_of_the_reference(chosen: dict[str, Any]) -> None:
     from qtab.config.schedules import EpsilonGreedy
     from qtab.config.schedules import policy as policy_of
-    from qtab.reference.schedules import epsilon_schedule
+    from qtab.reference.parts.schedules import epsilon_schedule
     from qtab.results.rates import rates_of
 
     run = qtab.train(CAR, episodes=30, seed=0, **chosen)

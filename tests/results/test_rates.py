@@ -7,7 +7,7 @@ import pytest
 
 import qtab
 from qtab.config.schedules import Exponential, Linear
-from qtab.reference.schedules import Schedule
+from qtab.reference.parts.schedules import Schedule
 from qtab.results.rates import rates
 from qtab.training import progress
 

@@ -9,7 +9,7 @@ import pytest
 import qtab
 from qtab.config.schedules import epsilon
 from qtab.reference import agent_stream
-from qtab.reference.schedules import epsilon_schedule
+from qtab.reference.parts.schedules import epsilon_schedule
 from qtab.results.action_values import action_probabilities, sample
 
 LAKE = "FrozenLake-v1"

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 import qtab
 from qtab.discretizers import Identity
-from qtab.reference.observations import discretizer as numpy_discretizer
+from qtab.reference.parts.observations import discretizer as numpy_discretizer
 from support.environments import Sampled
 from support.gridworld import Tutorial
 from support.parity import assert_same_run

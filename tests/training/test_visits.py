@@ -13,8 +13,8 @@ from qtab.cli.commands import train
 from qtab.cli.errors import UsageError
 from qtab.config.choices import Algorithm
 from qtab.reference import LEARNERS
-from qtab.reference.actions import actions
-from qtab.reference.observations import discretizer
+from qtab.reference.parts.actions import actions
+from qtab.reference.parts.observations import discretizer
 from support.learner_settings import CAR, TRAINED, run_settings
 from support.run_files import members_of, with_right_digest, write_members
 

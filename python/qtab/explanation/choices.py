@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab.explanation.records import Choice, Reason
-from qtab.reference.policies import EpsilonGreedy, Policy, Softmax, Ucb
-from qtab.reference.streams import AgentStream
+from qtab.reference.parts.policies import EpsilonGreedy, Policy, Softmax, Ucb
+from qtab.reference.parts.streams import AgentStream
 
 
 class ObservedStream:

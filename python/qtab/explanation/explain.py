@@ -19,8 +19,8 @@ from qtab.explanation.records import ExplainedStep
 from qtab.explanation.watcher import SeenStep, Watcher
 from qtab.explanation.words import map_columns, state_in_words
 from qtab.reference import LEARNERS
-from qtab.reference.observer import observed_by
-from qtab.reference.schedules import LearningRate
+from qtab.reference.parts.observer import observed_by
+from qtab.reference.parts.schedules import LearningRate
 from qtab.results.axes import run_quantities
 from qtab.results.rates import ONLY_FIRST, repeatable
 from qtab.results.run import Run

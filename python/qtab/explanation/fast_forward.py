@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from qtab import _core
 from qtab.config.options import AVERAGE_REWARD, PREFERENCES, TABLES_ONLY, WITH_STATE_VALUES, n_tables
-from qtab.reference.schedules import epsilon_schedule
-from qtab.reference.streams import AgentStream, agent_stream
+from qtab.reference.parts.schedules import epsilon_schedule
+from qtab.reference.parts.streams import AgentStream, agent_stream
 from qtab.results.recording import generator_states
 from qtab.results.run import Run
 from qtab.training.setup.run_env import resolve_run

@@ -13,9 +13,9 @@ from qtab.explanation.largest_traces import changed, largest_traces
 from qtab.explanation.policy_update import PolicyUpdate, equations_of
 from qtab.explanation.records import Trace
 from qtab.explanation.updates import Target
-from qtab.reference.action_masks import ActionMasks
-from qtab.reference.policies import Policy
-from qtab.reference.task import value, values
+from qtab.reference.parts.actions import ActionMasks
+from qtab.reference.parts.policies import Policy
+from qtab.reference.parts.task import value, values
 
 Table = NDArray[np.float64]
 Cell = tuple[int, ...] | None

@@ -16,11 +16,11 @@ from qtab.explanation.policy_update import PolicyUpdate
 from qtab.explanation.policy_watcher import PolicyWatcher
 from qtab.explanation.records import Choice, Trace, Update
 from qtab.explanation.updates import Target, UnfinishedUpdate, finish_update
-from qtab.reference.action_masks import ActionMasks
-from qtab.reference.observer import Observer
-from qtab.reference.policies import Policy
-from qtab.reference.schedules import LearningRate, Schedule
-from qtab.reference.streams import AgentStream
+from qtab.reference.parts.actions import ActionMasks
+from qtab.reference.parts.observer import Observer
+from qtab.reference.parts.policies import Policy
+from qtab.reference.parts.schedules import LearningRate, Schedule
+from qtab.reference.parts.streams import AgentStream
 
 Table = NDArray[np.float64]
 Cell = tuple[int, ...] | None

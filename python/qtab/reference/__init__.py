@@ -3,26 +3,18 @@
 from collections.abc import Callable, Mapping
 
 from qtab.reference.actor_critic import actor_critic, actor_critic_lambda
-from qtab.reference.differential_q_learning import differential_q_learning
-from qtab.reference.differential_sarsa import differential_sarsa
+from qtab.reference.average_reward import differential_q_learning, differential_sarsa
 from qtab.reference.double_q_learning import double_q_learning
-from qtab.reference.dyna_q import dyna_q
-from qtab.reference.dyna_q_plus import dyna_q_plus
-from qtab.reference.expected_sarsa import expected_sarsa
-from qtab.reference.gradient_bandit import gradient_bandit
-from qtab.reference.monte_carlo import monte_carlo
-from qtab.reference.monte_carlo_es import monte_carlo_es
-from qtab.reference.n_step_q_sigma import n_step_q_sigma
-from qtab.reference.n_step_sarsa import n_step_sarsa
-from qtab.reference.n_step_tree_backup import n_step_tree_backup
-from qtab.reference.off_policy_monte_carlo import off_policy_monte_carlo
+from qtab.reference.dyna_q import dyna_q, dyna_q_plus
+from qtab.reference.monte_carlo import monte_carlo, monte_carlo_es, off_policy_monte_carlo
+from qtab.reference.n_step import n_step_q_sigma, n_step_sarsa, n_step_tree_backup
+from qtab.reference.parts.streams import agent_stream
+from qtab.reference.parts.task import Result
+from qtab.reference.policy_gradient import gradient_bandit, reinforce, reinforce_with_baseline
 from qtab.reference.prioritized_sweeping import prioritized_sweeping
 from qtab.reference.q_learning import q_learning
-from qtab.reference.reinforce import reinforce, reinforce_with_baseline
-from qtab.reference.sarsa import sarsa
+from qtab.reference.sarsa import expected_sarsa, sarsa
 from qtab.reference.sarsa_lambda import sarsa_lambda
-from qtab.reference.streams import agent_stream
-from qtab.reference.task import Result
 from qtab.reference.true_online_sarsa_lambda import true_online_sarsa_lambda
 from qtab.reference.watkins_q_lambda import watkins_q_lambda
 

@@ -5,8 +5,8 @@ import numpy as np
 
 from qtab._utils.checks import required
 from qtab.config import Config
+from qtab.reference.parts.task import Result, Rows, Step, Task
 from qtab.reference.policy_gradient import Critic, ascend, log_gradient, step_size
-from qtab.reference.task import Result, Rows, Step, Task
 
 
 def actor_critic(env: gym.Env, config: Config, stop_after: int | None = None) -> Result:

@@ -4,7 +4,7 @@ import gymnasium as gym
 import numpy as np
 
 from qtab.config import Config
-from qtab.reference.task import Result, Task, value
+from qtab.reference.parts.task import Result, Task, value
 
 
 def double_q_learning(env: gym.Env, config: Config, stop_after: int | None = None) -> Result:

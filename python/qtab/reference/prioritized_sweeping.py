@@ -7,7 +7,7 @@ import gymnasium as gym
 from qtab.config import Config
 from qtab.config.schedules import algorithm_options
 from qtab.reference.dyna_q import largest
-from qtab.reference.task import Result, Rows, Task
+from qtab.reference.parts.task import Result, Rows, Task
 
 Pair = tuple[int, int]
 """A row and an action."""

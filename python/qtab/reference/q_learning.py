@@ -4,7 +4,7 @@ import gymnasium as gym
 import numpy as np
 
 from qtab.config import Config
-from qtab.reference.task import Result, Task
+from qtab.reference.parts.task import Result, Task
 
 
 def q_learning(env: gym.Env, config: Config, stop_after: int | None = None) -> Result:

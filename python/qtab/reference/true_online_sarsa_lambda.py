@@ -5,8 +5,8 @@ import numpy as np
 
 from qtab.config import Config
 from qtab.config.schedules import algorithm_options
-from qtab.reference.task import Result, Task, value
-from qtab.reference.traces import apply_td_error, decay
+from qtab.reference.parts.task import Result, Task, value
+from qtab.reference.sarsa_lambda import apply_td_error, decay
 
 
 def true_online_sarsa_lambda(env: gym.Env, config: Config, stop_after: int | None = None) -> Result:

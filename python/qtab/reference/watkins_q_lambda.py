@@ -5,8 +5,8 @@ import numpy as np
 
 from qtab.config import Config
 from qtab.config.schedules import algorithm_options
-from qtab.reference.task import Result, Task
-from qtab.reference.traces import decay, learn, mark
+from qtab.reference.parts.task import Result, Task
+from qtab.reference.sarsa_lambda import decay, learn, mark
 
 
 def watkins_q_lambda(env: gym.Env, config: Config, stop_after: int | None = None) -> Result:

@@ -149,7 +149,7 @@ def initial_tables(run: "Run") -> NDArray[np.float64]:
     """Returns (k, rows, actions): the tables before the first episode."""
     initial, shape = run.config.initial_q, run.tables.shape
     if isinstance(initial, tuple):
-        from qtab.reference.streams import agent_stream
+        from qtab.reference.parts.streams import agent_stream
 
         stream = agent_stream(run.config.seed or 0, run.config.bit_generator)
         return np.stack([stream.uniform(*initial, size=shape[1:]) for _ in range(shape[0])])

@@ -12,8 +12,8 @@ from qtab.config import Config
 from qtab.config.config import replace_checked
 from qtab.prediction.observation_policies import TablePolicy
 from qtab.prediction.reference.policies import policy_of, probability
-from qtab.reference.schedules import LearningRate
-from qtab.reference.task import Rows, Task
+from qtab.reference.parts.schedules import LearningRate
+from qtab.reference.parts.task import Rows, Task
 
 if TYPE_CHECKING:
     from qtab.prediction.estimates import ValueEstimates

@@ -7,8 +7,8 @@ import gymnasium as gym
 import numpy as np
 
 from qtab.prediction.observation_policies import GreedyPolicy, ObservationPolicy, TablePolicy
-from qtab.reference.observations import discretizer
-from qtab.reference.task import values
+from qtab.reference.parts.observations import discretizer
+from qtab.reference.parts.task import values
 
 Answer: TypeAlias = int | list[float]
 """An action, which is not sampled, or the probabilities of all actions."""

@@ -12,13 +12,12 @@ from numpy.typing import NDArray
 
 from qtab._utils.checks import required
 from qtab.config import Config
-from qtab.reference.action_masks import ActionMasks
-from qtab.reference.actions import actions
-from qtab.reference.observations import discretizer
-from qtab.reference.observer import current_observer
-from qtab.reference.policies import policy, valid_actions
-from qtab.reference.schedules import LearningRate
-from qtab.reference.streams import agent_stream
+from qtab.reference.parts.actions import ActionMasks, actions
+from qtab.reference.parts.observations import discretizer
+from qtab.reference.parts.observer import current_observer
+from qtab.reference.parts.policies import policy, valid_actions
+from qtab.reference.parts.schedules import LearningRate
+from qtab.reference.parts.streams import agent_stream
 
 Table = NDArray[np.float64]
 """(rows, actions): a table."""

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab.reference.streams import AgentStream
+from qtab.reference.parts.streams import AgentStream
 
 if TYPE_CHECKING:
-    from qtab.reference.action_masks import ActionMasks
-    from qtab.reference.policies import Policy
-    from qtab.reference.schedules import LearningRate
+    from qtab.reference.parts.actions import ActionMasks
+    from qtab.reference.parts.policies import Policy
+    from qtab.reference.parts.schedules import LearningRate
 
 Table = NDArray[np.float64]
 

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from qtab._utils.checks import required
 from qtab.config import Config
-from qtab.reference.schedules import epsilon_schedule
-from qtab.reference.streams import AgentStream
+from qtab.reference.parts.schedules import epsilon_schedule
+from qtab.reference.parts.streams import AgentStream
 
 Values = NDArray[np.float64]
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from qtab.config import Config
 from qtab.config.config import replace_checked
-from qtab.reference.discretizers import Bins, Discretizer, Identity, Rounding, TileCoding
+from qtab.reference.parts.discretizers import Bins, Discretizer, Identity, Rounding, TileCoding
 
 Path = tuple[Any, ...]
 SMALL = 1024

@@ -1,4 +1,4 @@
-"""The n-step returns of tree backup and Q(σ) (Sutton & Barto, 2nd ed., equations 7.16 and 7.17)."""
+"""n-step Sarsa, tree backup and Q(σ) in plain NumPy (Sutton & Barto, 2nd ed., boxes in sections 7.2, 7.5 and 7.6)."""
 
 from collections.abc import Callable
 
@@ -6,8 +6,51 @@ import gymnasium as gym
 import numpy as np
 
 from qtab.config import Config
-from qtab.reference.expected_sarsa import expected_value
-from qtab.reference.task import Result, Rows, Table, Task, value
+from qtab.config.schedules import algorithm_options
+from qtab.reference.parts.task import Result, Rows, Table, Task, value
+from qtab.reference.sarsa import expected_value
+
+
+def n_step_sarsa(env: gym.Env, config: Config, stop_after: int | None = None) -> Result:
+    """Trains on ``env``; see :func:`qtab.reference.q_learning`."""
+    task = Task(env, config, stop_after)
+    n = algorithm_options(config).n_steps
+    Q = task.table()
+
+    for _ in task.episodes():
+        states, rewards = [task.reset()], [0.0]
+        actions = [task.choose(Q, states[0])]
+        t, last_step, terminal = 0, None, False
+        tau = 1 - n
+        while last_step is None or tau < last_step:
+            if last_step is None:
+                step = task.step(actions[t])
+                states.append(step.state)
+                rewards.append(step.reward)
+                if step.over:
+                    last_step, terminal = t + 1, step.terminal
+                if not step.terminal:
+                    actions.append(task.choose(Q, step.state))
+
+            # G = R(τ+1) + γ R(τ+2) + … + γ^n Q(S(τ+n), A(τ+n)), the last term unless nothing follows there.
+            tau = t - n + 1
+            if tau >= 0:
+                end = tau + n if last_step is None else min(tau + n, last_step)
+                target, power = 0.0, 1.0
+                for reward in rewards[tau + 1 : end + 1]:
+                    target += power * reward
+                    power *= task.discount
+                following = None
+                if not (terminal and end == last_step):
+                    following = value(Q, states[end], actions[end])
+                    target += power * following
+                task.observer.target(tau, rewards[tau + 1 : end + 1], following)
+                task.update(Q, states[tau], actions[tau], target)
+            t += 1
+            tau += 1
+
+    return task.result(Q)
+
 
 Weight = Callable[[float, float], float]
 """Returns the weight of the return after A from π(A | S) and the importance sampling ratio ρ."""
@@ -78,3 +121,22 @@ def probability(task: Task, Q: Table, state: Rows, action: int, greedy: bool) ->
     """Returns π(A | S). An action that ties for the maximum is greedy."""
     values = task.values(Q, state)
     return float(values[action] == np.max(values)) if greedy else task.policy.probabilities(values, state)[action]
+
+
+def n_step_tree_backup(env: gym.Env, config: Config, stop_after: int | None = None) -> Result:
+    """Trains on ``env``; see :func:`qtab.reference.q_learning`."""
+    options = algorithm_options(config)
+    greedy = options.target_policy == "greedy"
+    return n_step_backups(env, config, stop_after, options.n_steps, greedy, lambda share, _ratio: share)
+
+
+def n_step_q_sigma(env: gym.Env, config: Config, stop_after: int | None = None) -> Result:
+    """Trains on ``env``; see :func:`qtab.reference.q_learning`."""
+    options = algorithm_options(config)
+    sigma: float = options.sigma
+    greedy: bool = options.target_policy == "greedy"
+
+    def weight(share: float, ratio: float) -> float:
+        return sigma * ratio + (1.0 - sigma) * share
+
+    return n_step_backups(env, config, stop_after, options.n_steps, greedy, weight)
