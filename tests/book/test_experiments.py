@@ -10,8 +10,8 @@ import pytest
 
 import qtab
 from qtab.book import runner
+from qtab.book.measured_experiment import TrainingExperiment
 from qtab.book.result import CSV_COLUMNS
-from qtab.book.training_experiment import TrainingExperiment
 from support.parity import run_of
 
 NAMES = [name for name, experiment in qtab.book.EXPERIMENTS.items() if isinstance(experiment, TrainingExperiment)]
@@ -258,13 +258,13 @@ def outcome(*lengths):
 
 
 def test_measures_of_runs_are_computed_as_documented():
-    from qtab.book import measures
+    from qtab.book import setting
     from qtab.book.figures.chapter_06 import example_6_5, figure_6_5
 
     several = outcome([2, 1, 1], [1, 2, 3])
-    assert measures.mean_length(several).tolist() == [[4 / 3], [2.0]]
-    assert measures.mean_return(several).tolist() == [[-4 / 3], [-2.0]]
-    assert measures.episodes_by((1, 2, 3, 100))(several).tolist() == [[0, 1, 2, 3], [1, 1, 2, 3]]
+    assert setting.mean_length(several).tolist() == [[4 / 3], [2.0]]
+    assert setting.mean_return(several).tolist() == [[-4 / 3], [-2.0]]
+    assert setting.episodes_by((1, 2, 3, 100))(several).tolist() == [[0, 1, 2, 3], [1, 1, 2, 3]]
     assert figure_6_5.left(several).tolist() == [[100.0, 0.0, 0.0], [0.0, 100.0, 0.0]]
     # Episodes end after 7,000, 7,001, 7,999 and 8,001 steps: the two in the middle count.
     assert example_6_5.last_lengths(outcome([7000, 1, 998, 2])).tolist() == [[499.5]]

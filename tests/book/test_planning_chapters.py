@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import qtab
-from qtab.book.exact_experiment import ExactExperiment
+from qtab.book.experiment import ExactExperiment
 from qtab.book.figures.chapter_08.figure_8_8 import Tasks, UpdateDistributions
 
 EXACT = [

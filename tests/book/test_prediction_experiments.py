@@ -85,7 +85,7 @@ def test_weighted_importance_sampling_has_the_lower_error_at_first() -> None:
 
 
 def test_the_value_of_the_blackjack_state_is_the_books() -> None:
-    from qtab.book.blackjack import STATE, blackjack, index_of, single_state
+    from qtab.book.problems import STATE, blackjack, index_of, single_state
 
     assert blackjack().true_values.values[STATE] == pytest.approx(-0.27726, abs=2e-4)
     assert single_state().true_values.values[index_of(STATE)] == pytest.approx(
@@ -101,7 +101,7 @@ def test_every_run_of_figure_5_4_is_a_line() -> None:
 
 
 def test_blackjack_surfaces_come_near_the_exact_values() -> None:
-    from qtab.book.blackjack import blackjack
+    from qtab.book.problems import blackjack
 
     result = qtab.book.run("figure-5.1")
     exact = blackjack().true_values.values[12:22, 1:11, 0]

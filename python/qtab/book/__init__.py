@@ -14,10 +14,10 @@ open.
 from qtab.book.collection import run_all
 from qtab.book.experiment import Experiment
 from qtab.book.line import Line
+from qtab.book.measured_experiment import TrainingExperiment
 from qtab.book.registry import CHAPTERS, EXPERIMENTS, Chapter, find, run
 from qtab.book.result import Result
 from qtab.book.setting import Setting
-from qtab.book.training_experiment import TrainingExperiment
 from qtab.envs.grid_worlds import dyna_maze, grid_world, windy_grid_world
 
 __all__ = [

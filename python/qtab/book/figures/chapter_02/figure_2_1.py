@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import gymnasium as gym
 import numpy as np
 
-from qtab.book.exact_experiment import ComputedExperiment
+from qtab.book.experiment import ComputedExperiment
 from qtab.book.line import Line, exact_line
 from qtab.book.result import Result
 from qtab.book.testbed import ENV

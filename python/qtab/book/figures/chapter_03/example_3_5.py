@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from qtab.book.drawing import CellMap, draw_grids
-from qtab.book.exact_experiment import ExactExperiment
+from qtab.book.experiment import ExactExperiment
 from qtab.book.figures.grid import as_grid, grid_text
 from qtab.book.line import Line, exact_line
 from qtab.book.result import Result

@@ -6,7 +6,7 @@ import numpy as np
 
 from qtab.book.drawing import CellMap, draw_grids, greedy_actions
 from qtab.book.drawing.grids import ACTIONS
-from qtab.book.exact_experiment import ExactExperiment
+from qtab.book.experiment import ExactExperiment
 from qtab.book.figures.grid import as_grid, grid_text
 from qtab.book.line import Line, exact_line
 from qtab.book.result import Result

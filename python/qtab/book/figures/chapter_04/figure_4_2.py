@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from qtab.book.drawing import figure_of_several
-from qtab.book.exact_experiment import ExactExperiment
+from qtab.book.experiment import ExactExperiment
 from qtab.book.figures.grid import as_grid
 from qtab.book.line import Line, exact_line
 from qtab.book.result import Result

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from qtab.book.drawing import BROAD, figure_of_several, line_colors
-from qtab.book.exact_experiment import ExactExperiment
+from qtab.book.experiment import ExactExperiment
 from qtab.book.line import Line, exact_line
 from qtab.book.result import Result
 from qtab.book.runner import FloatArray

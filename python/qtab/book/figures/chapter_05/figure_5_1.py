@@ -4,10 +4,9 @@ import dataclasses
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from qtab.book.blackjack import blackjack
 from qtab.book.drawing.blackjack import USABLE, draw_blackjack
 from qtab.book.prediction_experiment import PredictionExperiment, PredictionSetting
-from qtab.book.random_walks import root_value_error
+from qtab.book.problems import blackjack, root_value_error
 from qtab.book.result import Result
 from qtab.prediction.estimate import estimate_values
 

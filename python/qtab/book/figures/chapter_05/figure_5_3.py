@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from qtab.book.blackjack import index_of, single_state
 from qtab.book.prediction_experiment import PredictionExperiment, PredictionSetting
+from qtab.book.problems import index_of, single_state
 from qtab.book.runner import FloatArray
 from qtab.planning.policy_values import PolicyValues
 from qtab.prediction.estimates import ValueEstimates

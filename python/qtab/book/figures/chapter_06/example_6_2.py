@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 from qtab.book.drawing import Panel, draw_panels
 from qtab.book.prediction_experiment import PredictionExperiment, PredictionSetting
-from qtab.book.random_walks import exact_values, five_states, rms_errors, values_at
+from qtab.book.problems import exact_values, five_states, rms_errors, values_at
 from qtab.book.result import Result
 
 if TYPE_CHECKING:

@@ -2,10 +2,9 @@
 
 import numpy as np
 
-from qtab.book.measures import episodes_by
+from qtab.book.measured_experiment import TrainingExperiment
 from qtab.book.runner import EpisodeLog, FloatArray
-from qtab.book.setting import Setting
-from qtab.book.training_experiment import TrainingExperiment
+from qtab.book.setting import Setting, episodes_by
 from qtab.envs.grid_worlds import windy_grid_world
 
 STEPS = 8000

@@ -1,8 +1,7 @@
 """Example 6.6: Sarsa and Q-learning on the cliff."""
 
-from qtab.book.measures import final_return, returns
-from qtab.book.setting import Setting
-from qtab.book.training_experiment import TrainingExperiment
+from qtab.book.measured_experiment import TrainingExperiment
+from qtab.book.setting import Setting, final_return, returns
 
 _ALGORITHMS = {"Sarsa": "sarsa", "Q-learning": "q_learning"}
 _EPISODES = 500

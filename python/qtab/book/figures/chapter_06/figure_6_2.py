@@ -1,7 +1,7 @@
 """Figure 6.2: TD(0) and Monte Carlo under batch training."""
 
 from qtab.book.prediction_experiment import PredictionExperiment, PredictionSetting
-from qtab.book.random_walks import five_states, rms_errors
+from qtab.book.problems import five_states, rms_errors
 
 _EPISODES = 100
 _METHODS = {"batch TD": ("batch_td", "TD"), "batch MC": ("monte_carlo", "Monte Carlo")}

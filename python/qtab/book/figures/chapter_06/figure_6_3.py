@@ -1,8 +1,7 @@
 """Figure 6.3: interim and asymptotic performance on the cliff, as a function of α."""
 
-from qtab.book.measures import mean_return
-from qtab.book.setting import Setting
-from qtab.book.training_experiment import TrainingExperiment
+from qtab.book.measured_experiment import TrainingExperiment
+from qtab.book.setting import Setting, mean_return
 
 ALPHAS = tuple(round(0.1 * tenth, 1) for tenth in range(1, 11))
 _ALGORITHMS = {"Sarsa": "sarsa", "Q-learning": "q_learning", "Expected Sarsa": "expected_sarsa"}

@@ -1,8 +1,8 @@
 """Figure 6.5: maximization bias."""
 
+from qtab.book.measured_experiment import TrainingExperiment
 from qtab.book.runner import EpisodeLog, FloatArray
 from qtab.book.setting import Setting
-from qtab.book.training_experiment import TrainingExperiment
 
 FINAL = 20
 """The number of last episodes whose mean is the final value in the table."""

@@ -1,7 +1,7 @@
 """Figure 7.2: n-step TD by n and α on the random walk of 19 states."""
 
 from qtab.book.prediction_experiment import PredictionExperiment, PredictionSetting
-from qtab.book.random_walks import ALPHAS, EPISODES, TOP, mean_rms_error, nineteen_states
+from qtab.book.problems import ALPHAS, EPISODES, TOP, mean_rms_error, nineteen_states
 
 _N_STEPS = tuple(2**power for power in range(10))
 

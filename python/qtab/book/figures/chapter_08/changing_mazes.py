@@ -2,8 +2,7 @@
 
 from typing import Any
 
-from qtab.book.measures import reward_by
-from qtab.book.setting import Setting
+from qtab.book.setting import Setting, reward_by
 from qtab.config.preset_settings import CHANGING_MAZE
 
 _DYNA: dict[str, Any] = {

@@ -1,8 +1,7 @@
 """Figure 8.2: Dyna-Q on a maze."""
 
-from qtab.book.measures import lengths
-from qtab.book.setting import Setting
-from qtab.book.training_experiment import TrainingExperiment
+from qtab.book.measured_experiment import TrainingExperiment
+from qtab.book.setting import Setting, lengths
 from qtab.config.preset_settings import DYNA_MAZE
 from qtab.envs.grid_worlds import dyna_maze
 

@@ -1,7 +1,7 @@
 """Figure 8.4: Dyna-Q and Dyna-Q+ on the blocking maze."""
 
 from qtab.book.figures.chapter_08.changing_mazes import UNSPECIFIED, settings
-from qtab.book.training_experiment import TrainingExperiment
+from qtab.book.measured_experiment import TrainingExperiment
 
 STEPS = 3_000
 SHORTEST = 10

@@ -1,7 +1,7 @@
 """Figure 8.5: Dyna-Q and Dyna-Q+ on the shortcut maze."""
 
 from qtab.book.figures.chapter_08.changing_mazes import UNSPECIFIED, settings
-from qtab.book.training_experiment import TrainingExperiment
+from qtab.book.measured_experiment import TrainingExperiment
 
 STEPS = 6_000
 SHORTEST = 10

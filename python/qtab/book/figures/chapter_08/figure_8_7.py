@@ -3,7 +3,7 @@
 import numpy as np
 
 from qtab.book.drawing import draw_lines
-from qtab.book.exact_experiment import ExactExperiment
+from qtab.book.experiment import ExactExperiment
 from qtab.book.line import Line, exact_line
 
 BRANCHING = (2, 10, 100, 1_000, 10_000)

@@ -6,7 +6,7 @@ import numpy as np
 
 from qtab.book.drawing import draw_lines
 from qtab.book.prediction_experiment import PredictionExperiment, PredictionSetting
-from qtab.book.random_walks import exact_values, thousand_states, values_at
+from qtab.book.problems import exact_values, thousand_states, values_at
 from qtab.book.result import Result
 from qtab.book.runner import FloatArray
 from qtab.planning.policy_values import PolicyValues

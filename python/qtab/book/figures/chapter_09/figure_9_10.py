@@ -1,7 +1,7 @@
 """Figure 9.10: one tiling and fifty, on the random walk of 1,000 states."""
 
 from qtab.book.prediction_experiment import PredictionExperiment, PredictionSetting
-from qtab.book.random_walks import root_value_error, thousand_states
+from qtab.book.problems import root_value_error, thousand_states
 from qtab.prediction.features import tile_coding
 
 _EPISODES, _EVERY = 5_000, 50

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 from qtab.book.drawing import Panel, draw_panels
 from qtab.book.prediction_experiment import PredictionExperiment, PredictionSetting
-from qtab.book.random_walks import ALPHAS, EPISODES, TOP, exact_values, mean_rms_error, thousand_states, values_at
+from qtab.book.problems import ALPHAS, EPISODES, TOP, exact_values, mean_rms_error, thousand_states, values_at
 from qtab.book.result import Result
 from qtab.prediction.features import state_aggregation
 

@@ -9,13 +9,11 @@ import numpy as np
 from qtab._utils.progress import ProgressBar
 from qtab.book.drawing import figure_of_several
 from qtab.book.line import Line
-from qtab.book.measured_experiment import Measured, line_of
-from qtab.book.measures import mean_length
-from qtab.book.mountain_car import ENV, TILE_CODING, UNSPECIFIED
+from qtab.book.measured_experiment import Measured, TrainingExperiment, line_of
+from qtab.book.problems import ENV, TILE_CODING, UNSPECIFIED
 from qtab.book.result import Result
 from qtab.book.runner import FloatArray
-from qtab.book.setting import Setting
-from qtab.book.training_experiment import TrainingExperiment
+from qtab.book.setting import Setting, mean_length
 from qtab.results.run import Run
 from qtab.training.train import train
 

@@ -1,9 +1,8 @@
 """Figure 10.3: one-step and eight-step semi-gradient Sarsa on Mountain Car."""
 
-from qtab.book.measures import lengths
-from qtab.book.mountain_car import ENV, TILE_CODING, UNSPECIFIED
-from qtab.book.setting import Setting
-from qtab.book.training_experiment import TrainingExperiment
+from qtab.book.measured_experiment import TrainingExperiment
+from qtab.book.problems import ENV, TILE_CODING, UNSPECIFIED
+from qtab.book.setting import Setting, lengths
 
 EXPERIMENT = TrainingExperiment(
     name="figure-10.3",

@@ -1,9 +1,8 @@
 """Figure 10.4: n-step semi-gradient Sarsa on Mountain Car, early performance by n and α."""
 
-from qtab.book.measures import mean_length
-from qtab.book.mountain_car import ENV, TILE_CODING, UNSPECIFIED
-from qtab.book.setting import Setting
-from qtab.book.training_experiment import TrainingExperiment
+from qtab.book.measured_experiment import TrainingExperiment
+from qtab.book.problems import ENV, TILE_CODING, UNSPECIFIED
+from qtab.book.setting import Setting, mean_length
 
 ALPHAS = (0.1, 0.14, 0.2, 0.28, 0.4, 0.57, 0.8, 1.13, 1.6)
 """Evenly spaced on a log scale, as in the book."""

@@ -1,9 +1,8 @@
 """Figure 12.10: Sarsa(λ) with replacing traces on Mountain Car, early performance by λ and α."""
 
-from qtab.book.measures import mean_length
-from qtab.book.mountain_car import ENV, TILE_CODING, UNSPECIFIED
-from qtab.book.setting import Setting
-from qtab.book.training_experiment import TrainingExperiment
+from qtab.book.measured_experiment import TrainingExperiment
+from qtab.book.problems import ENV, TILE_CODING, UNSPECIFIED
+from qtab.book.setting import Setting, mean_length
 
 ALPHAS = (0.1, 0.2, 0.3, 0.4, 0.6, 0.8, 1.0, 1.2, 1.4, 1.6)
 TRACE_DECAYS = (0.0, 0.68, 0.84, 0.92, 0.96, 0.98, 0.99)

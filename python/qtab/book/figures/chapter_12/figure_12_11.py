@@ -2,10 +2,9 @@
 
 from typing import Any
 
-from qtab.book.measures import mean_return
-from qtab.book.mountain_car import ENV, TILE_CODING, UNSPECIFIED
-from qtab.book.setting import Setting
-from qtab.book.training_experiment import TrainingExperiment
+from qtab.book.measured_experiment import TrainingExperiment
+from qtab.book.problems import ENV, TILE_CODING, UNSPECIFIED
+from qtab.book.setting import Setting, mean_return
 
 ALPHAS = tuple(round(0.2 * fifth, 1) for fifth in range(1, 11))
 KINDS: dict[str, dict[str, Any]] = {

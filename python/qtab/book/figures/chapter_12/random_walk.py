@@ -2,7 +2,7 @@
 
 from qtab.book.drawing import draw_in_range
 from qtab.book.prediction_experiment import PredictionExperiment, PredictionSetting
-from qtab.book.random_walks import ALPHAS, EPISODES, TOP, mean_rms_error, nineteen_states
+from qtab.book.problems import ALPHAS, EPISODES, TOP, mean_rms_error, nineteen_states
 
 TRACE_DECAYS = (0.0, 0.4, 0.8, 0.9, 0.95, 0.975, 0.99, 1.0)
 _RATES = "the values of α that are drawn"

@@ -4,10 +4,9 @@ import math
 
 import numpy as np
 
-from qtab.book.measures import mean_return
-from qtab.book.setting import Setting
-from qtab.book.short_corridor import BEST_RETURN, ENV
-from qtab.book.training_experiment import TrainingExperiment
+from qtab.book.figures.chapter_13.short_corridor import BEST_RETURN, ENV
+from qtab.book.measured_experiment import TrainingExperiment
+from qtab.book.setting import Setting, mean_return
 
 _PROBABILITIES = tuple(np.round(np.arange(0.05, 0.951, 0.05), 2).tolist())
 

@@ -1,9 +1,16 @@
 """Figure 13.1: REINFORCE on the short corridor."""
 
-from qtab.book.measures import returns
-from qtab.book.setting import Setting
-from qtab.book.short_corridor import BEST_RETURN, BOOK_RUNS, ENV, MAX_EPISODE_STEPS, RUNS, UNSPECIFIED, reinforce
-from qtab.book.training_experiment import TrainingExperiment
+from qtab.book.figures.chapter_13.short_corridor import (
+    BEST_RETURN,
+    BOOK_RUNS,
+    ENV,
+    MAX_EPISODE_STEPS,
+    RUNS,
+    UNSPECIFIED,
+    reinforce,
+)
+from qtab.book.measured_experiment import TrainingExperiment
+from qtab.book.setting import Setting, returns
 
 EXPERIMENT = TrainingExperiment(
     name="figure-13.1",
