@@ -82,14 +82,16 @@ impl Pcg64 {
         self.buffered_u32
     }
 
+    /// The next word: `bit_generator.random_raw()`.
     #[inline]
-    pub(crate) fn next_u64(&mut self) -> u64 {
+    pub fn next_u64(&mut self) -> u64 {
         self.words_drawn += 1;
         self.engine.next_u64()
     }
 
+    /// The next 32 bits: the lower half of a word, then its upper half.
     #[inline]
-    fn next_u32(&mut self) -> u32 {
+    pub fn next_u32(&mut self) -> u32 {
         if let Some(buffered_u32) = self.buffered_u32.take() {
             return buffered_u32;
         }
