@@ -23,6 +23,7 @@ _MODULES = {
     "Evaluation": "qtab.training.evaluate",
     "Explanation": "qtab.explanation.explanation",
     "Gap": "qtab.planning.gap",
+    "NativeEnv": "qtab.envs.external.native_env",
     "Optimum": "qtab.planning.optimum",
     "Playback": "qtab.rendering.play",
     "PolicyValues": "qtab.planning.policy_values",
@@ -47,6 +48,7 @@ _MODULES = {
     "estimate_values": "qtab.prediction.estimate",
     "evaluate": "qtab.training.evaluate",
     "explain": "qtab.explanation.explain",
+    "get_include": "qtab.envs.external.include",
     "load": "qtab.results.loading",
     "load_runs": "qtab.results.loading",
     "load_sweep": "qtab.sweeps.sweep",
@@ -83,6 +85,8 @@ if TYPE_CHECKING:
     from qtab.config.presets import presets as presets
     from qtab.diagnosis.diagnose import diagnose as diagnose
     from qtab.diagnosis.diagnosis import Diagnosis as Diagnosis
+    from qtab.envs.external.include import get_include as get_include
+    from qtab.envs.external.native_env import NativeEnv as NativeEnv
     from qtab.envs.tabular import TabularEnv as TabularEnv
     from qtab.envs.vector import RustVectorEnv as RustVectorEnv
     from qtab.explanation.explain import explain as explain

@@ -159,7 +159,7 @@ class Results(TypedDict):
     finished: NDArray[np.bool_]
     """Whether each run is finished, (runs,)."""
     masks: NDArray[np.bool_]
-    """The action masks of runs stepped in Python, (runs, values) or (runs, 0)."""
+    """The last action masks of runs whose environments give them at each step, (runs, values) or (runs, 0)."""
 
 
 Solution: TypeAlias = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64]]

@@ -156,8 +156,14 @@ def unknown_wrapper(env: gym.Env) -> str | None:
 
 
 def time_limit(env: gym.Env) -> int | None:
-    """Returns the time limit in steps that ``TimeLimit`` wrappers set, the lowest of several; None without one."""
+    """Returns the time limit in steps, the lowest of several; None without one.
+
+    It is that of ``TimeLimit`` wrappers, and the attribute ``max_episode_steps`` of an environment in a capsule.
+    """
     limits = [layer._max_episode_steps for layer in layers(env) if isinstance(layer, TimeLimit)]
+    own = getattr(env.unwrapped, "max_episode_steps", None)
+    if own is not None and getattr(type(env.unwrapped), "__qtab_env__", None) is not None:
+        limits.append(own)
     return min(limits, default=None)
 
 

@@ -224,7 +224,7 @@ def allocate_results(
     """
     episodes = resolved.config.episodes
     values = math.prod(tables_shape(resolved, 1))
-    keep_masks = keep_tables and not resolved.is_native and resolved.discretizer.has_cells
+    keep_masks = keep_tables and resolved.masks.known is None and resolved.discretizer.has_cells
     masks = mask_bytes(resolved.masks, resolved.discretizer, len(resolved.actions)) if keep_masks else 0
     stored = BYTES_PER_RUN + episodes * BYTES_PER_EPISODE + (8 * values if keep_tables else 0) + masks
     needed = runs * stored + at_once * bytes_in_progress(resolved)

@@ -32,8 +32,8 @@ mod _core {
     use super::discretizer::PyDiscretizer;
     #[pymodule_export]
     use super::envs::{
-        PyBlackjack, PyClassicControl, PyNativeEnv, PyTaxi, PyToyText, PyTransitionTable, PyVectorEnv, matches_numpy,
-        numpy_uses_libm, parameter_names, step_cart_poles,
+        PyBlackjack, PyClassicControl, PyExternalEnv, PyExternalEpisode, PyNativeEnv, PyTaxi, PyToyText,
+        PyTransitionTable, PyVectorEnv, matches_numpy, numpy_uses_libm, parameter_names, step_cart_poles,
     };
     #[pymodule_export]
     use super::planning::{PyExpectedUpdates, PyGridSearch, PyMdpSolver};

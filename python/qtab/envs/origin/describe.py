@@ -23,6 +23,7 @@ from gymnasium.wrappers import (
 from gymnasium.wrappers import TimeLimit as TimeLimitWrapper
 
 from qtab.envs.class_code import LIBRARY, class_code, is_of_library, state_attributes
+from qtab.envs.external.native_env import NativeEnv
 from qtab.envs.matching import layers, time_limit
 from qtab.envs.origin.description import EnvironmentDescription, WrapperDescription
 from qtab.envs.origin.values import describe_value, is_plain, same, space_text
@@ -62,7 +63,7 @@ def describe(env: gym.Env, *, is_new: bool = False, code: str | None = None) -> 
     return EnvironmentDescription(
         id=None if spec is None else spec.id,
         cls=f"{cls.__module__}:{cls.__qualname__}",
-        code=class_code(cls) if code is None else code,
+        code=_code(unwrapped) if code is None else code,
         kwargs={name: describe_value(value) for name, value in kwargs.items()},
         wrappers=tuple(_wrapper(layer) for layer in layers(env) if _counts(layer)),
         attributes=attributes,
@@ -71,6 +72,11 @@ def describe(env: gym.Env, *, is_new: bool = False, code: str | None = None) -> 
         action_space=space_text(env.action_space),
         max_episode_steps=time_limit(env),
     )
+
+
+def _code(unwrapped: Any) -> str | None:
+    """Returns a digest of the code of an environment: of its library, or of its class."""
+    return unwrapped.code_digest if isinstance(unwrapped, NativeEnv) else class_code(type(unwrapped))
 
 
 def describe_known(spec: EnvSpec, kwargs: Mapping[str, Any], env: gym.Env) -> EnvironmentDescription:

@@ -17,7 +17,6 @@ from qtab.config.functions import FORGOTTEN, Mask, checked_mask
 from qtab.discretizers import Discretizer, TimeAware
 from qtab.discretizers.identity import Identity
 from qtab.envs.actions import Actions
-from qtab.envs.registry import EnvEntry
 
 MAX_KNOWN_STATES = 100_000
 """The most states for which masks are computed before the first episode."""
@@ -41,6 +40,9 @@ class ActionMasks:
 
 NO_MASKS = ActionMasks({"type": "none"})
 """No masks: every state allows all actions."""
+
+WRITTEN_MASKS = ActionMasks({"type": "info"})
+"""The masks that the functions of an environment in a capsule write at each step."""
 
 
 def asks_for_masks(action_mask: Mask) -> bool:
@@ -135,7 +137,6 @@ _threads: dict[int, tuple[int, int]] = {}
 class NativeEnvironment:
     """An environment that Rust steps."""
 
-    entry: EnvEntry
     parameters: _core.NativeEnv
 
     def spec(self) -> NativeEnvSpec:

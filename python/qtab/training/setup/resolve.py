@@ -10,7 +10,7 @@ import gymnasium as gym
 import numpy as np
 from gymnasium.envs.registration import EnvSpec
 
-from qtab import discretizers
+from qtab import _core, discretizers
 from qtab._utils.shown import shown
 from qtab.config import DEFAULTS, Config
 from qtab.config.config import replace_checked
@@ -22,6 +22,7 @@ from qtab.config.validation import defaults
 from qtab.discretizers import AssignedRows, Discretizer
 from qtab.envs.actions import Actions, choose_actions
 from qtab.envs.class_code import LIBRARY, is_of_library
+from qtab.envs.external.capsule import external_env
 from qtab.envs.goals import UNLIMITED_MAX_EPISODE_STEPS
 from qtab.envs.matching import NotInRustError, changed_entry_code, entry_for_env, rust_unavailable, time_limit
 from qtab.envs.native import KnownTable, known_table, native_env
@@ -30,6 +31,7 @@ from qtab.envs.origin.description import EnvironmentDescription
 from qtab.envs.registry import EnvEntry, entry_for_spec, make_env, spec_of, versioned
 from qtab.training.setup.environment import (
     NO_MASKS,
+    WRITTEN_MASKS,
     Environment,
     NativeEnvironment,
     PythonEnvironment,
@@ -52,8 +54,8 @@ class _Request:
     """An environment, and the settings requested for it."""
 
     env: gym.Env
-    entry: EnvEntry | None
-    """The registry entry of the environment that Rust may step instead."""
+    entry: EnvEntry | _core.ExternalEnv | None
+    """The registry entry of the environment that Rust may step instead, or the environment of its capsule."""
     config: Config
     """The settings given, over those of the preset: checked, not yet complete."""
     asked: Mapping[str, Any]
@@ -70,7 +72,7 @@ class _Request:
         if isinstance(self.env, KnownTable) and self.spec is not None:
             return describe_known(self.spec, self.config.env_kwargs, self.env)
         # An environment stepped in Rust has its library's code, as was just checked.
-        is_checked = self.entry is not None and is_of_library(type(self.env.unwrapped))
+        is_checked = isinstance(self.entry, EnvEntry) and is_of_library(type(self.env.unwrapped))
         return describe(self.env, is_new=self.spec is not None, code=LIBRARY if is_checked else None)
 
 
@@ -112,7 +114,8 @@ def _from_spec(env: str | EnvSpec, layers: tuple[Mapping[str, Any], ...]) -> _Re
     name, spec = (env.id, env) if isinstance(env, EnvSpec) else (env, spec_of(env))
     asked = merge_layers({"env_kwargs": dict(spec.kwargs)}, *layers)
     config = config_of(name, asked)
-    entry, python_reason = entry_for_spec(spec, config.env_kwargs), None
+    entry: EnvEntry | _core.ExternalEnv | None = entry_for_spec(spec, config.env_kwargs)
+    python_reason = None
     if entry is not None and changed_entry_code(spec) is not None:
         entry = None
     known = None
@@ -125,11 +128,22 @@ def _from_spec(env: str | EnvSpec, layers: tuple[Mapping[str, Any], ...]) -> _Re
         except ValueError:
             made.close()
             raise
-    return _Request(made, entry, config, asked, spec.max_episode_steps, python_reason, spec)
+    limit = spec.max_episode_steps
+    if isinstance(entry, _core.ExternalEnv):
+        config, limit = _within_limit(config, time_limit(made))
+    return _Request(made, entry, config, asked, limit, python_reason, spec)
 
 
-def _match(env: gym.Env, config: Config, *, is_made: bool) -> tuple[EnvEntry | None, str | None]:
-    """Returns the entry of an environment that Rust can step; otherwise None, and the reason with a remedy.
+def _within_limit(config: Config, limit: int | None) -> tuple[Config, int | None]:
+    """Returns the config with a time limit that is not above that of the environment, and the latter."""
+    if limit is not None and config.max_episode_steps is not None:
+        # Its TimeLimit wrapper, or the environment itself, ends episodes there, whatever the settings.
+        config = replace_checked(config, max_episode_steps=min(limit, config.max_episode_steps))
+    return config, limit
+
+
+def _match(env: gym.Env, config: Config, *, is_made: bool) -> tuple[EnvEntry | _core.ExternalEnv | None, str | None]:
+    """Returns the entry, or the capsule, of an environment that Rust can step; else None, and the reason with a remedy.
 
     Args:
         env: The environment.
@@ -143,7 +157,7 @@ def _match(env: gym.Env, config: Config, *, is_made: bool) -> tuple[EnvEntry | N
     if config.backend == "gymnasium":
         return None, None
     try:
-        entry = entry_for_env(env)
+        entry = external_env(env) or entry_for_env(env)
         if is_made or config.backend == "auto":
             _check_not_shown(env)
     except NotInRustError as error:
@@ -169,10 +183,7 @@ def _from_env(env: gym.Env, layers: tuple[Mapping[str, Any], ...]) -> _Request:
     asked["env_kwargs"] = kwargs
     config = config_of(name, asked)
     entry, python_reason = _match(env, config, is_made=False)
-    limit = time_limit(env)
-    if limit is not None and config.max_episode_steps is not None:
-        # Its TimeLimit wrapper ends episodes there, whatever the settings.
-        config = replace_checked(config, max_episode_steps=min(limit, config.max_episode_steps))
+    config, limit = _within_limit(config, time_limit(env))
     return _Request(env, entry, config, asked, limit, python_reason)
 
 
@@ -201,7 +212,9 @@ def _fill_defaults(request: _Request, owns_env: bool) -> ResolvedRun:
         discretizer = discretizers.build(env.observation_space, config, len(actions))
     masks = None if asks_for_masks(config.action_mask) else NO_MASKS
     in_rust = isinstance(environment, NativeEnvironment)
-    if in_rust and masks is None and not discretizer.reads_space:
+    if in_rust and masks is None and config.action_mask is True and isinstance(request.entry, _core.ExternalEnv):
+        masks = WRITTEN_MASKS if request.entry.has_action_mask else None
+    elif in_rust and masks is None and not discretizer.reads_space:
         masks = known_masks(config.action_mask, env, discretizer, len(actions))
     if in_rust and (masks is None or discretizer.reads_space):
         in_rust, python_reason = False, READ_IN_PYTHON if discretizer.reads_space else MASKS_BY_STEP
@@ -240,7 +253,9 @@ def _environment(request: _Request, actions: Actions, owns_env: bool) -> tuple[E
     entry, backend, reason = request.entry, request.config.backend, request.python_reason
     if entry is not None and backend != "gymnasium":
         try:
-            return NativeEnvironment(entry, native_env(entry.name, request.env.unwrapped, actions)), None
+            if isinstance(entry, _core.ExternalEnv):
+                return NativeEnvironment(entry.native_env()), None
+            return NativeEnvironment(native_env(entry.name, request.env.unwrapped, actions)), None
         except (TypeError, ValueError) as error:
             if backend == "rust":
                 raise rust_unavailable(str(error)) from None

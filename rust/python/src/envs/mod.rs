@@ -5,6 +5,7 @@
 
 mod book;
 mod classic_control;
+mod external;
 mod gymnasium;
 mod native_env;
 mod py_classic_control;
@@ -13,6 +14,7 @@ mod registry;
 mod toy_text;
 
 pub(crate) use classic_control::{numpy_uses_libm, step_cart_poles};
+pub(crate) use external::{PyExternalEnv, PyExternalEpisode};
 pub(crate) use native_env::{NativeEnv, PyNativeEnv};
 pub(crate) use py_classic_control::{PyClassicControl, matches_numpy, parameter_names};
 pub(crate) use py_vector_env::PyVectorEnv;

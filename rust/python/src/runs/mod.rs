@@ -15,6 +15,7 @@ mod tilings;
 
 pub(crate) use factory::{BoxedFactory, RunBatch, RunFactory};
 pub(crate) use generic::{boxed_factory, boxed_run, check_actions, generic, generic_box};
+pub(crate) use prediction::observed_run;
 pub(crate) use python_env::PythonEnv;
 pub(crate) use python_task::python_task;
 pub(crate) use run::{AnyRecordings, BuiltRun, Run, check_tables};

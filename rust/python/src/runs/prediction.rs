@@ -86,7 +86,7 @@ where
 }
 
 /// A run of any method on a task with a policy.
-pub(super) fn observed_run<W, P>(
+pub(crate) fn observed_run<W, P>(
     task: W,
     policy: P,
     seed: &Seed,

@@ -20,6 +20,8 @@ pub(crate) struct Results<'py> {
     tables: PyReadwriteArray2<'py, f64>,
     /// Whether a run is finished and its row complete.
     finished: PyReadwriteArray1<'py, bool>,
+    /// The last action masks, (runs, values), or (runs, 0) if they are not kept.
+    masks: PyReadwriteArray2<'py, bool>,
 }
 
 /// The rows of one run.
@@ -30,6 +32,7 @@ pub(super) struct Row<'a> {
     terminated: &'a mut [bool],
     tables: &'a mut [f64],
     finished: &'a mut bool,
+    masks: &'a mut [bool],
 }
 
 impl Row<'_> {
@@ -47,7 +50,7 @@ impl Row<'_> {
         self.terminated[..count].copy_from_slice(&episodes.terminated[..count]);
     }
 
-    /// Writes the tables of a run whose episodes have all been written, which completes the row.
+    /// Writes the tables and the action masks of a run whose episodes have all been written, which completes the row.
     pub(super) fn write_tables(self, run: &dyn Run) -> PyResult<()> {
         if !self.tables.is_empty() {
             let tables = run.tables();
@@ -62,6 +65,15 @@ impl Row<'_> {
                 rest = after;
             }
         }
+        if !self.masks.is_empty() {
+            match run.action_masks() {
+                Some(masks) if masks.len() == self.masks.len() => self.masks.copy_from_slice(masks),
+                masks => {
+                    let expected = format!("{} values a run", masks.map_or(0, <[bool]>::len));
+                    return Err(invalid("results['masks']", expected, self.masks.len()));
+                }
+            }
+        }
         *self.finished = true;
         Ok(())
     }
@@ -70,20 +82,21 @@ impl Row<'_> {
 /// The remaining rows, in order. They are not kept in a list, as there may be millions.
 pub(super) struct Rows<'a> {
     next: usize,
-    /// The numbers of columns: episodes, and values of the tables.
-    widths: [usize; 2],
+    /// The numbers of columns: episodes, values of the tables, and values of the masks.
+    widths: [usize; 3],
     returns: &'a mut [f64],
     lengths: &'a mut [i64],
     terminated: &'a mut [bool],
     tables: &'a mut [f64],
     finished: &'a mut [bool],
+    masks: &'a mut [bool],
 }
 
 impl<'a> Iterator for Rows<'a> {
     type Item = Row<'a>;
 
     fn next(&mut self) -> Option<Row<'a>> {
-        let [episodes, values] = self.widths;
+        let [episodes, values, available] = self.widths;
         let (finished, rest) = take(&mut self.finished).split_first_mut()?;
         self.finished = rest;
         let (returns, rest) = take(&mut self.returns).split_at_mut(episodes);
@@ -94,16 +107,18 @@ impl<'a> Iterator for Rows<'a> {
         self.terminated = rest;
         let (tables, rest) = take(&mut self.tables).split_at_mut(values);
         self.tables = rest;
+        let (masks, rest) = take(&mut self.masks).split_at_mut(available);
+        self.masks = rest;
         let index = self.next;
         self.next += 1;
-        Some(Row { index, returns, lengths, terminated, tables, finished })
+        Some(Row { index, returns, lengths, terminated, tables, finished, masks })
     }
 }
 
 impl Results<'_> {
     /// The rows, one for each of `runs` runs.
     pub(super) fn rows(&mut self, runs: usize) -> PyResult<Rows<'_>> {
-        let (episodes, values) = (self.returns.shape()[1], self.tables.shape()[1]);
+        let (episodes, values, available) = (self.returns.shape()[1], self.tables.shape()[1], self.masks.shape()[1]);
         let finished = self.finished.as_slice_mut()?;
         if finished.len() != runs {
             return Err(invalid(
@@ -114,12 +129,13 @@ impl Results<'_> {
         }
         Ok(Rows {
             next: 0,
-            widths: [episodes, values],
+            widths: [episodes, values, available],
             returns: all("returns", &mut self.returns, [runs, episodes])?,
             lengths: all("lengths", &mut self.lengths, [runs, episodes])?,
             terminated: all("terminated", &mut self.terminated, [runs, episodes])?,
             tables: all("tables", &mut self.tables, [runs, values])?,
             finished,
+            masks: all("masks", &mut self.masks, [runs, available])?,
         })
     }
 }

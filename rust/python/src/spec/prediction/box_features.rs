@@ -58,6 +58,12 @@ impl<const M: usize> ReadRows<[f32; M]> for BoxFeatures<f32> {
     }
 }
 
+impl<T: Float> ReadRows<Vec<T>> for BoxFeatures<T> {
+    fn rows(&self, observation: &Vec<T>) -> Result<ActiveTiles, RunError> {
+        Ok(self.active_rows(observation)?)
+    }
+}
+
 impl<T: Float + Default + numpy::Element> ReadRows<Py<PyAny>> for BoxReader<T, BoxFeatures<T>> {
     fn rows(&self, observation: &Py<PyAny>) -> Result<ActiveTiles, RunError> {
         Python::attach(|py| ObservationReader::active_rows(self, observation.bind(py)))

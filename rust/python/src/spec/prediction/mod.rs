@@ -4,5 +4,5 @@ mod box_features;
 mod observation_policy;
 mod spec;
 
-pub(crate) use box_features::BoxFeatures;
+pub(crate) use box_features::{BoxFeatures, ReadRows};
 pub(crate) use spec::PredictionSpec;

@@ -9,7 +9,7 @@ use qtab_core::prediction::ObservationPolicy;
 use qtab_core::random::Rng;
 
 use super::box_features::ReadRows;
-use crate::convert::{in_c_order, small_array};
+use crate::convert::{array_from, in_c_order, small_array};
 use crate::error::{RunError, invalid};
 use crate::spec::{DiscretizerSpec, Fields, Variant};
 
@@ -124,18 +124,24 @@ pub(super) fn check_probabilities(
 
 /// An observation that a policy in Python can read.
 pub(crate) trait PyObservation {
-    fn to_python<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny>;
+    fn to_python<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>>;
 }
 
 impl<const M: usize> PyObservation for [f32; M] {
-    fn to_python<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
-        small_array(py, self).into_any()
+    fn to_python<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        Ok(small_array(py, self).into_any())
+    }
+}
+
+impl<T: numpy::Element + Copy> PyObservation for Vec<T> {
+    fn to_python<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        Ok(array_from(py, self)?.into_any())
     }
 }
 
 impl PyObservation for Py<PyAny> {
-    fn to_python<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
-        self.bind(py).clone()
+    fn to_python<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        Ok(self.bind(py).clone())
     }
 }
 
@@ -191,7 +197,7 @@ impl<G> ReadPolicy<G> {
                 self.action = Some(first_of_largest(values));
             }
             PolicyReader::Function(spec) => {
-                self.action = Python::attach(|py| spec.call(&observation.to_python(py), &mut self.probabilities))?;
+                self.action = Python::attach(|py| spec.call(&observation.to_python(py)?, &mut self.probabilities))?;
             }
         }
         Ok(())
@@ -275,7 +281,9 @@ impl<O: PyObservation, G: ReadRows<O>> ObservationPolicy<O> for ObservationPolic
         for other in 0..self.num_actions {
             let probability = target.probability(other);
             if probability > 0.0 && self.behavior.probability(other) == 0.0 {
-                return Err(Python::attach(|py| not_covered(&observation.to_python(py), other, probability)).into());
+                return Err(Python::attach(|py| Ok(not_covered(&observation.to_python(py)?, other, probability)))
+                    .unwrap_or_else(|error| error)
+                    .into());
             }
         }
         Ok((action, target.probability(action) / self.behavior.probability(action)))

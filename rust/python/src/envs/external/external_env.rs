@@ -1,0 +1,189 @@
+//! Runs in an environment of another library.
+
+use std::sync::Arc;
+
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+use qtab_core::features::MAX_TILINGS;
+use qtab_core::numeric::Float;
+use qtab_core::{Features, StopFlag};
+use qtab_env::host::{CallError, Environment};
+use qtab_env::{FLOAT32, FLOAT64, Number};
+
+use super::super::native_env::NativeEnv;
+use super::external_task::{ExternalTask, TaskOptions};
+use super::observations::{ConvertTo, Converted, ConvertedProduct};
+use crate::convert::Seed;
+use crate::error::invalid;
+use crate::runs::{AnyRecordings, BoxedFactory, RunFactory, boxed_run, check_actions, observed_run};
+use crate::spec::{ActionMasksSpec, BoxFeatures, DiscretizerSpec, FloatType, PredictionSpec, ReadRows, RunSpec};
+
+/// An environment of another library, shared by all runs.
+pub(crate) struct ExternalEnv {
+    pub(super) environment: Environment,
+    /// The work of a step, as counted by a training budget.
+    pub(super) step_work: u64,
+    /// Keeps the environment alive.
+    pub(super) _capsule: Py<PyAny>,
+    /// Called where a function of the environment fails, to raise the error.
+    pub(super) on_failure: Option<Py<PyAny>>,
+}
+
+/// A call that failed: what is needed to repeat it.
+pub(super) struct Failure<'a> {
+    /// The state before the step; `None` for a reset.
+    pub(super) state: Option<&'a [u8]>,
+    pub(super) words_drawn: u64,
+    pub(super) buffered_u32: Option<u32>,
+    pub(super) action: Option<usize>,
+    pub(super) seed: &'a Seed,
+}
+
+impl ExternalEnv {
+    /// The error of a call, which `on_failure` raises if the function itself reported it.
+    pub(super) fn error(&self, py: Python<'_>, error: CallError, failure: &Failure<'_>) -> PyErr {
+        let Failure { state, words_drawn, buffered_u32, action, seed } = failure;
+        if error != CallError::Failed {
+            return PyValueError::new_err(error.to_string());
+        }
+        if let Some(on_failure) = &self.on_failure {
+            let state = state.map(|bytes| PyBytes::new(py, bytes));
+            let raised = seed
+                .to_python(py)
+                .and_then(|seed| on_failure.call1(py, (state, *words_drawn, *buffered_u32, *action, seed)));
+            if let Err(raised) = raised {
+                return raised;
+            }
+        }
+        PyRuntimeError::new_err(match action {
+            Some(action) => format!("step of the environment failed: it returned QTAB_FAILED for action {action}"),
+            None => "reset of the environment failed: it returned QTAB_FAILED".into(),
+        })
+    }
+
+    /// Runs with the features of the spec's discretizer, for observations of type `T`.
+    fn runs_with<T, F>(self: &Arc<Self>, features: F, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>>
+    where
+        T: Number,
+        F: Features<[T], Active: Send> + Clone + Send + Sync + 'static,
+    {
+        let (env, spec, options) = (Arc::clone(self), Arc::clone(spec), self.options(spec)?);
+        let shape = (features.len(), spec.discretizer.n_active());
+        let build = move |seed: &Seed, stop: &StopFlag<'_>| {
+            let task = ExternalTask::new(&env, features.clone(), options, seed)?;
+            boxed_run(task, shape, seed, &spec, stop, AnyRecordings::Native)
+        };
+        Ok(Box::new(BoxedFactory(build)))
+    }
+
+    fn options(&self, spec: &RunSpec) -> PyResult<TaskOptions> {
+        check_actions(self.environment.num_actions(), spec)?;
+        let has_masks = matches!(spec.action_masks, ActionMasksSpec::Observed);
+        if has_masks && !self.environment.has_action_mask() {
+            return Err(invalid("action_mask", "False for an environment without action masks", "True"));
+        }
+        Ok(TaskOptions { max_episode_steps: spec.max_episode_steps, has_masks })
+    }
+
+    /// Runs with a discretizer of a Box of dtype `D`, for observations of type `T`.
+    fn box_runs<T, D>(self: &Arc<Self>, to_dtype: fn(f64) -> D, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>>
+    where
+        T: ConvertTo<D>,
+        D: Float + Send + Sync + 'static,
+    {
+        if let DiscretizerSpec::Tiles(tiles) = &spec.discretizer {
+            return self.runs_with::<T, _>(Converted::<D, _>::new(tiles.tile_coding::<D, MAX_TILINGS>()), spec);
+        }
+        self.runs_with::<T, _>(Converted::<D, _>::new(spec.discretizer.grid(to_dtype)?), spec)
+    }
+
+    /// Runs with a discretizer of the type of the observations, which may estimate the values of a policy that reads
+    /// them.
+    fn same_box_runs<T>(self: &Arc<Self>, to_dtype: fn(f64) -> T, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>>
+    where
+        T: Number + Float + numpy::Element + Send + Sync + 'static,
+        BoxFeatures<T>: ReadRows<Vec<T>>,
+    {
+        if let Some(prediction) = spec.prediction_by_observation() {
+            return self.observed_runs(to_dtype, spec, prediction);
+        }
+        if let DiscretizerSpec::Tiles(tiles) = &spec.discretizer {
+            return self.runs_with::<T, _>(tiles.tile_coding::<T, MAX_TILINGS>(), spec);
+        }
+        self.runs_with::<T, _>(spec.discretizer.grid(to_dtype)?, spec)
+    }
+
+    /// Runs that estimate the values of a policy that reads the observations.
+    fn observed_runs<T>(
+        self: &Arc<Self>,
+        to_dtype: fn(f64) -> T,
+        spec: &Arc<RunSpec>,
+        prediction: &Arc<PredictionSpec>,
+    ) -> PyResult<Box<dyn RunFactory>>
+    where
+        T: Number + Float + numpy::Element + Send + Sync + 'static,
+        BoxFeatures<T>: ReadRows<Vec<T>>,
+    {
+        let (env, spec, prediction) = (Arc::clone(self), Arc::clone(spec), Arc::clone(prediction));
+        let options = self.options(&spec)?;
+        let build = move |seed: &Seed, stop: &StopFlag<'_>| {
+            let features = BoxFeatures::new(&spec.discretizer, to_dtype)?;
+            let task = ExternalTask::<T, _>::new(&env, features, options, seed)?;
+            let policies = prediction.policies(&spec, |own| BoxFeatures::new(own, to_dtype))?;
+            Ok((observed_run(task, policies, seed, &spec, &prediction, stop)?, AnyRecordings::None))
+        };
+        Ok(Box::new(BoxedFactory(build)))
+    }
+
+    /// Checks that an observation has as many numbers as the discretizer reads.
+    fn check_dimensions(&self, dimensions: usize) -> PyResult<()> {
+        let size = self.environment.observation_size();
+        if dimensions == size {
+            return Ok(());
+        }
+        Err(invalid("discretizer", format!("one for observations of {size} numbers"), dimensions))
+    }
+
+    fn build_runs(self: &Arc<Self>, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>> {
+        let observation_type = self.environment.observation_type();
+        if let DiscretizerSpec::Identity(reader) = &spec.discretizer {
+            self.check_dimensions(reader.dimensions())?;
+            if [FLOAT32, FLOAT64].contains(&observation_type) {
+                return Err(invalid("discretizer", "one for a Box of observations", "'identity'"));
+            }
+            return self.runs_with::<i64, _>(reader.clone(), spec);
+        }
+        let (dtype, dimensions) = spec.discretizer.box_space()?;
+        self.check_dimensions(dimensions)?;
+        if let DiscretizerSpec::Product(product) = &spec.discretizer {
+            let features = ConvertedProduct::new(product.features.clone());
+            return match observation_type {
+                FLOAT32 => self.runs_with::<f32, _>(features, spec),
+                FLOAT64 => self.runs_with::<f64, _>(features, spec),
+                _ => self.runs_with::<i64, _>(features, spec),
+            };
+        }
+        let to_f32 = |bound: f64| bound as f32;
+        match (observation_type, dtype) {
+            (FLOAT32, FloatType::F32) => self.same_box_runs::<f32>(to_f32, spec),
+            (FLOAT64, FloatType::F64) => self.same_box_runs::<f64>(|bound| bound, spec),
+            _ if spec.prediction_by_observation().is_some() => {
+                Err(invalid("env", "one with observations of the dtype of its space", "another dtype"))
+            }
+            (FLOAT32, FloatType::F64) => self.box_runs::<f32, f64>(|bound| bound, spec),
+            (FLOAT64, FloatType::F32) => self.box_runs::<f64, f32>(to_f32, spec),
+            (_, FloatType::F32) => self.box_runs::<i64, f32>(to_f32, spec),
+            (_, FloatType::F64) => self.box_runs::<i64, f64>(|bound| bound, spec),
+        }
+    }
+}
+
+/// An environment of another library, as training takes it.
+pub(super) struct SharedExternalEnv(pub(super) Arc<ExternalEnv>);
+
+impl NativeEnv for SharedExternalEnv {
+    fn runs(&self, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>> {
+        self.0.build_runs(spec)
+    }
+}

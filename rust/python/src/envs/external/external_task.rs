@@ -1,0 +1,243 @@
+//! An environment of another library as a learner's task.
+
+use std::marker::PhantomData;
+use std::ops::Deref;
+use std::sync::Arc;
+
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use qtab_core::checkpoint::{Checkpoint, CheckpointError, Persist};
+use qtab_core::memory::{out_of_memory, with_capacity};
+use qtab_core::prediction::ObservableTask;
+use qtab_core::random::Pcg64;
+use qtab_core::tasks::{NextKind, RngSnapshot, Transition};
+use qtab_core::{Features, Task};
+use qtab_env::Number;
+use qtab_env::host::{BitGenerator, CallError, Ending, Environment, Episode, RandomBits};
+
+use super::external_env::{ExternalEnv, Failure};
+use crate::convert::Seed;
+use crate::error::{RunError, allocation};
+use crate::rng::environment_rng;
+
+/// An environment, with what keeps it alive.
+#[derive(Clone)]
+pub(super) struct SharedEnv(pub(super) Arc<ExternalEnv>);
+
+impl Deref for SharedEnv {
+    type Target = Environment;
+
+    #[inline]
+    fn deref(&self) -> &Environment {
+        &self.0.environment
+    }
+}
+
+/// The environment's generator, from which its functions draw bits.
+#[derive(Clone)]
+pub(super) struct EnvironmentBits(pub(super) Pcg64);
+
+impl BitGenerator for EnvironmentBits {
+    #[inline]
+    fn next_u64(&mut self) -> u64 {
+        self.0.next_u64()
+    }
+
+    #[inline]
+    fn next_u32(&mut self) -> u32 {
+        self.0.next_u32()
+    }
+}
+
+/// The time limit of a task, and whether the learner uses the action masks of the environment.
+#[derive(Clone, Copy)]
+pub(super) struct TaskOptions {
+    pub(super) max_episode_steps: u64,
+    pub(super) has_masks: bool,
+}
+
+/// An environment with features of its observations, which are numbers of type `T`, its time limit and its generator.
+pub(super) struct ExternalTask<T, F> {
+    episode: Episode<SharedEnv>,
+    features: F,
+    max_episode_steps: u64,
+    bits: EnvironmentBits,
+    seed: Seed,
+    /// The actions available in the last state that is not terminal; `None` if the learner does not use action masks.
+    mask: Option<Vec<bool>>,
+    numbers: PhantomData<T>,
+}
+
+impl<T: Number, F: Features<[T]>> ExternalTask<T, F> {
+    pub(super) fn new(env: &Arc<ExternalEnv>, features: F, options: TaskOptions, seed: &Seed) -> PyResult<Self> {
+        let environment = &env.environment;
+        let numbers = environment.state_size() + environment.observation_size() * size_of::<T>();
+        let episode = Episode::new(SharedEnv(Arc::clone(env)));
+        let mut mask = None;
+        if options.has_masks {
+            let mut available = with_capacity(environment.num_actions()).map_err(allocation)?;
+            available.resize(environment.num_actions(), true);
+            mask = Some(available);
+        }
+        Ok(Self {
+            episode: episode.map_err(|error| allocation(out_of_memory::<u8>(numbers)(error)))?,
+            features,
+            max_episode_steps: options.max_episode_steps,
+            bits: EnvironmentBits(environment_rng(seed)),
+            seed: seed.clone(),
+            mask,
+            numbers: PhantomData,
+        })
+    }
+
+    /// The error of a call. The generator is set back to where it was before the call.
+    #[cold]
+    fn failure(&mut self, error: CallError, before: EnvironmentBits, action: Option<usize>) -> RunError {
+        self.bits = before;
+        let EnvironmentBits(rng) = &self.bits;
+        let failure = Failure {
+            state: action.map(|_| self.episode.state()),
+            words_drawn: rng.words_drawn(),
+            buffered_u32: rng.buffered_u32(),
+            action,
+            seed: &self.seed,
+        };
+        Python::attach(|py| self.episode.shared().0.error(py, error, &failure)).into()
+    }
+
+    /// Reads the action mask of a state that is not terminal.
+    #[inline]
+    fn read_mask(&mut self) -> Result<(), RunError> {
+        let Some(mask) = &mut self.mask else { return Ok(()) };
+        let given = self.episode.action_mask();
+        let mut largest = 0;
+        for (available, &byte) in mask.iter_mut().zip(given) {
+            *available = byte == 1;
+            largest = largest.max(byte);
+        }
+        if largest == 1 { Ok(()) } else { Err(invalid_mask(given)) }
+    }
+
+    /// The kind of the next state, given the `elapsed`th step of the episode.
+    #[inline]
+    fn next_kind(&self, ending: Ending, elapsed: u64) -> NextKind {
+        match ending {
+            Ending::Terminated => NextKind::Terminal,
+            Ending::Truncated => NextKind::Truncated,
+            Ending::Continues if elapsed >= self.max_episode_steps => NextKind::Truncated,
+            Ending::Continues => NextKind::NonTerminal,
+        }
+    }
+
+    /// Takes a step in the environment.
+    #[inline]
+    fn take_step(&mut self, elapsed: &mut u64, action: usize) -> Result<(f64, NextKind), RunError> {
+        let before = self.bits.clone();
+        match self.episode.step(action, &mut RandomBits::new(&mut self.bits)) {
+            Ok((reward, ending)) => {
+                *elapsed += 1;
+                Ok((reward, self.next_kind(ending, *elapsed)))
+            }
+            Err(error) => Err(self.failure(error, before, Some(action))),
+        }
+    }
+}
+
+#[cold]
+fn invalid_mask(mask: &[u8]) -> RunError {
+    let expected = "the environment must write an action mask of 0 and 1 with at least one 1";
+    PyValueError::new_err(format!("{expected}, got {mask:?}")).into()
+}
+
+impl<T: Number, F: Features<[T]>> Task for ExternalTask<T, F> {
+    /// The steps taken since the reset. The episode has the rest of the state.
+    type State = u64;
+    type Active = F::Active;
+    type Error = RunError;
+
+    fn reset(&mut self) -> Result<(u64, F::Active), RunError> {
+        let before = self.bits.clone();
+        if let Err(error) = self.episode.reset(&mut RandomBits::new(&mut self.bits)) {
+            return Err(self.failure(error, before, None));
+        }
+        let rows = self.features.active_rows(self.episode.observation())?;
+        self.read_mask()?;
+        Ok((0, rows))
+    }
+
+    #[inline]
+    fn step(&mut self, elapsed: &mut u64, action: usize) -> Result<Transition<F::Active>, RunError> {
+        let (reward, next) = self.take_step(elapsed, action)?;
+        let rows = self.features.active_rows(self.episode.observation())?;
+        if next != NextKind::Terminal {
+            self.read_mask()?;
+        }
+        Ok(Transition { reward, next: next.with_rows(rows) })
+    }
+
+    #[inline]
+    fn step_into(
+        &mut self,
+        elapsed: &mut u64,
+        action: usize,
+        active: &mut F::Active,
+    ) -> Result<(f64, NextKind), RunError> {
+        let (reward, next) = self.take_step(elapsed, action)?;
+        self.features.write_active_rows(self.episode.observation(), active)?;
+        if next != NextKind::Terminal {
+            self.read_mask()?;
+        }
+        Ok((reward, next))
+    }
+
+    fn action_mask(&self) -> Option<&[bool]> {
+        self.mask.as_deref()
+    }
+
+    fn step_work(&self) -> u64 {
+        self.episode.shared().0.step_work
+    }
+
+    fn active_rows(&self, _elapsed: &u64) -> Result<F::Active, RunError> {
+        Ok(self.features.active_rows(self.episode.observation())?)
+    }
+
+    /// The generator and, within an episode, the bytes of the state.
+    fn persist(&mut self, state: Option<&mut u64>, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        const INVALID: CheckpointError = CheckpointError::Invalid("state of the environment");
+        self.bits.0.persist(checkpoint)?;
+        let Some(elapsed) = state else { return Ok(()) };
+        let mut size = self.episode.state().len() as u64;
+        size.persist(checkpoint)?;
+        checkpoint.check(size == self.episode.state().len() as u64, "size of the environment's state")?;
+        let mut bytes = with_capacity(self.episode.state().len()).map_err(|_| CheckpointError::OutOfMemory)?;
+        bytes.extend_from_slice(self.episode.state());
+        bytes.as_mut_slice().persist(checkpoint)?;
+        elapsed.persist(checkpoint)?;
+        checkpoint.check(*elapsed <= self.max_episode_steps, "number of steps taken")?;
+        if checkpoint.is_restoring() {
+            self.episode.set_state(&bytes);
+            self.episode.observe().map_err(|_| INVALID)?;
+            self.read_mask().map_err(|_| INVALID)?;
+        }
+        Ok(())
+    }
+}
+
+/// The snapshot is the number of 64-bit words drawn since seeding, and the buffered 32-bit half.
+impl<T: Number, F: Features<[T]>> RngSnapshot for ExternalTask<T, F> {
+    type Snapshot = (u64, Option<u32>);
+
+    fn rng_snapshot(&self) -> Result<Self::Snapshot, RunError> {
+        Ok((self.bits.0.words_drawn(), self.bits.0.buffered_u32()))
+    }
+}
+
+/// The observation is a copy, as a policy may be a Python function that keeps it.
+impl<T: Number, F: Features<[T]>> ObservableTask for ExternalTask<T, F> {
+    type Observation = Vec<T>;
+
+    fn observation(&self, _elapsed: &u64) -> Vec<T> {
+        self.episode.observation().to_vec()
+    }
+}

@@ -1,0 +1,105 @@
+//! `ExternalEnv`: an environment in a capsule, as Python inspects it.
+
+use std::sync::Arc;
+
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use qtab_core::random::{Pcg64, SeedSequence};
+use qtab_env::host::{step_time, try_out};
+use qtab_env::{FLOAT32, FLOAT64};
+
+use super::super::native_env::{NativeEnv, PyNativeEnv};
+use super::capsule::environment_of;
+use super::external_env::{ExternalEnv, SharedExternalEnv};
+use super::external_task::EnvironmentBits;
+use crate::convert::Seed;
+use crate::rng::environment_rng;
+
+/// The number of steps that are timed.
+const TIMED_STEPS: u32 = 20;
+
+/// The time of a step of Q-learning on a grid, which counts as a work of 1.
+const NANOSECONDS_OF_WORK: u128 = 25;
+
+/// The largest work of a step, more than that between two checks for Ctrl-C.
+const LARGEST_WORK: u64 = 1 << 20;
+
+/// An environment of another library. `capsule` is what `__qtab_env__()` returned, and is kept. Where a function of the
+/// environment fails, `on_failure(state, words_drawn, buffered_u32, action, seed)` is called, which should raise the
+/// error: `state` are the bytes of the state before the step, or None for a reset; the generator of the run, which was
+/// seeded with `seed`, had drawn so many words and held half a word.
+#[pyclass(frozen, name = "ExternalEnv", module = "qtab._core")]
+pub(crate) struct PyExternalEnv(Arc<ExternalEnv>);
+
+#[pymethods]
+impl PyExternalEnv {
+    #[new]
+    #[pyo3(signature = (capsule, on_failure = None))]
+    pub(crate) fn new(capsule: &Bound<'_, PyAny>, on_failure: Option<Py<PyAny>>) -> PyResult<Self> {
+        let environment = environment_of(capsule)?;
+        let mut rng = EnvironmentBits(Pcg64::new(&SeedSequence::new(&[0])));
+        let nanoseconds = capsule.py().detach(|| step_time(&environment, TIMED_STEPS, &mut rng)).as_nanos();
+        let step_work = u64::try_from(nanoseconds / NANOSECONDS_OF_WORK).unwrap_or(u64::MAX).min(LARGEST_WORK);
+        Ok(Self(Arc::new(ExternalEnv { environment, step_work, _capsule: capsule.clone().unbind(), on_failure })))
+    }
+
+    /// The environment as training takes it.
+    pub(crate) fn native_env(&self) -> PyNativeEnv {
+        PyNativeEnv::from(Arc::new(SharedExternalEnv(Arc::clone(&self.0))) as Arc<dyn NativeEnv>)
+    }
+
+    /// The number of bytes of a state.
+    #[getter]
+    fn state_size(&self) -> usize {
+        self.0.environment.state_size()
+    }
+
+    /// The dtype of an observation: "float32", "float64" or "int64".
+    #[getter]
+    fn dtype(&self) -> &'static str {
+        match self.0.environment.observation_type() {
+            FLOAT32 => "float32",
+            FLOAT64 => "float64",
+            _ => "int64",
+        }
+    }
+
+    /// The lowest and the highest value of each number of an observation.
+    #[getter]
+    fn bounds(&self) -> Vec<(f64, f64)> {
+        let environment = &self.0.environment;
+        (0..environment.observation_size()).map(|index| (environment.low(index), environment.high(index))).collect()
+    }
+
+    /// The number of actions.
+    #[getter]
+    fn num_actions(&self) -> usize {
+        self.0.environment.num_actions()
+    }
+
+    /// The time limit in steps, or None.
+    #[getter]
+    fn max_episode_steps(&self) -> Option<u64> {
+        self.0.environment.max_episode_steps()
+    }
+
+    /// Whether the functions write an action mask.
+    #[getter]
+    fn has_action_mask(&self) -> bool {
+        self.0.environment.has_action_mask()
+    }
+
+    /// Plays `steps` steps with random actions, and checks what the functions write. Raises a `ValueError` that names the
+    /// rule of the interface that one of them breaks.
+    fn try_out(&self, py: Python<'_>, steps: usize, seed: Seed) -> PyResult<()> {
+        let mut rng = EnvironmentBits(environment_rng(&seed));
+        let tried = py.detach(|| try_out(&self.0.environment, steps, &mut rng));
+        tried.map_err(|error| PyValueError::new_err(error.to_string()))
+    }
+}
+
+impl PyExternalEnv {
+    pub(super) fn shared(&self) -> Arc<ExternalEnv> {
+        Arc::clone(&self.0)
+    }
+}
