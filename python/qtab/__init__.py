@@ -22,6 +22,7 @@ _MODULES = {
     "Diagnosis": "qtab.diagnosis.diagnosis",
     "Evaluation": "qtab.training.evaluate",
     "Explanation": "qtab.explanation.explanation",
+    "FunctionalEnv": "qtab.envs.functional",
     "Gap": "qtab.planning.gap",
     "NativeEnv": "qtab.envs.external.native_env",
     "Optimum": "qtab.planning.optimum",
@@ -87,6 +88,7 @@ if TYPE_CHECKING:
     from qtab.diagnosis.diagnosis import Diagnosis as Diagnosis
     from qtab.envs.external.include import get_include as get_include
     from qtab.envs.external.native_env import NativeEnv as NativeEnv
+    from qtab.envs.functional import FunctionalEnv as FunctionalEnv
     from qtab.envs.tabular import TabularEnv as TabularEnv
     from qtab.envs.vector import RustVectorEnv as RustVectorEnv
     from qtab.explanation.explain import explain as explain
