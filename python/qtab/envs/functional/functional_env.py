@@ -14,6 +14,7 @@ from qtab._utils.shown import shown
 from qtab.config.action_mask import checked_mask
 from qtab.envs.functional.observations import observation_in
 from qtab.envs.functional.structure import in_words, structure_of
+from qtab.envs.matching import NotInRustError
 
 UNSET: Any = object()
 """Sentinel: there is no state before the first reset."""
@@ -163,15 +164,54 @@ class FunctionalEnv(gym.Env[Any, Any], ABC):
             raise gym.error.InvalidAction(f"action must be in {self.action_space}, got {shown(action)}")
         if isinstance(self.action_space, gym.spaces.Discrete):
             action = int(action)
-        state, reward, terminated = self._transition(self.state, action)
+        state, reward, terminated = self._checked(self.transition(self.state, action, self.np_random))
         observation, info = self._observation(state), self._info(state, terminated)
         self._state = state
         if self.render_mode == "human":
             self.render()
         return observation, reward, terminated, False, info
 
-    def _transition(self, state: Any, action: Any) -> tuple[Any, float, bool]:
-        returned: Any = self.transition(state, action, self.np_random)
+    def __qtab_env__(self) -> Any:
+        """Returns the capsule ``qtab.env.1`` of the compiled functions, by which Rust steps the environment.
+
+        Raises:
+            NotInRustError: if Numba is not installed, or the functions cannot be compiled; it gives the reason.
+        """
+        from qtab.compilation import NotCompilable
+        from qtab.compilation.functional import capsule_of
+
+        self._check_spaces()
+        try:
+            return capsule_of(self)
+        except NotCompilable as refusal:
+            raise NotInRustError(refusal.place_and_reason, refusal.advice) from None
+
+    def __qtab_env_failed__(self, state: bytes | None, action: int | None, rng: np.random.Generator) -> None:
+        """Repeats a call in Python that failed in compiled code, so that it raises the error.
+
+        Args:
+            state: The bytes of the state before the step; None for a reset.
+            action: The action, counted from 0; None for a reset.
+            rng: A generator in the state before the call.
+
+        Raises:
+            RuntimeError: if the call does not fail in Python.
+        """
+        from qtab.compilation.functional import compiled_env, state_from
+
+        if state is None or action is None:
+            first = self.initial_state(rng)
+            self._observation(first)
+            self._info(first, terminated=False)
+        else:
+            before = state_from(self, compiled_env(self)[0], state)
+            first_action = int(self.action_space.start)  # type: ignore[attr-defined]
+            following, _, terminated = self._checked(self.transition(before, first_action + action, rng))
+            self._observation(following)
+            self._info(following, terminated)
+        raise RuntimeError(f"{type(self).__name__} failed in compiled code, but not in Python")
+
+    def _checked(self, returned: Any) -> tuple[Any, float, bool]:
         name = f"transition of {type(self).__name__}"
         if not isinstance(returned, tuple) or len(returned) != 3:
             got = f"{len(returned)} values: " if isinstance(returned, tuple) else ""

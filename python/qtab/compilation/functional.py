@@ -1,0 +1,188 @@
+"""The compilation of functional environments, with its proof and its file."""
+
+import contextlib
+import logging
+import threading
+import time
+import warnings
+from importlib.util import find_spec
+from typing import Any
+
+import numpy as np
+from gymnasium import spaces
+
+from qtab.compilation import cache, machine_code
+from qtab.compilation.compiled_env import FUNCTIONS, CompiledEnv
+from qtab.compilation.digest import Unknown, digest_of
+from qtab.compilation.functions import helper_methods, methods_of, names_of, plain, reachable
+from qtab.compilation.layout import Array, Layout, Number, Tuple, decode, layout_of
+from qtab.compilation.not_compilable import NotCompilable
+from qtab.compilation.observation import ObservationLayout
+from qtab.compilation.parameters import Parameters
+from qtab.compilation.proof import FunctionalTwin, prove
+from qtab.compilation.scan import refuse_constructs
+
+SLOW_SECONDS = 1.0
+"""The duration of a compilation above which it is reported."""
+
+_logger = logging.getLogger("qtab")
+_lock = threading.RLock()
+_compiled: dict[str, CompiledEnv | NotCompilable] = {}
+"""What this process has compiled or loaded, by its digest."""
+
+
+def capsule_of(env: Any) -> Any:
+    """Returns the capsule of a functional environment with its present attributes.
+
+    The functions are compiled, unless they were before: by this process, or by another one on this machine. They are
+    then compared with Python.
+
+    Raises:
+        NotCompilable: if Numba is not installed, the environment cannot be compiled, or compiled code gives other
+            numbers than Python.
+    """
+    compiled, parameters = compiled_env(env)
+    return compiled.capsule(parameters.memory())
+
+
+def compiled_env(env: Any) -> tuple[CompiledEnv, Parameters]:
+    """Returns the compiled environment, and its parameters; see :func:`capsule_of`."""
+    if not is_installed():
+        raise NotCompilable("Numba is not installed", advice="pip install numba")
+    if not isinstance(env.action_space, spaces.Discrete):
+        raise NotCompilable("the action space is not Discrete", advice="number the actions, with spaces.Discrete(n)")
+    observation = ObservationLayout.of(env.observation_space)
+    functions = reachable(env)
+    parameters = _parameters(env, functions)
+    file = methods_of(env)["transition"].__code__.co_filename
+    try:
+        digest = _digest(env, parameters)
+    except Unknown as error:
+        # Such code depends on objects that other processes do not have; it is compiled once for each class.
+        digest, file = f"{id(type(env))} {error} {parameters.layout} {parameters.constants}", ""
+    with _lock:
+        if digest not in _compiled:
+            _compiled[digest] = _load_or_compile(env, parameters, observation, digest, file)
+        found = _compiled[digest]
+    if isinstance(found, NotCompilable):
+        raise NotCompilable(found.reason, found.file, found.line, found.advice)
+    return found, parameters
+
+
+def is_installed() -> bool:
+    """Returns whether Numba is installed, without importing it."""
+    try:
+        return find_spec("numba") is not None and find_spec("llvmlite") is not None
+    except ValueError:  # it was removed from this process
+        return False
+
+
+def state_from(env: Any, compiled: CompiledEnv, memory: bytes) -> Any:
+    """Returns the state in memory as the functions in Python take it, with the named tuples of the environment."""
+    state = decode(compiled.state, np.frombuffer(memory, np.uint8))
+    return _like(env.initial_state(np.random.default_rng(0)), state)
+
+
+def _like(example: Any, value: Any) -> Any:
+    if not isinstance(value, tuple):
+        return value
+    items = [_like(one, other) for one, other in zip(example, value, strict=True)]
+    return type(example)(*items) if hasattr(example, "_fields") else tuple(items)
+
+
+def _parameters(env: Any, functions: list[Any]) -> Parameters:
+    names = names_of(functions)
+    methods = helper_methods(type(env), names).keys()
+    own = {name for name in names - methods if hasattr(type(env), name) or name in vars(env)}
+    return Parameters.of(env, own - {"observation_space", "action_space", "np_random", "state", "metadata", "spec"})
+
+
+def _digest(env: Any, parameters: Parameters) -> str:
+    helpers = {name: function for name, (function, _) in helper_methods(type(env), names_of(reachable(env))).items()}
+    kinds = {name: repr(layout_of(value)) for name, value in parameters.values.items()}
+    spaces_of = [repr(env.observation_space), repr(env.action_space), _bounds(env.observation_space)]
+    others = [kinds, parameters.constants, parameters.refused, spaces_of]
+    return digest_of({**methods_of(env), **helpers}, others)
+
+
+def _bounds(space: Any) -> list[Any]:
+    layout = ObservationLayout.of(space)
+    return [layout.low, layout.high]
+
+
+def _load_or_compile(
+    env: Any, parameters: Parameters, observation: ObservationLayout, digest: str, file: str
+) -> CompiledEnv | NotCompilable:
+    stored = cache.read(file, digest) if file else None
+    if stored is not None:
+        code, description = stored
+        if code is None:
+            return NotCompilable(*description["refusal"])
+        with contextlib.suppress(machine_code.CannotLoad):
+            return _env_of(
+                env, machine_code.load(code, FUNCTIONS), _layout_from_json(description["state"]), observation
+            )
+    try:
+        made, state = _compile(env, parameters, observation)
+        compiled = _env_of(env, machine_code.load(made, FUNCTIONS), state, observation)
+        prove(FunctionalTwin(env, compiled), compiled, parameters.memory(), reachable(env))
+    except machine_code.CannotLoad as error:
+        return NotCompilable(str(error))
+    except NotCompilable as refusal:
+        if file:
+            reasons = [refusal.reason, refusal.file, refusal.line, refusal.advice]
+            cache.write(file, digest, None, {"refusal": reasons})
+        return refusal
+    if file:
+        cache.write(file, digest, made, {"state": _layout_to_json(state)})
+    return compiled
+
+
+def _env_of(env: Any, code: machine_code.LoadedCode, state: Layout, observation: ObservationLayout) -> CompiledEnv:
+    return CompiledEnv(code, state, observation, int(env.action_space.n), "action_mask" in methods_of(env))
+
+
+def _compile(
+    env: Any, parameters: Parameters, observation: ObservationLayout
+) -> tuple[machine_code.MachineCode, Layout]:
+    functions = [one for one in reachable(env) if plain(one) is not None]
+    refuse_constructs(functions)
+    started = time.perf_counter()
+    from numba.core.errors import NumbaError
+
+    from qtab.compilation.numba_errors import not_compilable
+    from qtab.compilation.shims import ARGUMENTS, compile_functional
+
+    files = {function.__code__.co_filename for function in functions}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        try:
+            compiled = compile_functional(env, parameters, observation)
+        except NumbaError as error:
+            raise not_compilable(error, files) from None
+        except NotCompilable:
+            raise
+        except Exception as error:  # an internal error of Numba; Python can step the environment
+            raise NotCompilable(f"Numba failed with {type(error).__name__}: {error}") from None
+        made = machine_code.make(compiled.functions, ARGUMENTS)
+    seconds = time.perf_counter() - started
+    if seconds > SLOW_SECONDS:
+        _logger.info("compiled %s in %.1f s", type(env).__name__, seconds)
+    return made, compiled.state
+
+
+def _layout_to_json(layout: Layout) -> Any:
+    if isinstance(layout, Number):
+        return str(layout.dtype)
+    if isinstance(layout, Array):
+        return {"dtype": str(layout.dtype), "shape": list(layout.shape)}
+    return [_layout_to_json(item) for item in layout.items]
+
+
+def _layout_from_json(stored: Any) -> Layout:
+    """Returns a stored layout. Named tuples have become tuples; see :func:`state_from`."""
+    if isinstance(stored, str):
+        return Number(np.dtype(stored))
+    if isinstance(stored, dict):
+        return Array(np.dtype(stored["dtype"]), tuple(stored["shape"]))
+    return Tuple(tuple(map(_layout_from_json, stored)))

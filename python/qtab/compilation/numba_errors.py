@@ -1,0 +1,67 @@
+"""Numba's errors in a line: the user's file and line, and the reason."""
+
+import re
+from collections.abc import Iterable
+
+from qtab.compilation.not_compilable import NotCompilable
+
+_PLACE = re.compile(r'File "([^"\n]+)", line (\d+)|at ([^\n()]+) \((\d+)\)')
+_NOISE = (
+    "Failed in",
+    "During",
+    "- Resolution failure",
+    "There are",
+    "Overload",
+    "- Of which",
+    "With argument",
+    "This error",
+    "Use of unsupported",
+    "Enable logging",
+    "No match",
+    "raised from",
+    "File ",
+    ">>>",
+    "This is not usually",
+    "To see Python",
+    "https://",
+    "If you think",
+    "Traceback",
+    "Rejected as the implementation raised a specific error:",
+)
+_ADVICE = (
+    ("Unknown attribute", "use numbers, tuples and arrays, and functions of math and NumPy"),
+    ("Cannot modify readonly array", "copy the array first, and return the copy"),
+    ("Cannot unify", "give the variable values of one type"),
+    ("Untyped global name", "use numbers, tuples, arrays and functions"),
+    ("super", "call the base class's function by another name"),
+)
+
+
+def not_compilable(error: Exception, files: Iterable[str]) -> NotCompilable:
+    """Returns the error of qtab for an error of Numba.
+
+    Args:
+        error: Numba's error.
+        files: The user's files.
+    """
+    text = re.sub(r"\x1b\[[0-9;]*m", "", str(error))
+    known = set(files)
+    file, line = None, None
+    for found in _PLACE.finditer(text):
+        name, number = found[1] or found[3], found[2] or found[4]
+        match = next((one for one in known if one.endswith(name.lstrip(".")) or one == name), None)
+        if match is not None:
+            file, line = match, int(number)
+            break
+    reason = _reason(text)
+    advice = next((advice for start, advice in _ADVICE if start in text), "")
+    return NotCompilable(f"Numba: {reason}", file, line, advice)
+
+
+def _reason(text: str) -> str:
+    lines = [line.strip() for line in text.splitlines()]
+    useful = [line for line in lines if line and not line.startswith(_NOISE)]
+    # The reason of the innermost failure is the most specific one, as in "TypingError: self.rewards is a dict".
+    specific = [line.partition(": ")[2] for line in useful if line.startswith(("TypingError: ", "NumbaTypeError: "))]
+    chosen = (specific or useful or [text or "no reason given"])[0]
+    return chosen if len(chosen) <= 160 else chosen[:157] + "..."

@@ -1,0 +1,133 @@
+"""Constructs in source that cannot be compiled, or whose compiled results differ, with their lines and the advice."""
+
+import ast
+import inspect
+import textwrap
+from collections.abc import Iterator
+from dataclasses import dataclass
+from types import FunctionType
+
+from qtab.compilation.not_compilable import NotCompilable
+
+MISSING_DRAWS = {
+    "choice": "draw an index with rng.integers(0, n)",
+    "hypergeometric": "count the successes of single draws with rng.random()",
+    "multinomial": "compare rng.random() with cumulative probabilities",
+    "multivariate_normal": "combine draws of rng.normal(0.0, 1.0)",
+    "dirichlet": "divide draws of rng.gamma(shape, 1.0) by their sum",
+    "vonmises": "draw from another distribution, such as rng.uniform(-math.pi, math.pi)",
+    "gumbel": "write -math.log(rng.exponential(1.0))",
+}
+"""Methods of generators that Numba does not have, and what to write instead. The draws then differ."""
+
+DIFFERENT = {
+    "np.exp": "math.exp",
+    "np.tanh": "math.tanh",
+    "np.log": "math.log",
+    "np.power": "products, or math.pow",
+    "np.sinh": "math.sinh",
+    "np.cosh": "math.cosh",
+    "np.exp2": "math.exp",
+    "np.expm1": "math.expm1",
+    "np.log1p": "math.log1p",
+    "np.log2": "math.log",
+    "np.log10": "math.log10",
+}
+"""Functions whose last bit can differ in compiled code, and those that do not."""
+
+SUMS = ("sum", "mean", "std", "var", "dot", "matmul", "prod", "cumsum")
+"""Functions that may add in another order."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """A construct in a user's source."""
+
+    text: str
+    file: str
+    line: int
+    advice: str
+
+
+def refuse_constructs(functions: list[FunctionType]) -> None:
+    """Checks the source of functions, as far as it can be read.
+
+    Raises:
+        NotCompilable: for the first construct that cannot be compiled.
+    """
+    for function in functions:
+        for node, file, line in _nodes(function):
+            if (found := _refused(node)) is not None:
+                reason, advice = found
+                raise NotCompilable(f"{_text(node)} {reason}", file, line, advice)
+
+
+def suspects(functions: list[FunctionType]) -> list[Place]:
+    """Returns the constructs in the source of functions whose compiled results can differ from Python's."""
+    found = []
+    for function in functions:
+        for node, file, line in _nodes(function):
+            if (advice := _suspect(node)) is not None:
+                found.append(Place(_text(node), file, line, advice))
+    return found
+
+
+def place_of(function: FunctionType) -> tuple[str, int]:
+    """Returns the file and the line of a function."""
+    return function.__code__.co_filename, function.__code__.co_firstlineno
+
+
+def _nodes(function: FunctionType) -> Iterator[tuple[ast.AST, str, int]]:
+    try:
+        lines, first = inspect.getsourcelines(function)
+        tree = ast.parse(textwrap.dedent("".join(lines)))
+    except (OSError, SyntaxError, TypeError):
+        return
+    file = function.__code__.co_filename
+    for node in ast.walk(tree):
+        yield node, file, first + getattr(node, "lineno", 1) - 1
+
+
+def _refused(node: ast.AST) -> tuple[str, str] | None:
+    if isinstance(node, ast.Attribute):
+        name = _dotted(node)
+        if isinstance(node.ctx, ast.Store | ast.Del) and name.startswith("self."):
+            return "changes the environment", "keep in the state what changes"
+    if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
+        if _dotted(node.func).startswith(("np.random.", "numpy.random.", "random.")):
+            return "does not draw from the generator of the environment", "draw from rng"
+        name = node.func.attr
+        if name == "integers" and len(node.args) == 1 and not any(word.arg == "high" for word in node.keywords):
+            low = ast.unparse(node.args[0])
+            return "cannot be compiled with one argument", f"write {ast.unparse(node.func)}(0, {low})"
+        if name in MISSING_DRAWS and not _dotted(node.func).startswith(("np.", "numpy.", "math.")):
+            return "cannot be compiled", MISSING_DRAWS[name]
+    return None
+
+
+def _suspect(node: ast.AST) -> str | None:
+    if isinstance(node, ast.BinOp | ast.AugAssign) and isinstance(node.op, ast.Pow):
+        return "write products: x * x for x ** 2"
+    if isinstance(node, ast.Call):
+        name = _dotted(node.func)
+        if (instead := DIFFERENT.get(name.replace("numpy.", "np."))) is not None:
+            return f"write {instead}"
+        last = name.rpartition(".")[2]
+        if last in ("wald", "power") and not name.startswith(("np.", "math.")):
+            return "draw from another distribution"
+        if last in SUMS or name == "sum":
+            return "add in a loop"
+        if name == "round":
+            return "write math.floor(x + 0.5)"
+    return None
+
+
+def _dotted(node: ast.AST) -> str:
+    if isinstance(node, ast.Name):
+        return node.id
+    return f"{_dotted(node.value)}.{node.attr}" if isinstance(node, ast.Attribute) else "?"
+
+
+def _text(node: ast.AST) -> str:
+    text = ast.unparse(node).splitlines()[0]
+    return text if len(text) <= 80 else text[:77] + "..."

@@ -1,0 +1,148 @@
+"""The functions of ``qtab_env.h`` around the compiled functions of an environment."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numba
+import numpy as np
+from numba.core import types
+
+from qtab.compilation.compiled_functions import OPTIONS, FunctionCompiler
+from qtab.compilation.compiled_layout import layout_from, reader, type_of, united, writer
+from qtab.compilation.compiled_self import self_at, self_type
+from qtab.compilation.functions import helper_methods, methods_of, names_of, reachable
+from qtab.compilation.generator import GENERATOR, generator_at
+from qtab.compilation.layout import Layout, Number
+from qtab.compilation.not_compilable import NotCompilable
+from qtab.compilation.observation import ObservationLayout
+from qtab.compilation.parameters import Parameters
+from qtab.compilation.struct import FAILED, TERMINATED
+from qtab.compilation.writers import mask_writer, observation_writer
+
+ARGUMENTS = {"qtab_reset": "ppppp", "qtab_step": "pppipppp", "qtab_observe": "pppp"}
+"""The C functions: ``p`` for an address, ``i`` for an int64."""
+
+MOST_STATE_TYPES = 8
+"""The most times that the type of the state may grow."""
+
+
+@dataclass(frozen=True, eq=False)
+class Compiled:
+    """Numba's compile results, and the layout of the state."""
+
+    functions: dict[str, Any]
+    state: Layout
+
+
+def compile_functional(env: Any, parameters: Parameters, observation: ObservationLayout) -> Compiled:
+    """Compiles a functional environment.
+
+    Args:
+        env: The environment.
+        parameters: The attributes that its functions read.
+        observation: The layout of its observations.
+
+    Raises:
+        NotCompilable: if a value has a type that compiled code cannot pass on.
+        numba.core.errors.NumbaError: if Numba does not compile a function.
+    """
+    compiler = FunctionCompiler()
+    own = methods_of(env)
+    helpers = helper_methods(type(env), names_of(reachable(env)))
+    bound = {name: compiler.method(function, static) for name, (function, static) in helpers.items()}
+    given = self_type(parameters, bound)
+    functions = {name: compiler.dispatcher(function) for name, function in own.items()}
+    example = env.initial_state(np.random.default_rng(0))
+    state = _state_layout(functions, given, example)
+    of_state = type_of(state)
+    seen = _returned(functions["observe"], (given, of_state))
+    scope: dict[str, Any] = {
+        **functions,
+        "np": np,
+        "generator_at": generator_at,
+        "self_at": self_at(given),
+        "read_state": reader(state),
+        "write_state": writer(state),
+        "write_observation": observation_writer(observation, seen),
+        "write_reward": writer(Number(np.dtype(np.float64))),
+        "start": int(env.action_space.start),
+    }
+    if "action_mask" in functions:
+        mask = _returned(functions["action_mask"], (given, of_state))
+        scope["write_mask"] = mask_writer(int(env.action_space.n), mask)
+    exec(_source("action_mask" in functions), scope)  # noqa: S102 - code of this module
+    compiled = {}
+    for name, letters in ARGUMENTS.items():
+        shim = numba.njit(**OPTIONS)(scope[name])
+        signature = tuple(types.int64 if letter == "i" else types.uintp for letter in letters)
+        _returned(shim, signature)
+        compiled[name] = shim.overloads[signature]
+    return Compiled(compiled, state)
+
+
+def _state_layout(functions: dict[str, Any], given: Any, example: Any) -> Layout:
+    """Returns the layout of the states: that of the first ones, until transitions from them return no other type."""
+    try:
+        layout = layout_from(_returned(functions["initial_state"], (given, GENERATOR)), example)
+        for _ in range(MOST_STATE_TYPES):
+            returned = _returned(functions["transition"], (given, type_of(layout), types.int64, GENERATOR))
+            _check_transition(returned)
+            following = united(layout, layout_from(returned.types[0], example))
+            if following == layout:
+                return layout
+            layout = following
+    except TypeError as error:
+        raise NotCompilable(str(error), advice="a state is a number, an array, or a tuple of them") from None
+    raise NotCompilable("the type of the state does not settle")
+
+
+def _check_transition(returned: Any) -> None:
+    if not isinstance(returned, types.BaseTuple) or len(returned) != 3:
+        raise NotCompilable(f"transition returns {returned}, not (state, reward, terminated)")
+    _, reward, terminated = map(types.unliteral, returned.types)
+    if not isinstance(reward, types.Integer | types.Float | types.Boolean):
+        raise NotCompilable(f"transition returns {reward} as the reward, not a number")
+    if not isinstance(terminated, types.Boolean):
+        raise NotCompilable(f"transition returns {terminated} as terminated, not a boolean")
+
+
+def _returned(dispatcher: Any, arguments: tuple[Any, ...]) -> Any:
+    """Compiles a function for types of arguments, and returns the type of its result."""
+    dispatcher.compile(arguments)
+    return dispatcher.overloads[arguments].signature.return_type
+
+
+def _source(masked: bool) -> str:
+    mask = (
+        """
+    if not write_mask(mask_address, action_mask(self, state), {terminated}):
+        return np.int32(FAILED)"""
+        if masked
+        else ""
+    )
+    return f"""
+def qtab_reset(parameters, rng, state_address, observation_address, mask_address):
+    self = self_at(parameters)
+    write_state(state_address, initial_state(self, generator_at(rng)))
+    state = read_state(state_address)
+    if not write_observation(observation_address, observe(self, state)):
+        return np.int32(FAILED){mask.format(terminated=False)}
+    return np.int32(0)
+
+def qtab_step(parameters, rng, state_address, action, next_address, observation_address, reward_address, mask_address):
+    self = self_at(parameters)
+    following, reward, terminated = transition(self, read_state(state_address), action + start, generator_at(rng))
+    write_state(next_address, following)
+    write_reward(reward_address, reward)
+    state = read_state(next_address)
+    if not write_observation(observation_address, observe(self, state)):
+        return np.int32(FAILED){mask.format(terminated="terminated")}
+    return np.int32(TERMINATED) if terminated else np.int32(0)
+
+def qtab_observe(parameters, state_address, observation_address, mask_address):
+    self = self_at(parameters)
+    state = read_state(state_address)
+    if not write_observation(observation_address, observe(self, state)):
+        return np.int32(FAILED){mask.format(terminated=True)}
+    return np.int32(0)
+""".replace("FAILED", str(FAILED)).replace("TERMINATED", str(TERMINATED))
