@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils.shown import shown
-from qtab.config.action_mask import checked_mask
+from qtab.config.functions import checked_mask
 from qtab.envs.functional.observations import observation_in
 from qtab.envs.functional.structure import in_words, structure_of
 from qtab.envs.matching import NotInRustError
