@@ -1,6 +1,8 @@
 """``qtab playground`` and the files that it writes."""
 
 import json
+import posixpath
+import re
 import webbrowser
 from pathlib import Path
 
@@ -95,8 +97,12 @@ def test_a_module_of_another_version_is_refused(tmp_path, chromium, requested_wh
 @needs_module
 def test_a_site_holds_the_modules_and_the_definitions_as_files(tmp_path):
     playground.write_site(tmp_path / "site")
-    written = {file.name for file in (tmp_path / "site").iterdir()}
+    site = tmp_path / "site"
+    written = {file.relative_to(site).as_posix() for file in site.rglob("*") if file.is_file()}
     assert {"index.html", "style.css", "main.js", "engine.js", "worker.js", "definitions.js", "qtab.wasm"} <= written
+    for name in (name for name in written if name.endswith(".js")):
+        imported = re.findall(r'from "(\.[^"]*)"', (site / name).read_text(encoding="utf-8"))
+        assert {posixpath.normpath(posixpath.join(posixpath.dirname(name), path)) for path in imported} <= written
     text = (tmp_path / "site/definitions.js").read_text(encoding="utf-8")
     data = json.loads(text.removeprefix("globalThis.QTAB_PLAYGROUND = ").removesuffix(";\n"))
     assert data == {"definitions": json.loads(json.dumps(playground.definitions()))}
@@ -119,6 +125,13 @@ def test_modules_become_one_script_in_the_order_of_their_imports():
     assert "return { a, b };" in script
     assert "import" not in script
     assert "export" not in script
+
+
+def test_an_import_is_relative_to_the_folder_of_its_module():
+    sources = {"a/b.js": 'import { c } from "../c.js";\n', "c.js": 'import { d } from "./a/d.js";\n', "a/d.js": ""}
+    script = bundle(sources, "a/b.js")
+    assert script.index("modules['a/d.js'] =") < script.index("const { d } = modules['a/d.js'];")
+    assert script.index("modules['c.js'] =") < script.index("const { c } = modules['c.js'];")
 
 
 @pytest.mark.parametrize(

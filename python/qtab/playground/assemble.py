@@ -2,6 +2,7 @@
 
 import base64
 import json
+from collections.abc import Iterator
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -66,6 +67,7 @@ def write_site(folder: Path) -> None:
     (folder / "index.html").write_text(_text("index.html").replace(SCRIPT, f"{data}\n{SCRIPT}"), encoding="utf-8")
     (folder / "style.css").write_text(_text("style.css"), encoding="utf-8")
     for name, source in _sources().items():
+        (folder / name).parent.mkdir(exist_ok=True)
         (folder / name).write_text(source, encoding="utf-8")
     known = f"globalThis.QTAB_PLAYGROUND = {_json({'definitions': definitions()})};\n"
     (folder / "definitions.js").write_text(known, encoding="utf-8")
@@ -96,8 +98,16 @@ def _text(name: str) -> str:
 
 
 def _sources() -> dict[str, str]:
-    """The text of each module by its file name."""
-    return {file.name: file.read_text(encoding="utf-8") for file in _folder().iterdir() if file.name.endswith(".js")}
+    """The text of each module by its path."""
+    return dict(_modules_in(_folder(), ""))
+
+
+def _modules_in(folder: "Traversable", path: str) -> Iterator[tuple[str, str]]:
+    for file in folder.iterdir():
+        if file.is_dir():
+            yield from _modules_in(file, f"{path}{file.name}/")
+        elif file.name.endswith(".js"):
+            yield f"{path}{file.name}", file.read_text(encoding="utf-8")
 
 
 def _json(data: Any) -> str:

@@ -3,9 +3,10 @@
 import re
 from collections.abc import Mapping
 from graphlib import CycleError, TopologicalSorter
+from posixpath import dirname, join, normpath
 
 _IMPORT = re.compile(
-    r"""^import\s+(?:\{(?P<names>[^}]*)\}\s+from\s+)?["']\./(?P<file>[\w.-]+)["'];?[ \t]*$""", re.MULTILINE
+    r"""^import\s+(?:\{(?P<names>[^}]*)\}\s+from\s+)?["'](?P<file>\.{1,2}/[\w./-]+)["'];?[ \t]*$""", re.MULTILINE
 )
 _DECLARED = re.compile(r"^export\s+(?=(?:async\s+)?(?:function\*?|class|const)\s+(?P<name>\w+))", re.MULTILINE)
 _OTHER = re.compile(r"^(?:import|export)\b.*$", re.MULTILINE)
@@ -15,7 +16,7 @@ def bundle(sources: Mapping[str, str], entry: str) -> str:
     """Returns one script equivalent to the module ``entry``.
 
     Args:
-        sources: The text of each module by its file name. The modules may use ``import { a, b as c } from "./a.js"``,
+        sources: The text of each module by its path. The modules may use ``import { a, b as c } from "./a.js"``,
             ``import "./a.js"`` and ``export`` before a function, a class or a const.
         entry: The module to begin with.
 
@@ -30,7 +31,7 @@ def bundle(sources: Mapping[str, str], entry: str) -> str:
             continue
         if name not in sources:
             raise ValueError(f"the module {name} is missing")
-        needed[name] = {found["file"] for found in _IMPORT.finditer(sources[name])}
+        needed[name] = {_imported(name, found) for found in _IMPORT.finditer(sources[name])}
         waiting.extend(needed[name])
     try:
         order = list(TopologicalSorter(needed).static_order())
@@ -39,17 +40,22 @@ def bundle(sources: Mapping[str, str], entry: str) -> str:
     return "\n".join(["const modules = {};", *(_wrapped(name, sources[name]) for name in order)])
 
 
+def _imported(name: str, found: re.Match[str]) -> str:
+    """The path of the module that an import of the module ``name`` names."""
+    return normpath(join(dirname(name), found["file"]))
+
+
 def _wrapped(name: str, source: str) -> str:
     """A module as a function that returns what the module exports."""
     exported = [found["name"] for found in _DECLARED.finditer(source)]
-    body = _DECLARED.sub("", _IMPORT.sub(_destructured, source))
+    body = _DECLARED.sub("", _IMPORT.sub(lambda found: _destructured(name, found), source))
     if other := _OTHER.search(body):
         raise ValueError(f"{name}: {other[0]!r} is not a form of import or export that can be bundled")
     return f"modules[{name!r}] = (() => {{\n{body}\nreturn {{ {', '.join(exported)} }};\n}})();"
 
 
-def _destructured(found: re.Match[str]) -> str:
+def _destructured(name: str, found: re.Match[str]) -> str:
     if found["names"] is None:
         return ""
     names = re.sub(r"\s+as\s+", ": ", " ".join(found["names"].split()))
-    return f"const {{ {names} }} = modules[{found['file']!r}];"
+    return f"const {{ {names} }} = modules[{_imported(name, found)!r}];"

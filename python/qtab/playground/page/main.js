@@ -1,18 +1,17 @@
 // Connects the parts of the page: the reader's choices, the engine that trains, and the view of its results.
 
-import { Controls } from "./controls.js";
+import { Controls } from "./controls/controls.js";
+import { setUpEnvironments } from "./controls/environments.js";
+import { EXAMPLES, exampleState, setUpExamples } from "./controls/examples.js";
+import { seedControls } from "./controls/seeds.js";
+import { setUpDialog, setUpShortcuts } from "./controls/shortcuts.js";
+import { setUpTheme } from "./drawing/theme.js";
 import { definitions, Engine } from "./engine.js";
-import { setUpEnvironments } from "./environments.js";
-import { EXAMPLES, exampleState, setUpExamples } from "./examples.js";
-import { fit } from "./fit.js";
-import { setUpDialog, setUpShortcuts } from "./shortcuts.js";
 import { copyText, pythonProgram } from "./python_code.js";
+import { View } from "./results/view.js";
 import { fragment, restore } from "./share.js";
-import { seedControls } from "./seeds.js";
-import { Store } from "./store.js";
-import { setUpTheme } from "./theme.js";
+import { fit, Store } from "./store.js";
 import { Training } from "./training.js";
-import { View } from "./view.js";
 
 const ADDRESS_DELAY = 400;
 const SPOKEN_DELAY = 700;

@@ -1,7 +1,7 @@
 // The run as a Python program, which learns the same table.
 
 import { counted } from "./format.js";
-import { windowOf } from "./statistics.js";
+import { windowOf } from "./results/statistics.js";
 
 const INDENT = "    ";
 

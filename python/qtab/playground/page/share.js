@@ -1,7 +1,7 @@
 // The state in the fragment of the address. The parts of an address are used only as values of controls, all checked.
 
-import { EXAMPLES, exampleState } from "./examples.js";
-import { readNumber } from "./numbers.js";
+import { EXAMPLES, exampleState } from "./controls/examples.js";
+import { readNumber } from "./format.js";
 import { MANY_SEEDS, PAINTED } from "./store.js";
 
 const MAX_SIDE = 20;

@@ -1,11 +1,9 @@
 // The greedy agent in motion: an episode on a canvas, with a pause button and a slider for its steps.
 
-import { counted, number } from "./format.js";
-import { cartPole } from "./scene_cart_pole.js";
-import { gridWorld } from "./scene_grid.js";
-import { mountainCar } from "./scene_mountain_car.js";
+import { cartPole, gridWorld, mountainCar } from "./scenes.js";
 import { onResize, surface } from "./surface.js";
 import { onThemeChange } from "./theme.js";
+import { counted, number } from "../format.js";
 
 const SCENES = { mountain_car: mountainCar, cart_pole: cartPole };
 const PAUSE_AT_END = 1.2;

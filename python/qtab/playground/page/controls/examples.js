@@ -1,7 +1,6 @@
 // Examples: settings that fail and settings that learn, each with a sentence on what to look at.
 
-import { fit } from "./fit.js";
-import { copyGrid } from "./store.js";
+import { copyGrid, fit } from "../store.js";
 
 /**
  * The examples of each environment: `preset` names settings of the package, `settings` change some of them, `grid`

@@ -1,9 +1,35 @@
-// The content of the maps for a result: colors, policies and paths, with one scale for learned and optimal values.
+// A result in words, and the content of its maps: colors, policies and paths, with one scale for all values.
 
-import { gradient } from "./colormap.js";
-import { count, number } from "./format.js";
-import { isEnd } from "./map_drawing.js";
-import { themeColors } from "./theme.js";
+import { isEnd } from "../drawing/map_drawing.js";
+import { gradient, themeColors } from "../drawing/theme.js";
+import { count, counted, number } from "../format.js";
+
+/** The progress of training. */
+export function statusText({ state, done, episodes, seconds, current, seeds }) {
+  const many = seeds.length > 1 ? `, ${seeds.length} seeds` : "";
+  if (state === "training") return `Training: ${count(done)} of ${counted(episodes, "episode")}${many}.`;
+  if (state === "paused") {
+    const inside = current && current.step > 0 ? `, in step ${count(current.step)} of the next` : "";
+    return done || inside
+      ? `Paused after ${count(done)} of ${counted(episodes, "episode")}${many}${inside}.`
+      : `Untrained: no episode of ${count(episodes)} is finished yet. Step shows a single step, Episode a whole episode.`;
+  }
+  if (state === "diverged") return `Stopped after ${counted(done, "episode")}${many}.`;
+  return `Finished: ${counted(episodes, "episode")}${many} in ${duration(seconds)}.`;
+}
+
+export const DIVERGED =
+  "The action values have diverged: they are no longer finite numbers. A smaller learning rate α helps.";
+
+/** A result for screen readers: its progress, and its returns. */
+export function spokenResult(result, summary, marks) {
+  const compared = marks.map(({ name, value }) => `${name} ${number(value)}`).join(", ");
+  return `${statusText(result)} ${summary}${compared ? ` To compare: ${compared}.` : ""}`;
+}
+
+function duration(seconds) {
+  return seconds < 1 ? `${Math.round(seconds * 1000)} ms` : `${number(seconds, 2)} s`;
+}
 
 /** The range of the values to show: those of the visited states, and the optimal ones. */
 export function valueRange({ values, visits }, best, layout) {

@@ -2,8 +2,8 @@
 
 import { make, refusalPlace, refuse } from "./elements.js";
 import { moveWithArrows } from "./environments.js";
-import { readNumber } from "./numbers.js";
-import { copyGrid, PAINTED } from "./store.js";
+import { readNumber } from "../format.js";
+import { copyGrid, PAINTED } from "../store.js";
 
 const MAX_SIDE = 20;
 const TOOLS = [

@@ -2,8 +2,8 @@
 
 import { make, refusalPlace, refuse } from "./elements.js";
 import { moveWithArrows } from "./environments.js";
-import { readNumber } from "./numbers.js";
-import { MANY_SEEDS } from "./store.js";
+import { readNumber } from "../format.js";
+import { MANY_SEEDS } from "../store.js";
 
 const LARGEST = 2 ** 32 - 1 - MANY_SEEDS;
 

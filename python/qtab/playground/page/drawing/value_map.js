@@ -1,9 +1,18 @@
 // A map of the states: values, visits or the optimum, with the policy and the greedy agent's path, and a cell to select.
 
-import { themeColors, onThemeChange } from "./theme.js";
-import { drawCells, drawDot, drawLetters, drawOutline, drawPath, drawPolicy, drawRewards } from "./map_drawing.js";
-import { drawPlaneAxes, frameOf } from "./map_frame.js";
+import {
+  drawCells,
+  drawDot,
+  drawLetters,
+  drawOutline,
+  drawPath,
+  drawPlaneAxes,
+  drawPolicy,
+  drawRewards,
+  frameOf,
+} from "./map_drawing.js";
 import { onResize, surface } from "./surface.js";
+import { onThemeChange, themeColors } from "./theme.js";
 
 const KEYS = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [-1, 0], ArrowDown: [1, 0] };
 

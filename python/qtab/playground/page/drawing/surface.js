@@ -1,7 +1,7 @@
 // Canvases that are sharp on every screen, and the axes of a chart.
 
-import { number } from "./format.js";
 import { themeColors } from "./theme.js";
+import { number } from "../format.js";
 
 export const FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', sans-serif";
 

@@ -1,18 +1,26 @@
 // The view of a result: status, learning curve, motion, maps and the selected state.
 
-import { LearningCurve } from "./curve.js";
-import { count, counted, number } from "./format.js";
+import { moveWithArrows } from "../controls/environments.js";
+import { Painter } from "../controls/painter.js";
+import { bestReturn, LearningCurve, Marks } from "../drawing/curve.js";
+import { Motion } from "../drawing/motion.js";
+import { forgetSizes } from "../drawing/surface.js";
+import { onThemeChange } from "../drawing/theme.js";
+import { StateMap } from "../drawing/value_map.js";
+import { count, counted, number } from "../format.js";
 import { showInspection } from "./inspector.js";
-import { moveWithArrows } from "./environments.js";
-import { Motion } from "./motion.js";
-import { Painter } from "./painter.js";
-import { bestContent, learnedContent, pathOf, showLegend, valueRange, visitsContent } from "./results.js";
-import { DIVERGED, spokenResult, statusText } from "./status.js";
-import { PAINTED } from "./store.js";
-import { forgetSizes } from "./surface.js";
-import { onThemeChange } from "./theme.js";
-import { StateMap } from "./value_map.js";
-import { bestReturn, Marks } from "./marks.js";
+import {
+  bestContent,
+  DIVERGED,
+  learnedContent,
+  pathOf,
+  showLegend,
+  spokenResult,
+  statusText,
+  valueRange,
+  visitsContent,
+} from "./results.js";
+import { PAINTED } from "../store.js";
 
 const element = (id) => document.getElementById(id);
 
