@@ -140,7 +140,7 @@ else:
 
             return distribution_version()
         if name not in _MODULES:
-            from qtab._utils.suggestions import did_you_mean
+            from qtab._utils.shown import did_you_mean
 
             raise AttributeError(f"module 'qtab' has no attribute {name!r}{did_you_mean(name, _MODULES)}")
         module = _importlib.import_module(_MODULES[name])

@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 import qtab
-from qtab._utils.notebook import in_notebook
-from qtab._utils.progress import ProgressBar
+from qtab._utils.progress import ProgressBar, in_notebook
 from qtab.callbacks import LivePlot, StopAtReturn, live_plot
 from support.parity import assert_same_run
 

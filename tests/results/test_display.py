@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import qtab
-from qtab._utils import html, svg
+from qtab._utils import html
 
 GRID: dict[str, list[Any]] = {"learning_rate": [0.1, 0.5], "algorithm": ["sarsa", "q_learning"]}
 MAX_LENGTH = 20_000
@@ -99,8 +99,8 @@ def test_there_is_a_picture_where_there_is_something_to_draw(name):
 
 def test_every_text_is_escaped():
     text = "<script>alert('&\"')</script>"
-    shown = html.summary(text, {text: text}, svg.lines(text, {text: [0.0, 1.0]}))
-    shown += html.listing(text, [text, text], [[text, text]], svg.bars(text, [1, 2], text, text))
+    shown = html.summary(text, {text: text}, html.lines(text, {text: [0.0, 1.0]}))
+    shown += html.listing(text, [text, text], [[text, text]], html.bars(text, [1, 2], text, text))
     assert "<script" not in shown
     texts = {element.text for element in ElementTree.fromstring(f"<div>{shown}</div>").iter()}  # noqa: S314
     assert text in texts
@@ -114,27 +114,27 @@ def paths(picture: str) -> list[str]:
 
 
 def test_a_line_goes_from_the_lowest_value_to_the_highest():
-    [path] = paths(svg.lines("title", {"name": [0.0, 5.0, 10.0]}))
+    [path] = paths(html.lines("title", {"name": [0.0, 5.0, 10.0]}))
     points = [[float(number) for number in point.split()] for point in path[1:].split("L")]
     assert [x for x, _ in points] == sorted(x for x, _ in points)
-    assert points[0][1] == svg.HEIGHT - points[2][1]
-    assert points[0][1] > points[1][1] == svg.HEIGHT / 2 > points[2][1]
+    assert points[0][1] == html.HEIGHT - points[2][1]
+    assert points[0][1] > points[1][1] == html.HEIGHT / 2 > points[2][1]
 
 
 @pytest.mark.parametrize(
     "curve", [[], [1.0], [np.nan, np.nan], [1.7e308, -1.7e308, 0.0], [1.0, np.nan, np.inf], [3.0] * 10_000], ids=str
 )
 def test_odd_curves_are_drawn_or_left_out(curve):
-    picture = svg.lines("title", {"name": curve})
+    picture = html.lines("title", {"name": curve})
     assert all("nan" not in path and "inf" not in path for path in (paths(picture) if picture else []))
     assert len(picture) < 4000
 
 
 def test_the_cells_of_a_field_are_all_drawn_the_lowest_lightest():
     values = np.arange(6.0).reshape(2, 3)
-    drawn = paths(svg.field("title", values))
+    drawn = paths(html.field("title", values))
     assert sum(path.count("h1v1h-1z") for path in drawn) == 6
     assert drawn[0] == "M0 0h1v1h-1z"
-    large = svg.field("title", np.random.default_rng(0).random((300, 500)))
+    large = html.field("title", np.random.default_rng(0).random((300, 500)))
     assert len(large) < MAX_LENGTH
-    assert svg.field("title", np.array([[np.nan]])) == ""
+    assert html.field("title", np.array([[np.nan]])) == ""

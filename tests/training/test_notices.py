@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import qtab
-from qtab.training.setup import resolve
+from qtab.training.setup import resolved_run
 from support.environments import ScriptedEnv
 
 UNLIMITED = "CliffWalking-v1 has no time limit: an episode ends after 10,000 steps"
@@ -16,7 +16,7 @@ UNLIMITED = "CliffWalking-v1 has no time limit: an episode ends after 10,000 ste
 @pytest.fixture
 def said(caplog, monkeypatch):
     """The messages of the logger ``qtab``, as in a process that has logged nothing yet."""
-    monkeypatch.setattr(resolve, "_logged", set())
+    monkeypatch.setattr(resolved_run, "_logged", set())
     caplog.set_level(logging.DEBUG, logger="qtab")
     return lambda: caplog.messages
 

@@ -12,7 +12,7 @@ from gymnasium.wrappers import RecordEpisodeStatistics, TimeLimit
 
 import qtab
 from qtab.envs.registry import ENTRIES, EXTRA
-from qtab.training.setup import resolve
+from qtab.training.setup import resolved_run
 from qtab.training.train_many import resolve_template
 from support.environments import Walk
 from support.parity import assert_same_run
@@ -159,7 +159,7 @@ TOUCHED: dict[str, tuple[Any, str]] = {
 @pytest.fixture
 def logged(caplog, monkeypatch):
     """The messages of the logger ``qtab``, as in a process that has logged nothing yet."""
-    monkeypatch.setattr(resolve, "_logged", set())
+    monkeypatch.setattr(resolved_run, "_logged", set())
     caplog.set_level(logging.DEBUG, logger="qtab")
     return caplog
 

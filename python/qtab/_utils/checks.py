@@ -9,8 +9,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from qtab._utils.shown import shown
-from qtab._utils.suggestions import did_you_mean
+from qtab._utils.shown import did_you_mean, shown
 
 T = TypeVar("T")
 

@@ -1,5 +1,7 @@
-"""Short texts of values, for error messages."""
+"""Short texts for error messages: values, and suggestions for misspelled words."""
 
+from collections.abc import Iterable
+from difflib import get_close_matches
 from typing import Any
 
 LONGEST = 450
@@ -22,3 +24,20 @@ def shown(value: Any) -> str:
 def counted(count: int, noun: str) -> str:
     """Returns a count with its noun: ``"1 number"``, ``"2 numbers"``."""
     return f"{count:,} {noun}{'' if count == 1 else 's'}"
+
+
+def nearest(word: str, known: Iterable[str]) -> str | None:
+    """Returns the known word with the spelling nearest to ``word``, ignoring case; None if none is near."""
+    by_spelling = {_spelling(candidate): candidate for candidate in known}
+    found = get_close_matches(_spelling(word), by_spelling, n=1, cutoff=0.65)
+    return by_spelling[found[0]] if found else None
+
+
+def did_you_mean(word: str, known: Iterable[str]) -> str:
+    """Returns the end of an error message, `` (did you mean 'x'?)``; empty if no known word is near."""
+    found = nearest(word, known)
+    return "" if found is None else f" (did you mean {found!r}?)"
+
+
+def _spelling(word: str) -> str:
+    return word.lower().replace("-", "_").replace(" ", "_")

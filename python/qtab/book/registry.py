@@ -4,7 +4,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from qtab._utils.suggestions import did_you_mean
+from qtab._utils.shown import did_you_mean
 from qtab.book.experiment import Experiment
 from qtab.book.figures.chapter_02 import figure_2_1, figure_2_2, figure_2_3, figure_2_4, figure_2_5, figure_2_6
 from qtab.book.figures.chapter_03 import example_3_5, example_3_8

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab._utils import html, svg
+from qtab._utils import html
 from qtab._utils.data_frames import data_frame
 from qtab._utils.files import replacing
 from qtab.book.description import Description
@@ -64,8 +64,8 @@ class Result:
             rows.append((line.name, len(line.mean), lowest, highest, line.runs, int(line.diverged.sum())))
         drawn = {line.name: line.mean for line in self.lines if line.drawn}
         numbers = iter(range(len(self.lines)))
-        colors = [svg.color(next(numbers)) if line.drawn else "" for line in self.lines]
-        return html.listing(self.experiment.heading, columns, rows, svg.lines(f"{y} by {x}", drawn), colors)
+        colors = [html.color(next(numbers)) if line.drawn else "" for line in self.lines]
+        return html.listing(self.experiment.heading, columns, rows, html.lines(f"{y} by {x}", drawn), colors)
 
     def to_pandas(self) -> "pd.DataFrame":
         """Returns all points of all lines as a data frame, with the columns of :meth:`save`.

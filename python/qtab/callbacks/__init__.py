@@ -37,7 +37,7 @@ else:
 
     def __getattr__(name):
         if name not in _MODULES:
-            from qtab._utils.suggestions import did_you_mean
+            from qtab._utils.shown import did_you_mean
 
             raise AttributeError(f"module 'qtab.callbacks' has no attribute {name!r}{did_you_mean(name, _MODULES)}")
         value = globals()[name] = getattr(_importlib.import_module(_MODULES[name]), name)

@@ -8,7 +8,7 @@ from typing import Any
 import gymnasium as gym
 
 from qtab._utils import checks
-from qtab._utils.notebook import in_notebook
+from qtab._utils.progress import in_notebook
 from qtab.config import Config
 from qtab.training.callbacks import BaseCallback
 from qtab.training.progress import Progress

@@ -8,7 +8,7 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab._utils.suggestions import did_you_mean
+from qtab._utils.shown import did_you_mean
 from qtab.callbacks.evaluate_every import EvaluateEvery
 from qtab.config import Config
 from qtab.training.callbacks import BaseCallback

@@ -5,8 +5,7 @@ from collections.abc import Sequence
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from qtab._utils.shown import shown
-from qtab._utils.suggestions import did_you_mean
+from qtab._utils.shown import did_you_mean, shown
 from qtab.cli.errors import USER_ERRORS, UsageError, one_line, with_origin
 from qtab.cli.interruption import discard_output, exit_code
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from qtab._utils.suggestions import did_you_mean
+from qtab._utils.shown import did_you_mean
 from qtab.cli.toml_file import read_toml
 from qtab.config import DEFAULTS
 from qtab.config.unknown import check_names

@@ -7,8 +7,7 @@ from typing import Any
 
 import gymnasium as gym
 
-from qtab._utils.shown import shown
-from qtab._utils.suggestions import did_you_mean
+from qtab._utils.shown import did_you_mean, shown
 from qtab.config import preset_settings
 from qtab.config.settings import SharedSettings
 from qtab.envs.registry import gymnasium_id, spec_of

@@ -5,8 +5,7 @@ from collections.abc import Callable, Collection, Iterable
 from functools import wraps
 from typing import ParamSpec, TypeVar
 
-from qtab._utils.shown import shown
-from qtab._utils.suggestions import nearest
+from qtab._utils.shown import nearest, shown
 from qtab.config.options import SETTINGS
 
 P = ParamSpec("P")

@@ -6,8 +6,7 @@ from typing import Any
 import numpy as np
 
 from qtab._utils import checks
-from qtab._utils.shown import shown
-from qtab._utils.suggestions import did_you_mean
+from qtab._utils.shown import did_you_mean, shown
 from qtab.config.choices import CHOICES
 from qtab.config.functions import kind, uses_tiles
 from qtab.config.options import (

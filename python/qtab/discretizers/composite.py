@@ -16,7 +16,7 @@ from qtab.config import Config
 from qtab.discretizers.base import Discretizer, check_table_size
 from qtab.discretizers.groups import Group, choose_groups
 from qtab.discretizers.layout import Layout
-from qtab.discretizers.refusals import too_large
+from qtab.discretizers.part import too_large
 
 _NUMBERED = re.compile(r"^(observation|observations\[\d+\])\[(\d+)\] is ([^,]+),")
 """The extension's name for a component: it receives one row of numbers."""

@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 from gymnasium import spaces
 
-from qtab._utils.shown import shown
-from qtab._utils.suggestions import did_you_mean
+from qtab._utils.shown import did_you_mean, shown
 from qtab.config import Config
 from qtab.config.config import replace_checked
 from qtab.config.functions import MAPPING, kind

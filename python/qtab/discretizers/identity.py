@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from qtab._discretizer_spec import IdentitySpec
 from qtab.config import Config
 from qtab.discretizers.base import Discretizer, check_table_size
-from qtab.discretizers.refusals import too_large
+from qtab.discretizers.part import too_large
 
 _IS_TUPLE = "is_tuple"
 """The name in files of :attr:`Identity.is_tuple`."""

@@ -10,7 +10,7 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from qtab.discretizers.refusals import refusal
+from qtab._utils.shown import shown
 
 SMALL = 1024
 """An integer Box with at most this many values per component indexes the table; a larger one is discretized."""
@@ -158,3 +158,40 @@ def _part(space: Any, whole: Any, path: tuple[str | int, ...]) -> Part:
             bounds = tuple(low.astype(np.float64).tolist()), tuple(high.astype(np.float64).tolist())
             return Part(path, space.shape, *bounds, "float", space.dtype != np.float64)
     raise ValueError(refusal(space, whole, path))
+
+
+FUNCTION = "a function as discretizer= with shape= or max_rows="
+
+
+def refusal(space: Any, whole: Any, path: tuple[str | int, ...]) -> str:
+    """Returns the reason why a table cannot represent a space, and a remedy.
+
+    Args:
+        space: The space.
+        whole: The observation space that contains it, or ``space`` itself.
+        path: The keys of the space in ``whole``.
+    """
+    where = f"under {path[0]!r}" if path else "at the top level"
+    text = (
+        f"the observation space must consist of numbers for a table, got {type(space).__name__} {where}: {shown(whole)}"
+    )
+    others = [key for key in whole.spaces if key != path[0]] if isinstance(whole, spaces.Dict) and path else []
+    if others:
+        return f"{text}; gymnasium.wrappers.FilterObservation(env, {others!r}) leaves it out, or give {FUNCTION}"
+    if isinstance(space, spaces.Box):
+        return f"{text}; gymnasium.wrappers.DtypeObservation(env, numpy.float64) converts it"
+    return f"{text}; gymnasium.wrappers.TransformObservation converts it to numbers with a function, or give {FUNCTION}"
+
+
+def too_large(parts: Any) -> str:
+    """Returns a remedy for discrete spaces that are too large for a table, to be added to a message."""
+    image = any(part.kind == "integer" and len(part.shape) in (2, 3) and part.size >= 64 for part in parts)
+    if image:
+        return (
+            " (it holds an image: max_rows= assigns rows only to the images that are seen; "
+            "gymnasium.wrappers.TransformObservation or a function as discretizer= with shape= reduces it)"
+        )
+    return (
+        " (max_rows= assigns rows only to the observations that are seen; "
+        "a function as discretizer= with shape= reduces their number)"
+    )

@@ -9,13 +9,12 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qtab._utils import checks, html, svg
+from qtab._utils import checks, html
 from qtab._utils.fields import with_fields
 from qtab._utils.shown import shown
 from qtab.config import Config
 from qtab.config.origin import Origin, copied, trained_on
-from qtab.envs.origin.description import EnvironmentDescription
-from qtab.envs.origin.differences import differences
+from qtab.envs.origin.description import EnvironmentDescription, differences
 from qtab.envs.registry import gymnasium_id, spec_of
 from qtab.planning.gap import Gap
 from qtab.planning.search import Search
@@ -255,7 +254,7 @@ class Optimum:
     def _repr_html_(self) -> str:
         """A table and the state values, for notebooks."""
         facts: dict[str, object] = {**self._facts(" × ")}
-        return html.summary(f"Optimum of {self.env}", facts, svg.state_values("State values", self.values))
+        return html.summary(f"Optimum of {self.env}", facts, html.state_values("State values", self.values))
 
 
 def _each(name: str, values: Any, count: int) -> list[Any]:

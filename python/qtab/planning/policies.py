@@ -7,8 +7,7 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qtab._utils.shown import shown
-from qtab._utils.suggestions import did_you_mean
+from qtab._utils.shown import did_you_mean, shown
 from qtab.discretizers import Discretizer
 from qtab.envs.actions import Actions
 from qtab.planning.optimum import Optimum

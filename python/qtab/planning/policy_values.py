@@ -11,7 +11,7 @@ from gymnasium.envs.registration import EnvSpec
 from numpy.typing import NDArray
 
 from qtab import _core
-from qtab._utils import checks, html, svg
+from qtab._utils import checks, html
 from qtab._utils.fields import with_fields
 from qtab.config.unknown import suggesting
 from qtab.planning.policies import GivenPolicy, probabilities
@@ -85,7 +85,7 @@ class PolicyValues:
             "error": f"below {self.error:.1g}",
             "states": " × ".join(map(str, self.values.shape)),
         }
-        picture = svg.state_values("State values", self.values)
+        picture = html.state_values("State values", self.values)
         return html.summary(f"Values of a policy in {self.env}", facts, picture)
 
 

@@ -17,7 +17,7 @@ from qtab.prediction.estimates import ValueEstimates
 from qtab.prediction.runs import recorded_episodes, run_prediction
 from qtab.prediction.settings import Method, PredictionSettings
 from qtab.prediction.task import OF_OBSERVATIONS, resolve_prediction
-from qtab.training.setup.resolve import log_default_limit, log_python_stepping
+from qtab.training.setup.resolved_run import log_default_limit, log_python_stepping
 from qtab.training.train_many import seed_sequence, thread_count
 
 if TYPE_CHECKING:

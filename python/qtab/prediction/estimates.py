@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qtab._utils import html, svg
+from qtab._utils import html
 from qtab._utils.checks import required
 from qtab._utils.fields import with_fields
 from qtab._utils.shown import shown
@@ -254,7 +254,7 @@ class ValueEstimates:
         title = f"Estimated values in {self.env}"
         if self.rows is None:
             return html.summary(title, facts)
-        return html.summary(title, facts, svg.state_values("Mean values", self.mean))
+        return html.summary(title, facts, html.state_values("Mean values", self.mean))
 
     def _size(self, times: str) -> str:
         if self.rows is None:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from qtab._utils import checks
 from qtab._utils.extras import missing
 from qtab._utils.files import check_writable, replacing
-from qtab._utils.suggestions import did_you_mean
+from qtab._utils.shown import did_you_mean
 from qtab.rendering.frames import Frames
 
 FORMATS = (".mp4", ".gif", ".html")

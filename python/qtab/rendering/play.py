@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from qtab._utils import checks
 from qtab._utils.fields import with_fields
-from qtab._utils.notebook import in_notebook
 from qtab._utils.page import page, paragraph
+from qtab._utils.progress import in_notebook
 from qtab._utils.shown import counted
 from qtab.config.unknown import suggesting
 from qtab.planning.optimum import Optimum

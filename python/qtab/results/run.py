@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qtab._utils import checks, html, svg
+from qtab._utils import checks, html
 from qtab._utils.data_frames import episode_frame
 from qtab._utils.fields import with_fields
 from qtab.config import Config
@@ -102,7 +102,7 @@ class Run(WithPage):
         block = min(default_block(len(returns)), max(len(returns) // 20, 1))
         each = f"Learning curve: the mean return of each {block:,} episodes"
         label = each if block > 1 else "The return of each episode"
-        return html.summary(f"Run of {config.env}", facts, svg.lines(label, {"mean return": self.mean_returns(block)}))
+        return html.summary(f"Run of {config.env}", facts, html.lines(label, {"mean return": self.mean_returns(block)}))
 
     @property
     def trained_on(self) -> EnvironmentDescription | None:

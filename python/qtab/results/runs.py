@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab._utils import checks, html, svg
+from qtab._utils import checks, html
 from qtab._utils.data_frames import data_frame, integer_column
 from qtab._utils.fields import with_fields
 from qtab.config import Config
@@ -96,7 +96,7 @@ class Runs:
             means = self.mean_returns(block)
             low, high = np.percentile(means, BAND, axis=0)
             label = f"Mean learning curve in blocks of {block:,}, with the band of 80% of the runs"
-            picture = svg.lines(label, {"mean of the runs": means.mean(axis=0)}, (low, high))
+            picture = html.lines(label, {"mean of the runs": means.mean(axis=0)}, (low, high))
         return html.summary(f"Runs of {config.env}", facts, picture)
 
     @property

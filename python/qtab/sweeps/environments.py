@@ -12,8 +12,7 @@ import gymnasium as gym
 from qtab.config import Config
 from qtab.envs.class_code import LIBRARY
 from qtab.envs.goals import reward_threshold
-from qtab.envs.origin.description import EnvironmentDescription, from_json
-from qtab.envs.origin.differences import differences
+from qtab.envs.origin.description import EnvironmentDescription, differences, from_json
 from qtab.envs.origin.values import with_types
 from qtab.envs.registry import entry_for_id, make_env, spec_of
 from qtab.sweeps.connection import StoreError, damaged, name_of

@@ -10,10 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab._utils import checks, html, svg
+from qtab._utils import checks, html
 from qtab._utils.data_frames import arrow_table, cell_column, data_frame, integer_column
-from qtab._utils.shown import counted
-from qtab._utils.suggestions import did_you_mean
+from qtab._utils.shown import counted, did_you_mean
 from qtab.sweeps.again import plan_again, trained_again
 from qtab.sweeps.confirm import Confirmation, chosen_settings, other_seeds
 from qtab.sweeps.run_records import SUMMARY_COLUMNS
@@ -86,8 +85,8 @@ class Sweep:
             heading += f"; the best {len(best)}"
         note = versions_note(self.run_versions)
         curves = {f"setting {setting}": self.curves(setting).mean(axis=0) for setting in best}
-        lines = svg.lines(f"Mean learning curves in blocks of {self.block:,} episodes", curves)
-        columns, colors = ("setting", *names, "runs", "mean final return"), [svg.color(i) for i in range(len(best))]
+        lines = html.lines(f"Mean learning curves in blocks of {self.block:,} episodes", curves)
+        columns, colors = ("setting", *names, "runs", "mean final return"), [html.color(i) for i in range(len(best))]
         return html.listing(heading, columns, rows, lines, colors, [note] if note else [])
 
     def __len__(self) -> int:

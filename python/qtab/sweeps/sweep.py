@@ -26,7 +26,7 @@ from qtab.sweeps.run_records import SUMMARY_COLUMNS
 from qtab.sweeps.store_format import read_store
 from qtab.sweeps.study import plan_study
 from qtab.sweeps.training import SweepProgress, run_study
-from qtab.training.setup.resolve import log_default_limit
+from qtab.training.setup.resolved_run import log_default_limit
 from qtab.training.setup.run_env import as_in_training
 from qtab.training.train_many import MakeEnv, resolve_template
 

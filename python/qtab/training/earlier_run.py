@@ -20,7 +20,7 @@ from qtab.config.merge import over
 from qtab.config.options import is_set
 from qtab.config.origin import copied, trained_on
 from qtab.discretizers import AssignedRows
-from qtab.envs.origin.differences import differences
+from qtab.envs.origin.description import differences
 from qtab.envs.registry import versioned
 from qtab.results.loading import load, with_action_mask
 from qtab.results.rates import extensions, falling_rates

@@ -10,7 +10,7 @@ import numpy as np
 from gymnasium.envs.registration import EnvSpec
 from numpy.typing import NDArray
 
-from qtab._utils import checks, html, svg
+from qtab._utils import checks, html
 from qtab._utils.checks import required
 from qtab._utils.data_frames import episode_frame
 from qtab._utils.fields import with_fields
@@ -27,7 +27,8 @@ from qtab.envs.registry import make_env, spec_of, spec_of_run
 from qtab.results.action_values import greedy_table
 from qtab.results.run import Run
 from qtab.training.callbacks import TrainingOptions
-from qtab.training.setup.resolve import log_python_stepping, resolve
+from qtab.training.setup.resolve import resolve
+from qtab.training.setup.resolved_run import log_python_stepping
 from qtab.training.setup.run_env import check_env, check_spaces, resolve_run
 from qtab.training.train import train_resolved
 
@@ -90,7 +91,7 @@ class Evaluation:
         picture = ""
         if np.isfinite(self.returns).all() and self.returns.min() < self.returns.max():
             counts, edges = np.histogram(self.returns, bins=min(30, len(self.returns)))
-            picture = svg.bars("Histogram of the returns", counts, f"{edges[0]:.4g}", f"{edges[-1]:.4g}")
+            picture = html.bars("Histogram of the returns", counts, f"{edges[0]:.4g}", f"{edges[-1]:.4g}")
         return html.summary(f"Evaluation of {self._episodes}, seed {self.seed}", facts, picture)
 
     def to_pandas(self) -> "pd.DataFrame":

@@ -34,9 +34,9 @@ from qtab.training.earlier_run import (
 )
 from qtab.training.progress import EpisodeReader
 from qtab.training.restore import restore, state_of
-from qtab.training.setup.resolve import log_default_limit, log_python_stepping
-from qtab.training.setup.resolved_run import ResolvedRun, masks_of
-from qtab.training.setup.run_env import collect_for, resolve_made, resolve_over
+from qtab.training.setup.resolve import resolve
+from qtab.training.setup.resolved_run import ResolvedRun, log_default_limit, log_python_stepping, masks_of
+from qtab.training.setup.run_env import collect_for, resolve_over
 from qtab.training.setup.run_memory import check_run_memory, tables_shape
 
 
@@ -106,7 +106,7 @@ def train(
     env, base = collect_for(env, train, config, settings)
     earlier = None
     if resume is None:
-        resolved, _, _ = resolve_over(env, base, settings, resolve_made)
+        resolved, _, _ = resolve_over(env, base, settings, resolve)
     else:
         asked = over(base, settings)
         earlier = with_function(earlier_run("resume", resume, asked.get("action_mask")), asked.get("discretizer"))

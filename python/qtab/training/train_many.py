@@ -30,8 +30,8 @@ from qtab.envs.matching import equal_environments
 from qtab.results.runs import Runs
 from qtab.training.runs_progress import RunsCallback, RunsReporter, train_in_parts
 from qtab.training.setup.environment import mask_bytes
-from qtab.training.setup.resolve import log_default_limit, log_python_stepping, resolve
-from qtab.training.setup.resolved_run import ResolvedRun
+from qtab.training.setup.resolve import resolve
+from qtab.training.setup.resolved_run import ResolvedRun, log_default_limit, log_python_stepping
 from qtab.training.setup.run_env import resolve_over
 from qtab.training.setup.run_memory import bytes_in_progress, tables_shape
 

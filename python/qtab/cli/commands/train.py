@@ -21,8 +21,8 @@ from qtab.config.merge import merge
 from qtab.config.options import is_set
 from qtab.envs.registry import spec_of, versioned
 from qtab.results.recording import snapshot_episodes
-from qtab.training.setup.resolve import resolve, time_limit_notice
-from qtab.training.setup.resolved_run import ResolvedRun
+from qtab.training.setup.resolve import resolve
+from qtab.training.setup.resolved_run import ResolvedRun, time_limit_notice
 
 
 def add_arguments(parser: Parser) -> None:

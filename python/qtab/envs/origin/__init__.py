@@ -2,8 +2,7 @@
 
 from qtab.envs.origin.again import make_again, needs_object
 from qtab.envs.origin.describe import describe
-from qtab.envs.origin.description import EnvironmentDescription, WrapperDescription
-from qtab.envs.origin.differences import differences
+from qtab.envs.origin.description import EnvironmentDescription, WrapperDescription, differences
 
 __all__ = [
     "EnvironmentDescription",

@@ -10,8 +10,7 @@ from gymnasium.envs.registration import EnvSpec
 from gymnasium.wrappers import NormalizeObservation, NormalizeReward
 
 from qtab.envs.origin.describe import NEUTRAL, describe
-from qtab.envs.origin.description import EnvironmentDescription, WrapperDescription
-from qtab.envs.origin.differences import differences
+from qtab.envs.origin.description import EnvironmentDescription, WrapperDescription, differences
 from qtab.envs.origin.values import NotRestorableError, in_words, restored, same
 from qtab.envs.registry import make_env
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils import checks
-from qtab._utils.suggestions import did_you_mean
+from qtab._utils.shown import did_you_mean
 from qtab.plots.arrangements.raster import Raster, outline
 from qtab.plots.parts.subject import Subject
 from qtab.results.axes import Axis

@@ -1,9 +1,9 @@
 """Turns a user's request into a :class:`ResolvedRun`: finds the environment and fills in all defaults."""
 
-import logging
 from collections.abc import Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import gymnasium as gym
@@ -42,9 +42,6 @@ from qtab.training.setup.environment import (
 from qtab.training.setup.preset_fit import infer_discretizer, set_aside
 from qtab.training.setup.resolved_run import ResolvedRun, derived_settings
 
-_LOGGER = logging.getLogger("qtab")
-_logged: set[str] = set()
-"""The messages logged in this process, and the environments whose default time limit was logged."""
 READ_IN_PYTHON = "a function as the discretizer, or max_rows, reads each observation in Python"
 MASKS_BY_STEP = "its action masks are known only from step to step"
 
@@ -76,11 +73,13 @@ class _Request:
         return describe(self.env, is_new=self.spec is not None, code=LIBRARY if is_checked else None)
 
 
-def resolve(env: str | EnvSpec | gym.Env, *layers: Mapping[str, Any], owns_env: bool = False) -> ResolvedRun:
+def resolve(
+    env: str | EnvSpec | gym.Env | partial[gym.Env], *layers: Mapping[str, Any], owns_env: bool = False
+) -> ResolvedRun:
     """Finds the environment and fills in all defaults.
 
     Args:
-        env: An environment's id, its EnvSpec, or an environment.
+        env: An environment's id, its EnvSpec, an environment, or a function that makes it for this run.
         *layers: Settings by field name; later layers override earlier ones, and all override the preset.
         owns_env: Whether to close an environment that is given, with the run, or at once if it is not needed. An
             environment made here is always closed.
@@ -91,6 +90,8 @@ def resolve(env: str | EnvSpec | gym.Env, *layers: Mapping[str, Any], owns_env: 
         ValueError: if a setting is out of range, or the backend or a space does not fit.
     """
     with ExitStack() as on_exit:
+        if isinstance(env, partial):
+            env, owns_env = env(), True
         if isinstance(env, gym.Env):
             if owns_env:
                 on_exit.callback(env.close)
@@ -290,24 +291,3 @@ def _fit_initial_q(config: Config, discretizer: Discretizer, n_actions: int) -> 
     if (missing != missing[0]).any():
         raise ValueError("initial_q must have -inf in both tables or in none, got it in one")
     return initial_q
-
-
-def time_limit_notice(run: ResolvedRun) -> str:
-    """Returns the message for a run whose time limit is qtab's default (``run.default_time_limit``)."""
-    return f"{run.config.env} has no time limit: an episode ends after {run.max_episode_steps:,} steps"
-
-
-def log_default_limit(run: ResolvedRun) -> None:
-    """Logs that the time limit is qtab's default, once per process and environment."""
-    if run.default_time_limit and run.config.env not in _logged:
-        _logged.add(run.config.env)
-        _LOGGER.warning("%s; max_episode_steps= sets another", time_limit_notice(run))
-
-
-def log_python_stepping(run: ResolvedRun) -> None:
-    """Logs why an environment is stepped in Python if this was not requested, once per process and reason."""
-    if run.python_reason is not None:
-        message = f"{run.config.env} is stepped in Python, which is much slower than Rust: {run.python_reason}"
-        if message not in _logged:
-            _logged.add(message)
-            _LOGGER.warning("%s", message)

@@ -1,5 +1,6 @@
 """A completely described run, the input of training."""
 
+import logging
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,6 +14,10 @@ from qtab.config.options import is_set
 from qtab.discretizers import Discretizer
 from qtab.envs.actions import Actions
 from qtab.training.setup.environment import ActionMasks, Environment, NativeEnvironment, ObservedEnv
+
+_LOGGER = logging.getLogger("qtab")
+_logged: set[str] = set()
+"""The messages logged in this process, and the environments whose default time limit was logged."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,3 +94,24 @@ def derived_settings(asked: Config, config: Config, discretizer: Discretizer) ->
     if asked.discretizer == "round" and config.discretizer == "identity":
         derived.add("discretizer")
     return frozenset(derived)
+
+
+def time_limit_notice(run: ResolvedRun) -> str:
+    """Returns the message for a run whose time limit is qtab's default (``run.default_time_limit``)."""
+    return f"{run.config.env} has no time limit: an episode ends after {run.max_episode_steps:,} steps"
+
+
+def log_default_limit(run: ResolvedRun) -> None:
+    """Logs that the time limit is qtab's default, once per process and environment."""
+    if run.default_time_limit and run.config.env not in _logged:
+        _logged.add(run.config.env)
+        _LOGGER.warning("%s; max_episode_steps= sets another", time_limit_notice(run))
+
+
+def log_python_stepping(run: ResolvedRun) -> None:
+    """Logs why an environment is stepped in Python if this was not requested, once per process and reason."""
+    if run.python_reason is not None:
+        message = f"{run.config.env} is stepped in Python, which is much slower than Rust: {run.python_reason}"
+        if message not in _logged:
+            _logged.add(message)
+            _LOGGER.warning("%s", message)

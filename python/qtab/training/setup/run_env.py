@@ -20,8 +20,7 @@ from qtab.config.origin import copied, trained_on
 from qtab.envs.actions import choose_actions
 from qtab.envs.origin.again import cannot_be_made, make_again, needs_object
 from qtab.envs.origin.describe import describe
-from qtab.envs.origin.description import EnvironmentDescription
-from qtab.envs.origin.differences import differences
+from qtab.envs.origin.description import EnvironmentDescription, differences
 from qtab.envs.registry import ENTRIES, gymnasium_id, make_env, spec_of, spec_of_run
 from qtab.results.run import Run
 from qtab.training.setup.resolve import resolve
@@ -86,12 +85,7 @@ def resolve_run(config: Config, settings: Mapping[str, Any]) -> ResolvedRun:
         ValueError: if the environment cannot be made as it was, or a setting does not fit.
     """
     spec_of_run(config.env)  # raises for a class name, which is not an id
-    return as_in_training(config, {"env_kwargs": config.env_kwargs, **settings}, resolve_made)[0]
-
-
-def resolve_made(env: Any, settings: Mapping[str, Any]) -> ResolvedRun:
-    """Resolves settings in an environment, given as an object, an id, or a function that makes it."""
-    return resolve(env(), settings, owns_env=True) if isinstance(env, partial) else resolve(env, settings)
+    return as_in_training(config, {"env_kwargs": config.env_kwargs, **settings}, resolve)[0]
 
 
 def as_in_training(
