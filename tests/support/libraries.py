@@ -20,6 +20,7 @@ CAPSULE = b"qtab.env.1"
 EXAMPLES = ROOT / "examples"
 
 needs_compiler = pytest.mark.skipif(COMPILER is None or sys.platform == "win32", reason="needs a C compiler")
+needs_cargo = pytest.mark.skipif(shutil.which("cargo") is None, reason="needs Cargo")
 
 
 def compile_c(source: str | Path, folder: Path, name: str = "environment", *options: str) -> Path:
@@ -53,3 +54,11 @@ def capsule_of(library: Path) -> Any:
     new_capsule = ctypes.pythonapi.PyCapsule_New
     new_capsule.argtypes, new_capsule.restype = [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_void_p], ctypes.py_object
     return new_capsule(function(), CAPSULE, None)
+
+
+def build_rust(crate: Path, folder: Path, name: str) -> Path:
+    """Builds a crate into a shared library in the folder."""
+    command = ["cargo", "build", "--release", "--offline", "--quiet", "--target-dir", str(folder)]
+    subprocess.run(command, cwd=crate, check=True)
+    prefix = "" if sys.platform == "win32" else "lib"
+    return folder / "release" / f"{prefix}{name}{SUFFIX}"

@@ -143,6 +143,15 @@ def test_a_wrapper_a_replaced_method_and_a_refusal_are_stepped_in_python(
         qtab.train(compiled, backend="rust", **SETTINGS)
     assert same(qtab.train(compiled, seed=1, progress=False, **SETTINGS), theirs)
     monkeypatch.undo()
+
+    class Overriding(CompiledBoard):
+        def step(self, action: Any) -> Any:
+            return super().step(action)
+
+    overriding = Overriding()
+    overriding.library = compiled.library
+    with pytest.raises(ValueError, match="got 'rust': its class Overriding overrides step"):
+        qtab.train(overriding, backend="rust", **SETTINGS)
     compiled.step = compiled.step  # type: ignore[method-assign]
     with pytest.raises(ValueError, match="got 'rust': its method step was replaced"):
         qtab.train(compiled, backend="rust", **SETTINGS)

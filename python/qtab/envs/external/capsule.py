@@ -39,6 +39,10 @@ def external_env(env: gym.Env) -> _core.ExternalEnv | None:
         raise NotInRustError(
             f"Rust does not implement its wrapper {wrapper}", "pass the environment without this wrapper"
         )
+    cls = type(unwrapped)
+    for base in cls.__mro__[: next(i for i, base in enumerate(cls.__mro__) if "__qtab_env__" in vars(base))]:
+        if (name := next((name for name in ("reset", "step") if name in vars(base)), None)) is not None:
+            raise NotInRustError(f"its class {base.__name__} overrides {name}", "leave reset and step as they are")
     for layer in layers(env):
         for name in vars(layer):
             if callable(getattr(type(layer), name, None)):

@@ -10,6 +10,7 @@ from gymnasium import spaces
 from gymnasium.error import ResetNeeded
 
 from qtab import _core
+from qtab.envs.class_code import LIBRARY, class_code
 from qtab.envs.external.library import load
 
 
@@ -57,8 +58,9 @@ class NativeEnv(gym.Env[Any, Any]):
 
     @property
     def code_digest(self) -> str:
-        """A digest of the content of the library."""
-        return self._library.digest
+        """A digest of the content of the library, and of a subclass."""
+        code = class_code(type(self))
+        return f"library:{self._library.digest}" + ("" if code is None or code == LIBRARY else f" {code}")
 
     @property
     def state(self) -> bytes:
@@ -74,7 +76,7 @@ class NativeEnv(gym.Env[Any, Any]):
     def state(self, state: bytes) -> None:
         self._started("set the state").set_state(state)
 
-    def reset(self, *, seed: int | None = None, options: Mapping[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         """Begins an episode.
 
         Args:
@@ -87,7 +89,7 @@ class NativeEnv(gym.Env[Any, Any]):
         Raises:
             RuntimeError: if the function of the library fails.
         """
-        super().reset(seed=seed, options=None if options is None else dict(options))
+        super().reset(seed=seed, options=options)
         episode = self._episode or _core.ExternalEpisode(self._library.external)
         bit_generator = self.np_random.bit_generator
         with bit_generator.lock:
