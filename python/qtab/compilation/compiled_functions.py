@@ -7,8 +7,15 @@ import numba
 
 from qtab.compilation.functions import codes, plain
 
-OPTIONS = {"boundscheck": True, "error_model": "python", "fastmath": False}
-"""An index out of bounds is an error, and so is a division by zero; floating-point operations keep their order."""
+OPTIONS: dict[str, Any] = {
+    "boundscheck": True,
+    "error_model": "python",
+    "fastmath": False,
+    "no_cpython_wrapper": True,
+    "no_cfunc_wrapper": True,
+}
+"""An index out of bounds is an error, and so is a division by zero; floating-point operations keep their order. The
+functions are never called from Python, so that they need no wrappers."""
 
 
 class FunctionCompiler:

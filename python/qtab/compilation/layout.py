@@ -85,7 +85,7 @@ def decode(layout: Layout, memory: NDArray[np.uint8]) -> Any:
 
 def _write(layout: Layout, value: Any, memory: NDArray[np.uint8]) -> None:
     if isinstance(layout, Tuple):
-        if not isinstance(value, tuple) or len(value) != len(layout.items):
+        if not isinstance(value, tuple | list) or len(value) != len(layout.items):
             raise ValueError(f"a tuple of {len(layout.items)} items is needed, got {value!r}")
         for item, offset, part in zip(layout.items, offsets(layout), value, strict=True):
             _write(item, part, memory[offset:])
