@@ -153,6 +153,10 @@ def _compile(
     from qtab.compilation.numba_errors import not_compilable
     from qtab.compilation.shims import ARGUMENTS, compile_functional
 
+    try:
+        env.initial_state(np.random.default_rng(0))
+    except Exception as error:  # it is raised again when Python resets the environment
+        raise NotCompilable(f"initial_state raises {type(error).__name__}: {error}") from None
     files = {function.__code__.co_filename for function in functions}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")

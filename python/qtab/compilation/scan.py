@@ -107,6 +107,8 @@ def _refused(node: ast.AST) -> tuple[str, str] | None:
 
 def _suspect(node: ast.AST) -> str | None:
     if isinstance(node, ast.BinOp | ast.AugAssign) and isinstance(node.op, ast.Pow):
+        if isinstance(node, ast.BinOp) and isinstance(node.left, ast.Constant) and isinstance(node.right, ast.Constant):
+            return None
         return "write products: x * x for x ** 2"
     if isinstance(node, ast.Call):
         name = _dotted(node.func)
