@@ -82,6 +82,13 @@ impl Pcg64 {
         self.buffered_u32
     }
 
+    /// Moves to the place that a generator of the same seed has reached with so many words drawn and this buffered half.
+    pub fn move_to(&mut self, words_drawn: u64, buffered_u32: Option<u32>) {
+        self.engine.advance(u128::from(words_drawn).wrapping_sub(u128::from(self.words_drawn)));
+        self.words_drawn = words_drawn;
+        self.buffered_u32 = buffered_u32;
+    }
+
     /// The next word: `bit_generator.random_raw()`.
     #[inline]
     pub fn next_u64(&mut self) -> u64 {
@@ -150,10 +157,9 @@ pub(crate) fn lemire_bounded(below: u32, mut next: impl FnMut() -> u32) -> u32 {
 /// The position, to which a generator of the same seed is advanced.
 impl Persist for Pcg64 {
     fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
-        let mut words_drawn = self.words_drawn;
-        (&mut words_drawn, &mut self.buffered_u32).persist(checkpoint)?;
-        self.engine.advance(u128::from(words_drawn).wrapping_sub(u128::from(self.words_drawn)));
-        self.words_drawn = words_drawn;
+        let (mut words_drawn, mut buffered_u32) = (self.words_drawn, self.buffered_u32);
+        (&mut words_drawn, &mut buffered_u32).persist(checkpoint)?;
+        self.move_to(words_drawn, buffered_u32);
         Ok(())
     }
 }

@@ -5,6 +5,7 @@ mod agent;
 mod answers;
 mod factory;
 mod generic;
+mod one_step;
 mod path;
 mod prediction;
 mod python_env;
@@ -15,6 +16,7 @@ mod tilings;
 
 pub(crate) use factory::{BoxedFactory, RunBatch, RunFactory};
 pub(crate) use generic::{boxed_factory, boxed_run, check_actions, generic, generic_box};
+pub(crate) use one_step::one_step_runs;
 pub(crate) use prediction::observed_run;
 pub(crate) use python_env::PythonEnv;
 pub(crate) use python_task::python_task;

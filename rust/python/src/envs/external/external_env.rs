@@ -16,7 +16,7 @@ use super::external_task::{ExternalTask, TaskOptions};
 use super::observations::{ConvertTo, Converted, ConvertedProduct};
 use crate::convert::Seed;
 use crate::error::invalid;
-use crate::runs::{AnyRecordings, BoxedFactory, RunFactory, boxed_run, check_actions, observed_run};
+use crate::runs::{AnyRecordings, BoxedFactory, RunFactory, boxed_run, check_actions, observed_run, one_step_runs};
 use crate::spec::{ActionMasksSpec, BoxFeatures, DiscretizerSpec, FloatType, PredictionSpec, ReadRows, RunSpec};
 
 /// An environment of another library, shared by all runs.
@@ -86,6 +86,18 @@ impl ExternalEnv {
         Ok(TaskOptions { max_episode_steps: spec.max_episode_steps, has_masks })
     }
 
+    /// Runs with cells, compiled for the usual learners.
+    fn cell_runs<T, F>(self: &Arc<Self>, features: F, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>>
+    where
+        T: Number,
+        F: Features<[T], Active = [u32; 1]> + Clone + Send + Sync + 'static,
+    {
+        let (env, options, n_rows) = (Arc::clone(self), self.options(spec)?, features.len());
+        let own = features.clone();
+        let new_task = move |seed: &Seed| ExternalTask::<T, F>::new(&env, own.clone(), options, seed);
+        one_step_runs(new_task, n_rows, spec).map_or_else(|| self.runs_with::<T, F>(features, spec), Ok)
+    }
+
     /// Runs with a discretizer of a Box of dtype `D`, for observations of type `T`.
     fn box_runs<T, D>(self: &Arc<Self>, to_dtype: fn(f64) -> D, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>>
     where
@@ -111,7 +123,7 @@ impl ExternalEnv {
         if let DiscretizerSpec::Tiles(tiles) = &spec.discretizer {
             return self.runs_with::<T, _>(tiles.tile_coding::<T, MAX_TILINGS>(), spec);
         }
-        self.runs_with::<T, _>(spec.discretizer.grid(to_dtype)?, spec)
+        self.cell_runs::<T, _>(spec.discretizer.grid(to_dtype)?, spec)
     }
 
     /// Runs that estimate the values of a policy that reads the observations.
@@ -152,7 +164,7 @@ impl ExternalEnv {
             if [FLOAT32, FLOAT64].contains(&observation_type) {
                 return Err(invalid("discretizer", "one for a Box of observations", "'identity'"));
             }
-            return self.runs_with::<i64, _>(reader.clone(), spec);
+            return self.cell_runs::<i64, _>(reader.clone(), spec);
         }
         let (dtype, dimensions) = spec.discretizer.box_space()?;
         self.check_dimensions(dimensions)?;

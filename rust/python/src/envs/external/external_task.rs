@@ -7,7 +7,7 @@ use std::sync::Arc;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use qtab_core::checkpoint::{Checkpoint, CheckpointError, Persist};
-use qtab_core::memory::{out_of_memory, with_capacity};
+use qtab_core::memory::{AllocationError, collect, out_of_memory, with_capacity};
 use qtab_core::prediction::ObservableTask;
 use qtab_core::random::Pcg64;
 use qtab_core::tasks::{NextKind, RngSnapshot, Transition};
@@ -90,15 +90,26 @@ impl<T: Number, F: Features<[T]>> ExternalTask<T, F> {
         })
     }
 
-    /// The error of a call. The generator is set back to where it was before the call.
+    /// The numbers of the observation.
+    fn numbers(&self) -> Result<Vec<f64>, AllocationError> {
+        collect(self.episode.observation::<T>().iter().map(|number| number.to_f64()))
+    }
+
+    /// The number of words that the generator has drawn, and its buffered half-word.
+    #[inline]
+    fn position(&self) -> (u64, Option<u32>) {
+        (self.bits.0.words_drawn(), self.bits.0.buffered_u32())
+    }
+
+    /// The error of a call. The generator is moved back to its position before the call.
     #[cold]
-    fn failure(&mut self, error: CallError, before: EnvironmentBits, action: Option<usize>) -> RunError {
-        self.bits = before;
-        let EnvironmentBits(rng) = &self.bits;
+    fn failure(&mut self, error: CallError, before: (u64, Option<u32>), action: Option<usize>) -> RunError {
+        let (words_drawn, buffered_u32) = before;
+        self.bits.0.move_to(words_drawn, buffered_u32);
         let failure = Failure {
             state: action.map(|_| self.episode.state()),
-            words_drawn: rng.words_drawn(),
-            buffered_u32: rng.buffered_u32(),
+            words_drawn,
+            buffered_u32,
             action,
             seed: &self.seed,
         };
@@ -132,7 +143,7 @@ impl<T: Number, F: Features<[T]>> ExternalTask<T, F> {
     /// Takes a step in the environment.
     #[inline]
     fn take_step(&mut self, elapsed: &mut u64, action: usize) -> Result<(f64, NextKind), RunError> {
-        let before = self.bits.clone();
+        let before = self.position();
         match self.episode.step(action, &mut RandomBits::new(&mut self.bits)) {
             Ok((reward, ending)) => {
                 *elapsed += 1;
@@ -156,7 +167,7 @@ impl<T: Number, F: Features<[T]>> Task for ExternalTask<T, F> {
     type Error = RunError;
 
     fn reset(&mut self) -> Result<(u64, F::Active), RunError> {
-        let before = self.bits.clone();
+        let before = self.position();
         if let Err(error) = self.episode.reset(&mut RandomBits::new(&mut self.bits)) {
             return Err(self.failure(error, before, None));
         }
@@ -202,7 +213,8 @@ impl<T: Number, F: Features<[T]>> Task for ExternalTask<T, F> {
         Ok(self.features.active_rows(self.episode.observation())?)
     }
 
-    /// The generator and, within an episode, the bytes of the state.
+    /// The generator and, within an episode, the bytes of the state, with its observation: if the environment gives
+    /// another one for these bytes, its code has changed.
     fn persist(&mut self, state: Option<&mut u64>, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
         const INVALID: CheckpointError = CheckpointError::Invalid("state of the environment");
         self.bits.0.persist(checkpoint)?;
@@ -213,11 +225,17 @@ impl<T: Number, F: Features<[T]>> Task for ExternalTask<T, F> {
         let mut bytes = with_capacity(self.episode.state().len()).map_err(|_| CheckpointError::OutOfMemory)?;
         bytes.extend_from_slice(self.episode.state());
         bytes.as_mut_slice().persist(checkpoint)?;
+        // A failed step may have written an observation. Without `observe` a run is saved, too.
+        let _ = if checkpoint.is_restoring() { Ok(()) } else { self.episode.observe() };
+        let mut saved = self.numbers().map_err(|_| CheckpointError::OutOfMemory)?;
+        saved.as_mut_slice().persist(checkpoint)?;
         elapsed.persist(checkpoint)?;
         checkpoint.check(*elapsed <= self.max_episode_steps, "number of steps taken")?;
         if checkpoint.is_restoring() {
             self.episode.set_state(&bytes);
             self.episode.observe().map_err(|_| INVALID)?;
+            let observed = self.numbers().map_err(|_| CheckpointError::OutOfMemory)?;
+            checkpoint.check(observed == saved, "observation of the state")?;
             self.read_mask().map_err(|_| INVALID)?;
         }
         Ok(())
@@ -229,7 +247,7 @@ impl<T: Number, F: Features<[T]>> RngSnapshot for ExternalTask<T, F> {
     type Snapshot = (u64, Option<u32>);
 
     fn rng_snapshot(&self) -> Result<Self::Snapshot, RunError> {
-        Ok((self.bits.0.words_drawn(), self.bits.0.buffered_u32()))
+        Ok(self.position())
     }
 }
 
