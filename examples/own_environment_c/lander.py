@@ -13,7 +13,7 @@ class Lander(gym.Env[Any, Any]):
     gravity, thrust, gust, seconds = 3.7, 8.0, 0.3, 0.25
 
     def __init__(self) -> None:
-        self.observation_space = spaces.Box(np.float32([0, -30]), np.float32([100, 30]))
+        self.observation_space = spaces.Box(np.array([0, -30], np.float32), np.array([100, 30], np.float32))
         self.action_space = spaces.Discrete(2)
 
     def _observation(self) -> Any:

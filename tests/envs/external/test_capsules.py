@@ -52,6 +52,7 @@ def test_training_uses_the_capsule_and_its_masks(compiled: CompiledBoard) -> Non
     assert (ours.config.backend, theirs.config.backend) == ("rust", "gymnasium")
     assert same(ours, theirs)
     assert ours.action_masks is not None
+    assert theirs.action_masks is not None
     assert ours.action_masks.tobytes() == theirs.action_masks.tobytes()
     assert not ours.action_masks.all()
 

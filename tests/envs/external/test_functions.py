@@ -71,8 +71,8 @@ def test_train_many_equals_single_runs_on_any_number_of_threads(lander: Path) ->
 def test_a_sweep_runs_on_threads() -> None:
     sweep = qtab.sweep(ID, {"learning_rate": [0.1, 0.3]}, seeds=2, **BINS)
     assert (len(sweep), sweep.failed) == (4, 0)
-    single = [qtab.train(ID, seed=0, learning_rate=rate, **BINS).episode_returns for rate in (0.1, 0.3)]
-    assert not np.array_equal(*single)
+    one, other = (qtab.train(ID, seed=0, learning_rate=rate, **BINS).episode_returns for rate in (0.1, 0.3))
+    assert not np.array_equal(one, other)
 
 
 @pytest.mark.parametrize(

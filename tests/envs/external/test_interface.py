@@ -35,7 +35,9 @@ def test_gymnasium_accepts_it(lander: Path, board: Path) -> None:
 
 
 def test_its_spaces_are_those_of_the_library(lander: Path, board: Path) -> None:
-    assert qtab.NativeEnv(lander).observation_space == spaces.Box(np.float32([0, -30]), np.float32([100, 30]))
+    assert qtab.NativeEnv(lander).observation_space == spaces.Box(
+        np.array([0, -30], np.float32), np.array([100, 30], np.float32)
+    )
     assert qtab.NativeEnv(lander).action_space == spaces.Discrete(2)
     assert qtab.NativeEnv(board).observation_space == Board.observation_space
 
@@ -61,7 +63,7 @@ def test_masks_and_truncation_are_those_of_python(board: Path) -> None:
     ours, theirs = qtab.NativeEnv(board), Board()
     chosen = np.random.default_rng(1)
     for seed in range(30):
-        answers = [env.reset(seed=seed) for env in (ours, theirs)]
+        answers: list[Any] = [env.reset(seed=seed) for env in (ours, theirs)]
         is_over = False
         while not is_over:
             masks = [answer[-1]["action_mask"] for answer in answers]
