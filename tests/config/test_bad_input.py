@@ -111,7 +111,7 @@ def test_pcg64_takes_any_non_negative_integer(seed, backend):
 
 CHOICES = {
     "bit_generator": ["pcg64", "PCG64DXSM", "", "Philox"],
-    "backend": ["Rust", "python", "cuda", ""],
+    "backend": ["Rust", "Python", "cuda", ""],
     "terminal_update": ["Assign", "book", ""],
 }
 

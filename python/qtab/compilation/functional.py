@@ -6,11 +6,13 @@ import threading
 import time
 import warnings
 from importlib.util import find_spec
+from itertools import count
 from typing import Any
 
 import numpy as np
 from gymnasium import spaces
 
+from qtab._utils.progress import ProgressBar
 from qtab.compilation import cache, machine_code
 from qtab.compilation.compiled_env import FUNCTIONS, CompiledEnv
 from qtab.compilation.digest import Unknown, digest_of
@@ -151,7 +153,7 @@ def _compile(
     from numba.core.errors import NumbaError
 
     from qtab.compilation.numba_errors import not_compilable
-    from qtab.compilation.shims import ARGUMENTS, compile_functional
+    from qtab.compilation.shims import ARGUMENTS, STAGES, compile_functional
 
     try:
         env.initial_state(np.random.default_rng(0))
@@ -161,7 +163,9 @@ def _compile(
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         try:
-            compiled = compile_functional(env, parameters, observation)
+            with ProgressBar(STAGES, "stage", None, f"compiling {type(env).__name__}") as bar:
+                done = count(1)
+                compiled = compile_functional(env, parameters, observation, lambda: bar.move_to(next(done)))
         except NumbaError as error:
             raise not_compilable(error, files) from None
         except NotCompilable:

@@ -1,5 +1,6 @@
 """The functions of ``qtab_env.h`` around the compiled functions of an environment."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -22,6 +23,9 @@ from qtab.compilation.writers import mask_writer, observation_writer
 ARGUMENTS = {"qtab_reset": "ppppp", "qtab_step": "pppipppp", "qtab_observe": "pppp"}
 """The C functions: ``p`` for an address, ``i`` for an int64."""
 
+STAGES = 2 + len(ARGUMENTS)
+"""The number of stages of a compilation."""
+
 MOST_STATE_TYPES = 8
 """The most times that the type of the state may grow."""
 
@@ -34,13 +38,16 @@ class Compiled:
     state: Layout
 
 
-def compile_functional(env: Any, parameters: Parameters, observation: ObservationLayout) -> Compiled:
+def compile_functional(
+    env: Any, parameters: Parameters, observation: ObservationLayout, report: Callable[[], None]
+) -> Compiled:
     """Compiles a functional environment.
 
     Args:
         env: The environment.
         parameters: The attributes that its functions read.
         observation: The layout of its observations.
+        report: Called after each of ``STAGES``.
 
     Raises:
         NotCompilable: if a value has a type that compiled code cannot pass on.
@@ -54,6 +61,7 @@ def compile_functional(env: Any, parameters: Parameters, observation: Observatio
     functions = {name: compiler.dispatcher(function) for name, function in own.items()}
     example = env.initial_state(np.random.default_rng(0))
     state = _state_layout(functions, given, example)
+    report()
     of_state = type_of(state)
     seen = _returned(functions["observe"], (given, of_state))
     scope: dict[str, Any] = {
@@ -70,6 +78,7 @@ def compile_functional(env: Any, parameters: Parameters, observation: Observatio
     if "action_mask" in functions:
         mask = _returned(functions["action_mask"], (given, of_state))
         scope["write_mask"] = mask_writer(int(env.action_space.n), mask)
+    report()
     exec(_source("action_mask" in functions), scope)  # noqa: S102 - code of this module
     compiled = {}
     for name, letters in ARGUMENTS.items():
@@ -77,6 +86,7 @@ def compile_functional(env: Any, parameters: Parameters, observation: Observatio
         signature = tuple(types.int64 if letter == "i" else types.uintp for letter in letters)
         _returned(shim, signature)
         compiled[name] = shim.overloads[signature]
+        report()
     return Compiled(compiled, state)
 
 

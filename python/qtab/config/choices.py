@@ -66,7 +66,12 @@ DiscretizerName: TypeAlias = Literal["round", "bins", "edges", "tiles", "identit
 TerminalUpdate: TypeAlias = Literal["target", "assign"]
 OnTruncation: TypeAlias = Literal["bootstrap", "terminate"]
 BitGenerator: TypeAlias = Literal["PCG64", "MT19937"]
-Backend: TypeAlias = Literal["auto", "rust", "gymnasium"]
+Backend: TypeAlias = Literal["auto", "rust", "gymnasium", "numba", "python"]
+
+IN_PYTHON = ("gymnasium", "python")
+"""The backends that step the environment in Python."""
+INSISTING = ("rust", "numba")
+"""The backends that raise an error if Rust cannot step the environment."""
 
 CHOICES: Mapping[str, tuple[str, ...]] = {
     "algorithm": get_args(Algorithm),

@@ -67,7 +67,8 @@ class Config(WithOrigin):
     the table has cells for each step before the time limit, and can learn the policy that is optimal under it. Only for
     discretizers with cells."""
     backend: Backend = "auto"
-    """Where to step the environment: in Rust (rust), in Gymnasium (gymnasium), or in Rust if possible (auto)."""
+    """Where to step the environment: in Rust (rust), in Rust after Numba has compiled it (numba), in Python (gymnasium
+    or python), or in Rust if possible (auto)."""
 
     # The run
 

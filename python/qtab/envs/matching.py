@@ -39,9 +39,9 @@ class NotInRustError(ValueError):
         self.remedy = remedy
 
 
-def rust_unavailable(reason: str) -> ValueError:
-    """Returns the error for ``backend="rust"`` if Rust cannot step the environment."""
-    return ValueError(f"backend must be 'auto' or 'gymnasium' for this environment, got 'rust': {reason}")
+def rust_unavailable(reason: str, backend: str = "rust") -> ValueError:
+    """Returns the error for a backend that insists on Rust, or on Numba, if Rust cannot step the environment."""
+    return ValueError(f"backend must be 'auto' or 'gymnasium' for this environment, got {backend!r}: {reason}")
 
 
 def entry_for_env(env: gym.Env) -> EnvEntry:

@@ -22,6 +22,7 @@ from qtab._utils.memory import memory_limit as bytes_limit
 from qtab._utils.shown import shown
 from qtab._utils.versions import versions
 from qtab.config import Config
+from qtab.config.choices import INSISTING
 from qtab.config.help import with_settings
 from qtab.config.merge import collect
 from qtab.config.settings import SharedSettings
@@ -194,8 +195,10 @@ def resolve_template(env: str | EnvSpec | MakeEnv, settings: Mapping[str, Any]) 
     resolved = resolve(made, settings, owns_env=True)
     resolved.close()
     if callable(env) and resolved.is_native and not _makes_equals(env, made):
-        if settings.get("backend") == "rust":
-            raise ValueError("env must make equal environments at every call for backend 'rust', got two that differ")
+        if (backend := settings.get("backend")) in INSISTING:
+            raise ValueError(
+                f"env must make equal environments at every call for backend {backend!r}, got two that differ"
+            )
         # Each run then makes an environment, in a separate process.
         resolved = resolve(env(), {**settings, "backend": "gymnasium"}, owns_env=True)
         resolved.close()

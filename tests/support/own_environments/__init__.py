@@ -2,27 +2,27 @@
 
 from typing import Any
 
-from support.own_environments.access_control import AccessControl
-from support.own_environments.bandit import Bandit
-from support.own_environments.cart_pole import CartPole
-from support.own_environments.cliff import Cliff
-from support.own_environments.elevator import Elevator
-from support.own_environments.epidemic import Epidemic
-from support.own_environments.gambler import Gambler
-from support.own_environments.inventory import Inventory
-from support.own_environments.key_and_door import KeyAndDoor
-from support.own_environments.mine_field import MineField
-from support.own_environments.mountain_car import MountainCar
-from support.own_environments.noisy_pendulum import NoisyPendulum
-from support.own_environments.queue import Queue
-from support.own_environments.random_walk import RandomWalk
-from support.own_environments.robot import Robot
-from support.own_environments.slippery_grid import SlipperyGrid
-from support.own_environments.taxi import Taxi
-from support.own_environments.thermostat import Thermostat
-from support.own_environments.tic_tac_toe import TicTacToe
-from support.own_environments.twenty_one import TwentyOne
-from support.own_environments.windy_grid import WindyGrid
+from support.own_environments.access_control import AccessControl as AccessControl
+from support.own_environments.bandit import Bandit as Bandit
+from support.own_environments.cart_pole import CartPole as CartPole
+from support.own_environments.cliff import Cliff as Cliff
+from support.own_environments.elevator import Elevator as Elevator
+from support.own_environments.epidemic import Epidemic as Epidemic
+from support.own_environments.gambler import Gambler as Gambler
+from support.own_environments.inventory import Inventory as Inventory
+from support.own_environments.key_and_door import KeyAndDoor as KeyAndDoor
+from support.own_environments.mine_field import MineField as MineField
+from support.own_environments.mountain_car import MountainCar as MountainCar
+from support.own_environments.noisy_pendulum import NoisyPendulum as NoisyPendulum
+from support.own_environments.queue import Queue as Queue
+from support.own_environments.random_walk import RandomWalk as RandomWalk
+from support.own_environments.robot import Robot as Robot
+from support.own_environments.slippery_grid import SlipperyGrid as SlipperyGrid
+from support.own_environments.taxi import Taxi as Taxi
+from support.own_environments.thermostat import Thermostat as Thermostat
+from support.own_environments.tic_tac_toe import TicTacToe as TicTacToe
+from support.own_environments.twenty_one import TwentyOne as TwentyOne
+from support.own_environments.windy_grid import WindyGrid as WindyGrid
 
 ENVIRONMENTS: tuple[Any, ...] = (
     AccessControl,

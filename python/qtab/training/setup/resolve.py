@@ -13,6 +13,7 @@ from gymnasium.envs.registration import EnvSpec
 from qtab import _core, discretizers
 from qtab._utils.shown import shown
 from qtab.config import DEFAULTS, Config
+from qtab.config.choices import IN_PYTHON, INSISTING
 from qtab.config.config import replace_checked
 from qtab.config.merge import config_of, merge_layers, naming_preset
 from qtab.config.options import WITH_STATE_VALUES, n_tables
@@ -23,6 +24,7 @@ from qtab.discretizers import AssignedRows, Discretizer
 from qtab.envs.actions import Actions, choose_actions
 from qtab.envs.class_code import LIBRARY, is_of_library
 from qtab.envs.external.capsule import external_env
+from qtab.envs.functional import FunctionalEnv
 from qtab.envs.goals import UNLIMITED_MAX_EPISODE_STEPS
 from qtab.envs.matching import NotInRustError, changed_entry_code, entry_for_env, rust_unavailable, time_limit
 from qtab.envs.native import KnownTable, known_table, native_env
@@ -120,7 +122,9 @@ def _from_spec(env: str | EnvSpec, layers: tuple[Mapping[str, Any], ...]) -> _Re
     if entry is not None and changed_entry_code(spec) is not None:
         entry = None
     known = None
-    if entry is not None and config.backend != "gymnasium" and not asks_for_masks(config.action_mask):
+    if entry is not None and config.backend == "numba":
+        raise rust_unavailable("Rust implements it, without Numba", "numba")
+    if entry is not None and config.backend not in IN_PYTHON and not asks_for_masks(config.action_mask):
         known = known_table(spec, config.env_kwargs)
     made = _make(spec, config) if known is None else known
     if entry is None:
@@ -155,16 +159,20 @@ def _match(env: gym.Env, config: Config, *, is_made: bool) -> tuple[EnvEntry | _
     Raises:
         ValueError: if the backend is Rust, and Rust cannot step the environment.
     """
-    if config.backend == "gymnasium":
+    if config.backend in IN_PYTHON:
         return None, None
     try:
+        if config.backend == "numba" and not isinstance(env.unwrapped, FunctionalEnv):
+            raise NotInRustError("Numba compiles environments of the class qtab.FunctionalEnv", "derive from it")
         entry = external_env(env) or entry_for_env(env)
         if is_made or config.backend == "auto":
             _check_not_shown(env)
     except NotInRustError as error:
+        if config.backend == "numba":
+            raise rust_unavailable(f"{error}; {error.remedy}" if error.remedy else str(error), "numba") from None
         if config.backend == "rust":
             raise rust_unavailable(str(error)) from None
-        return None, f"{error}; {error.remedy}"
+        return None, f"{error}; {error.remedy}" if error.remedy else str(error)
     return entry, None
 
 
@@ -219,8 +227,8 @@ def _fill_defaults(request: _Request, owns_env: bool) -> ResolvedRun:
         masks = known_masks(config.action_mask, env, discretizer, len(actions))
     if in_rust and (masks is None or discretizer.reads_space):
         in_rust, python_reason = False, READ_IN_PYTHON if discretizer.reads_space else MASKS_BY_STEP
-        if config.backend == "rust":
-            raise rust_unavailable(python_reason)
+        if config.backend in INSISTING:
+            raise rust_unavailable(python_reason, config.backend)
     if masks is None:
         masks = observed_masks(config.action_mask, env)
     if not in_rust:
@@ -252,14 +260,14 @@ def _fill_defaults(request: _Request, owns_env: bool) -> ResolvedRun:
 def _environment(request: _Request, actions: Actions, owns_env: bool) -> tuple[Environment, str | None]:
     """Returns the environment for Rust if Rust can step it and the backend allows it; else for Python, and why."""
     entry, backend, reason = request.entry, request.config.backend, request.python_reason
-    if entry is not None and backend != "gymnasium":
+    if entry is not None and backend not in IN_PYTHON:
         try:
             if isinstance(entry, _core.ExternalEnv):
                 return NativeEnvironment(entry.native_env()), None
             return NativeEnvironment(native_env(entry.name, request.env.unwrapped, actions)), None
         except (TypeError, ValueError) as error:
-            if backend == "rust":
-                raise rust_unavailable(str(error)) from None
+            if backend in INSISTING:
+                raise rust_unavailable(str(error), backend) from None
             reason = str(error)
     return PythonEnvironment(request.env, actions, owns_env), reason
 
