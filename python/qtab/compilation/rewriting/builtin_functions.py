@@ -1,0 +1,252 @@
+"""Builtin functions."""
+
+import ast
+import builtins
+from collections.abc import Callable
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from qtab.compilation.rewriting.program import as_float, tuple_value
+from qtab.compilation.rewriting.values import (
+    BOOL,
+    FLOAT,
+    INT,
+    MIXED,
+    Array,
+    DictKind,
+    Scalar,
+    TupleKind,
+    Value,
+    constant,
+    in_words,
+    join,
+)
+
+if TYPE_CHECKING:
+    from qtab.compilation.rewriting.expressions import Expressions
+
+Handler = Callable[["Expressions", ast.Call, list[Value], dict[str, Value]], Value]
+
+
+def _one(scope: "Expressions", node: ast.Call, values: list[Value], named: dict[str, Value]) -> Value:
+    if len(values) != 1 or named:
+        raise scope.refuse(node, "this function with these arguments", "give one argument")
+    return values[0]
+
+
+def _convert(scope: "Expressions", node: ast.Call, values: list[Value], named: dict[str, Value], made: Any) -> Value:
+    value = _one(scope, node, values, named)
+    if value.is_fixed and not isinstance(value.fixed, np.ndarray):
+        return scope.folded(node, made, value.fixed)
+    value = scope.lift(value, node)
+    name = made.__name__
+    if not isinstance(value.kind, Scalar):
+        raise scope.refuse(node, f"{name} of {in_words(value.kind)}", "use an element of it")
+    kind = {int: INT, float: FLOAT, bool: BOOL}[made]
+    if made is int and value.kind in (FLOAT, MIXED):
+        scope.compiled.uses.add("h_int")
+        return Value(kind, f"h_int({value.code})", effects=value.effects)
+    if made is int and value.kind == INT:
+        return value
+    code = as_float(value) if made is float else f"{name}({value.code})"
+    return Value(kind, code, effects=value.effects)
+
+
+def _conversion(made: Any) -> Handler:
+    return lambda scope, node, values, named: _convert(scope, node, values, named, made)
+
+
+def _abs(scope: "Expressions", node: ast.Call, values: list[Value], named: dict[str, Value]) -> Value:
+    value = _one(scope, node, values, named)
+    if value.is_fixed:
+        return scope.folded(node, abs, value.fixed)
+    if value.kind in (INT, FLOAT, MIXED, Scalar("float32")):
+        return Value(value.kind, f"abs({value.code})", effects=value.effects)
+    if isinstance(value.kind, Array) and value.kind.dtype in ("int64", "float64", "float32"):
+        return Value(value.kind, f"np.abs({value.code})", fresh=True, effects=value.effects)
+    raise scope.refuse(node, f"abs of {in_words(value.kind)}", "use integers or floats")
+
+
+def _extreme(function: Any) -> Handler:
+    def handler(scope: "Expressions", node: ast.Call, values: list[Value], named: dict[str, Value]) -> Value:
+        from qtab.compilation.rewriting import containers
+
+        if named:
+            raise scope.refuse(node, "min or max with named arguments", "compare the numbers in a loop")
+        if len(values) == 1:
+            values = containers.elements(scope, node, values[0])
+        if all(value.is_fixed for value in values):
+            return scope.folded(node, function, *[[value.fixed for value in values]])
+        lifted = [scope.lift(value, node) for value in values]
+        kind: Any = lifted[0].kind
+        for value in lifted:
+            kind = join(kind, value.kind) if value.kind in (INT, FLOAT, MIXED) else None
+            if kind is None:
+                advice = "convert them to int or float"
+                raise scope.refuse(node, f"{function.__name__} with {in_words(value.kind)}", advice)
+        codes = [f"float({one.code})" if kind in (FLOAT, MIXED) and one.kind == INT else one.code for one in lifted]
+        effects = any(value.effects for value in lifted)
+        return Value(kind, f"{function.__name__}({', '.join(codes)})", effects=effects)
+
+    return handler
+
+
+def _len(scope: "Expressions", node: ast.Call, values: list[Value], named: dict[str, Value]) -> Value:
+    value = _one(scope, node, values, named)
+    if value.is_fixed:
+        return scope.folded(node, len, value.fixed)
+    if isinstance(value.kind, TupleKind | DictKind):
+        return constant(len(value.kind.items))
+    if isinstance(value.kind, Array):
+        shape = value.kind.shape
+        return constant(shape[0]) if shape is not None else Value(INT, f"{value.code}.shape[0]")
+    raise scope.refuse(node, f"len of {in_words(value.kind)}", "use a tuple or an array")
+
+
+def _sum(scope: "Expressions", node: ast.Call, values: list[Value], named: dict[str, Value]) -> Value:
+    from qtab.compilation.rewriting import containers
+
+    value = _one(scope, node, values, named)
+    parts = containers.elements(scope, node, value)
+    if all(part.is_fixed for part in parts):
+        return scope.folded(node, sum, [part.fixed for part in parts])
+    lifted = [scope.lift(part, node) for part in parts]
+    wrong = next((part for part in lifted if part.kind not in (INT, BOOL)), None)
+    if wrong is not None:
+        floats = wrong.kind in (FLOAT, MIXED)
+        advice = "add them with + or in a loop" if floats else "convert each: int(...)"
+        raise scope.refuse(node, f"the sum of numbers, one of which is {in_words(wrong.kind)}", advice)
+    code = " + ".join(f"int({part.code})" for part in lifted)
+    return Value(INT, f"({code})", effects=any(part.effects for part in lifted))
+
+
+def _any_or_all(symbol: str, empty: bool) -> Handler:
+    def handler(scope: "Expressions", node: ast.Call, values: list[Value], named: dict[str, Value]) -> Value:
+        from qtab.compilation.rewriting import containers
+
+        value = _one(scope, node, values, named)
+        codes = []
+        for part in containers.elements(scope, node, value):
+            if part.is_fixed:
+                if bool(part.fixed) != empty:
+                    codes.append(repr(not empty))
+                    break
+                continue
+            if not isinstance(part.kind, Scalar):
+                raise scope.refuse(node, f"the truth of {in_words(part.kind)}", "use booleans")
+            codes.append(f"bool({part.code})")
+        if not codes:
+            return constant(empty)
+        return Value(BOOL, "(" + f" {symbol} ".join(codes) + ")")
+
+    return handler
+
+
+def _sequence(made: Any) -> Handler:
+    def handler(scope: "Expressions", node: ast.Call, values: list[Value], named: dict[str, Value]) -> Value:
+        from qtab.compilation.rewriting import containers
+
+        if not values:
+            return constant(made())
+        value = _one(scope, node, values, named)
+        if value.is_fixed and not isinstance(value.fixed, np.ndarray):
+            return scope.folded(node, made, value.fixed)
+        value = scope.lift(value, node)
+        if isinstance(value.kind, Array):
+            return containers.as_tuple(scope, node, value)
+        if isinstance(value.kind, TupleKind):
+            return replace(value, fresh=True)
+        raise scope.refuse(node, f"{made.__name__} of {in_words(value.kind)}", "use tuples and arrays")
+
+    return handler
+
+
+def _dict(scope: "Expressions", node: ast.Call, values: list[Value], named: dict[str, Value]) -> Value:
+    if values and not (len(values) == 1 and values[0].is_fixed and all(one.is_fixed for one in named.values())):
+        raise scope.refuse(node, "dict with values that are known at run time", "write its keys and values in {...}")
+    if all(one.is_fixed for one in named.values()):
+        plain = {name: value.fixed for name, value in named.items()}
+        return scope.folded(node, lambda *given: dict(*given, **plain), *[one.fixed for one in values])
+    parts = tuple(scope.lift(one, node) for one in named.values())
+    made = tuple_value(parts)
+    return Value(DictKind(tuple(named), made.kind.items), made.code, parts=parts, effects=made.effects)
+
+
+def _folded(function: Any) -> Handler:
+    """Returns a handler for functions that are called with constants only."""
+
+    def handler(scope: "Expressions", node: ast.Call, values: list[Value], named: dict[str, Value]) -> Value:
+        if all(value.is_fixed for value in (*values, *named.values())):
+            plain = {name: value.fixed for name, value in named.items()}
+            result = scope.folded(node, lambda *given: function(*given, **plain), *[value.fixed for value in values])
+            lazy = function in (enumerate, zip, reversed, map, filter)
+            return constant(list(result.fixed)) if lazy else result
+        if function in (enumerate, zip, reversed):
+            return _lazy(scope, node, function, values)
+        if function is range:
+            raise scope.refuse(node, "range outside of a for loop", "write a for loop")
+        name = function.__name__
+        raise scope.refuse(node, f"{name} with values that are known at run time", "use numbers and comparisons")
+
+    return handler
+
+
+def _lazy(scope: "Expressions", node: ast.Call, function: Any, values: list[Value]) -> Value:
+    from qtab.compilation.rewriting import containers
+
+    many = [containers.elements(scope, node, value) for value in values[:1] + (values[1:] if function is zip else [])]
+    if function is reversed:
+        return scope.tuple_of(many[0][::-1], node)
+    rows = [[constant(i), one] for i, one in enumerate(many[0])] if function is enumerate else [
+        list(row) for row in zip(*many, strict=False)
+    ]  # fmt: skip
+    lifted = [tuple_value(tuple(scope.lift(one, node) for one in row)) for row in rows]
+    return tuple_value(tuple(lifted))
+
+
+def _round(scope: "Expressions", node: ast.Call, values: list[Value], named: dict[str, Value]) -> Value:
+    if all(value.is_fixed for value in (*values, *named.values())):
+        return scope.folded(node, lambda *given: round(*given), *[one.fixed for one in (*values, *named.values())])
+    if len(values) == 1 and not named and values[0].kind == INT:
+        return values[0]
+    if len(values) == 1 and not named and values[0].kind == FLOAT:
+        scope.compiled.uses.add("h_round")
+        return Value(INT, f"h_round({values[0].code})", effects=values[0].effects)
+    raise scope.refuse(
+        node, "round to digits may round differently", "leave out round, or round in units: round(x * 100)"
+    )
+
+
+def _isinstance(scope: "Expressions", node: ast.Call, values: list[Value], named: dict[str, Value]) -> Value:
+    if len(values) == 2 and not named and values[0].is_fixed and values[1].is_fixed:
+        return scope.folded(node, isinstance, values[0].fixed, values[1].fixed)
+    if len(values) == 2 and values[1].is_fixed and values[0].kind == INT:
+        kinds = values[1].fixed if isinstance(values[1].fixed, tuple) else (values[1].fixed,)
+        if any(kind in (int, np.integer) for kind in kinds) and int in kinds and np.integer in kinds:
+            return constant(True)
+    raise scope.refuse(node, "the type of a value is tested", "convert it instead: int(...) or float(...)")
+
+
+TABLE: dict[Any, Handler] = {
+    int: _conversion(int),
+    float: _conversion(float),
+    bool: _conversion(bool),
+    abs: _abs,
+    min: _extreme(min),
+    max: _extreme(max),
+    len: _len,
+    sum: _sum,
+    any: _any_or_all("or", False),
+    all: _any_or_all("and", True),
+    tuple: _sequence(tuple),
+    list: _sequence(list),
+    round: _round,
+    isinstance: _isinstance,
+    dict: _dict,
+    **{getattr(builtins, name): _folded(getattr(builtins, name)) for name in
+       ("enumerate", "zip", "reversed", "range", "sorted", "set", "frozenset", "divmod", "pow", "str", "repr",
+        "getattr", "hasattr", "type", "map", "filter")},
+}  # fmt: skip
+"""The functions by object."""

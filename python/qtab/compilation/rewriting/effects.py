@@ -1,0 +1,139 @@
+"""Expressions that are left out, such as info dicts: they must have no effects."""
+
+import ast
+import builtins
+import inspect
+from types import FunctionType, ModuleType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from qtab.compilation.not_compilable import NotCompilable
+from qtab.compilation.rewriting.attributes import MISSING
+from qtab.compilation.rewriting.sources import source_of
+
+if TYPE_CHECKING:
+    from qtab.compilation.rewriting.expressions import Expressions
+
+PURE_BUILTINS = (
+    *("abs", "all", "any", "bool", "dict", "divmod", "enumerate", "float", "frozenset", "getattr", "hasattr", "int"),
+    *("isinstance", "len", "list", "max", "min", "pow", "range", "repr", "reversed", "round", "set", "sorted", "str"),
+    *("sum", "tuple", "type", "zip", "map", "filter"),
+)
+PURE_METHODS = (
+    *("all", "any", "argmax", "argmin", "astype", "copy", "count", "flatten", "format", "get", "index", "item"),
+    *("items", "join", "keys", "lower", "max", "mean", "min", "ravel", "reshape", "round", "std", "sum", "title"),
+    *("tobytes", "tolist", "upper", "values"),
+)
+LOCAL_METHODS = ("add", "append", "extend", "insert", "pop", "sort", "update")
+"""Methods that change a list or a dict that the function made."""
+ADVICE = "compute it without drawing or changing attributes, or leave it out"
+
+
+def check_pure(scope: "Expressions", node: ast.AST) -> None:
+    """Refuses an expression that is left out, such as an info dict, if evaluating it may have effects."""
+    found = _effect(scope, node, scope.source.function, scope.source.node, set())
+    if found is not None:
+        raise scope.refuse(node, f"this is left out in compiled code, but {found}", ADVICE)
+
+
+def _effect(
+    scope: "Expressions", node: ast.AST, function: FunctionType, definition: ast.FunctionDef, seen: set[Any]
+) -> str | None:
+    """Returns the effect of an expression or statement; None if there is none."""
+    own = definition.args.args[0].arg if definition.args.args else None
+    parameters = {one.arg for one in (*definition.args.args, *definition.args.kwonlyargs)}
+    for one in ast.walk(node):
+        if isinstance(
+            one, ast.NamedExpr | ast.Yield | ast.YieldFrom | ast.Await | ast.Global | ast.Nonlocal | ast.Delete
+        ):
+            return f"it contains {type(one).__name__}"
+        if isinstance(one, ast.Attribute) and one.attr in ("np_random", "_np_random"):
+            return "it draws random numbers"
+        if isinstance(one, ast.Attribute | ast.Subscript) and isinstance(one.ctx, ast.Store):
+            base = _root(one)
+            if isinstance(one, ast.Attribute) or base is None or base in parameters or base == own:
+                return f"it assigns {ast.unparse(one)}"
+        if isinstance(one, ast.Attribute) and isinstance(one.value, ast.Name) and one.value.id == own:
+            member, _ = scope.program.attributes.find(one.attr)
+            if isinstance(member, property):
+                inner = _of_function(scope, member.fget, seen)
+                if inner is not None:
+                    return inner
+        if isinstance(one, ast.Call):
+            found = _of_call(scope, one, function, own, parameters, seen)
+            if found is not None:
+                return found
+    return None
+
+
+def _root(node: ast.expr) -> str | None:
+    while isinstance(node, ast.Attribute | ast.Subscript):
+        node = node.value
+    return node.id if isinstance(node, ast.Name) else None
+
+
+def _of_function(scope: "Expressions", function: Any, seen: set[Any]) -> str | None:
+    if not isinstance(function, FunctionType) or hasattr(function, "__wrapped__"):
+        return f"it calls {getattr(function, '__name__', 'a function')}, whose effects are unknown"
+    if function in seen:
+        return None
+    try:
+        definition = source_of(function).node
+    except NotCompilable:
+        return f"it calls {function.__name__}, whose source code is not available"
+    for statement in definition.body:
+        found = _effect(scope, statement, function, definition, seen | {function})
+        if found is not None:
+            return found
+    return None
+
+
+def _of_call(
+    scope: "Expressions", node: ast.Call, function: FunctionType, own: str | None, parameters: set[str], seen: set[Any]
+) -> str | None:
+    callee = node.func
+    shown = ast.unparse(callee)
+    if isinstance(callee, ast.Attribute) and isinstance(callee.value, ast.Name) and callee.value.id == own:
+        member, _ = scope.program.attributes.find(callee.attr)
+        return _of_function(scope, getattr(member, "__func__", member), seen)
+    found = _resolved(callee, function)
+    if isinstance(callee, ast.Attribute) and found is MISSING:
+        owner = _resolved(callee.value, function)
+        simple = owner is MISSING or isinstance(owner, np.ndarray | str | dict | list | tuple)
+        if simple and callee.attr in PURE_METHODS:
+            return None
+        root = _root(callee)
+        if root is not None and callee.attr in LOCAL_METHODS and root not in parameters and owner is MISSING:
+            return None
+        return f"it calls {shown}, whose effects are unknown"
+    if isinstance(found, FunctionType) and not _is_numpy(found):
+        return _of_function(scope, found, seen)
+    name = getattr(found, "__name__", "")
+    if name in PURE_BUILTINS and getattr(builtins, name) is found:
+        return None
+    if _is_numpy(found) or getattr(found, "__module__", None) == "math":
+        return None
+    return f"it calls {shown}, whose effects are unknown"
+
+
+def _is_numpy(value: Any) -> bool:
+    module = str(getattr(value, "__module__", None) or "")
+    numpy = isinstance(value, np.ufunc) or module.partition(".")[0] == "numpy"
+    bound = getattr(value, "__self__", None)
+    return numpy and "random" not in module and not isinstance(bound, np.random.Generator | np.random.RandomState)
+
+
+def _resolved(node: ast.expr, function: FunctionType) -> Any:
+    """Returns the constant that a name or a dotted name stands for; ``MISSING`` if it is none."""
+    if isinstance(node, ast.Name):
+        if node.id in function.__code__.co_varnames:
+            return MISSING
+        return inspect.getclosurevars(function).nonlocals.get(
+            node.id, function.__globals__.get(node.id, getattr(builtins, node.id, MISSING))
+        )
+    if isinstance(node, ast.Attribute):
+        owner = _resolved(node.value, function)
+        if isinstance(owner, ModuleType | type):
+            return getattr(owner, node.attr, MISSING)
+    return MISSING

@@ -1,0 +1,152 @@
+"""The user's functions as functions of the program, one for each combination of constants and kinds."""
+
+import ast
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from qtab.compilation.rewriting import specials
+from qtab.compilation.rewriting.program import Compiled, Program
+from qtab.compilation.rewriting.scope import Scope
+from qtab.compilation.rewriting.sources import Source
+from qtab.compilation.rewriting.statements import Statements
+from qtab.compilation.rewriting.values import Array, InfoKind, TupleKind, Value, constant
+from qtab.compilation.rewriting.variables import kept
+
+if TYPE_CHECKING:
+    from qtab.compilation.rewriting.expressions import Expressions
+
+MAX_ROUNDS = 20
+"""How often a function is rewritten until the kinds of its variables stay the same."""
+
+
+def called(
+    scope: "Expressions", node: ast.AST, source: Source, owner: type | None, parameters: dict[str, Value]
+) -> Value:
+    """Returns the value of a call of a user's function."""
+    program = scope.program
+    given = {name: _argument(scope, node, value) for name, value in parameters.items()}
+    compiled = compiled_function(program, source, owner, given, scope, node)
+    if compiled.draws and program.phase == "mask":
+        raise scope.refuse(node, "an action mask draws random numbers", "draw in step, and keep the result in self")
+    scope.compiled.uses.add(compiled.name)
+    scope.compiled.draws |= compiled.draws
+    scope.compiled.changes |= compiled.changes
+    result = compiled.result
+    if compiled.trivial and result.is_fixed:
+        return constant(result.fixed)
+    codes = [value.code for value in given.values() if not value.is_fixed and not isinstance(value.kind, InfoKind)]
+    first = ["record", "rng"] if compiled.draws else ["record"]
+    code = f"{compiled.name}({', '.join(first + codes)})"
+    effects = compiled.draws or compiled.changes
+    if not result.is_fixed:
+        return Value(result.kind, code, fresh=isinstance(result.kind, Array), effects=effects)
+    if result.fixed is None:
+        return Value(None, code, fixed=None, effects=True)
+    lifted = scope.lift(constant(result.fixed), node)
+    return Value(lifted.kind, f"({code}, {lifted.code})[1]", fresh=True, effects=True)
+
+
+def _argument(scope: "Expressions", node: ast.AST, value: Value) -> Value:
+    if value.is_fixed and value.kind is None:
+        if value.code:
+            raise scope.refuse(node, "a function without a result is an argument", "call it in a statement")
+        return value
+    if value.is_fixed:
+        return constant(value.fixed)
+    return replace(kept(value), action=value.action)
+
+
+def compiled_function(
+    program: Program,
+    source: Source,
+    owner: type | None,
+    parameters: dict[str, Value],
+    scope: "Expressions | None" = None,
+    node: ast.AST | None = None,
+) -> Compiled:
+    """Returns the function of the program for a user's function."""
+    key = program.key(source.function, owner, parameters)
+    if key in program.functions:
+        found = program.functions[key]
+        if found is None:
+            where = Scope(program, source, owner, parameters, Compiled("", Value()), "") if scope is None else scope
+            raise where.refuse(node, f"{source.node.name} calls itself", "write a loop")
+        return found
+    program.functions[key] = None
+    compiled = program.named[program.new_name(source.node.name)]
+    compiled.file = source.file
+    depth = program.depth
+    name = source.node.name
+    first = next(iter(parameters.values()), None)
+    is_own = owner is not None and first is not None and first.fixed is specials.SELF
+    role = name if is_own and name in ("reset", "step") else ""
+    rewriter = Statements(program, source, owner, parameters, compiled, role)
+    for _ in range(MAX_ROUNDS):
+        _rewrite(rewriter, parameters)
+        if not rewriter.unstable:
+            break
+    else:
+        raise rewriter.refuse(None, f"the types of the variables in {name} are not clear", "use one type a variable")
+    program.depth = depth
+    _finish(rewriter, parameters)
+    program.functions[key] = compiled
+    return compiled
+
+
+def _rewrite(rewriter: Statements, parameters: dict[str, Value]) -> None:
+    rewriter.unstable = False
+    rewriter.lines, rewriter.indent, rewriter.depth, rewriter.temporaries = [], 1, 0, 0
+    rewriter.returns = []
+    if rewriter.role:
+        rewriter.program.infos.pop(rewriter.role, None)
+    rewriter.actions = {name for name, value in parameters.items() if value.action}
+    if any(isinstance(one, ast.For | ast.While) for one in ast.walk(rewriter.source.node)):
+        rewriter.actions = {name for name in rewriter.actions if rewriter.names.counts[name] == 1}
+    rewriter.fixed, rewriter.versions = {}, {}
+    for name, value in parameters.items():
+        if value.is_fixed and name not in rewriter.dynamic:
+            rewriter.fixed[name] = constant(value.fixed)
+        elif value.is_fixed:
+            lifted = rewriter.lift(constant(value.fixed), rewriter.source.node)
+            rewriter.note_kind(name, lifted.kind, rewriter.source.node)
+            rewriter.emit(f"v_{name} = {lifted.code}")
+        else:
+            rewriter.note_kind(name, value.kind, rewriter.source.node)
+            rewriter.owned[rewriter.version(name)] = False
+    rewriter.program.reads.note(
+        rewriter.function, "__code__", rewriter.function.__qualname__, _reader(rewriter.function), rewriter.function
+    )
+    ended = rewriter.block(rewriter.source.node.body)
+    if not ended:
+        rewriter.returns.append((constant(None), rewriter.source.node.body[-1], 0))
+
+
+def _reader(function: Any) -> Any:
+    return lambda: function
+
+
+def _finish(rewriter: Statements, parameters: dict[str, Value]) -> None:
+    """Writes the head of a function, once it is known what it uses."""
+    compiled = rewriter.compiled
+    values = [value for value, _, _ in rewriter.returns]
+    fixed_none = [value.is_fixed and value.fixed is None for value in values]
+    if any(fixed_none) and not all(fixed_none):
+        node = next(node for value, node, _ in rewriter.returns if value.is_fixed and value.fixed is None)
+        raise rewriter.refuse(
+            node, "the function returns None here, and a value elsewhere", "return a value everywhere"
+        )
+    compiled.result = rewriter.result()
+    body = rewriter.lines
+    compiled.trivial = [line.strip() for line, _ in body] == ["return"]
+    if not body:
+        compiled.trivial = True
+        body = [("    return", 0)]
+    names = [
+        f"v_{name}" for name, value in parameters.items() if not value.is_fixed and not isinstance(value.kind, InfoKind)
+    ]
+    first = ["record", "rng"] if compiled.draws else ["record"]
+    line = rewriter.source.node.lineno
+    compiled.lines = [(f"def {compiled.name}({', '.join(first + names)}):", line), *body]
+
+
+__all__ = ["TupleKind", "called", "compiled_function"]

@@ -1,0 +1,94 @@
+"""The action mask, from the method ``action_masks()`` or from the info dict."""
+
+import ast
+from types import FunctionType
+from typing import Any
+
+from qtab.compilation.not_compilable import NotCompilable
+from qtab.compilation.rewriting import specials
+from qtab.compilation.rewriting.functions import compiled_function
+from qtab.compilation.rewriting.program import Compiled, Program
+from qtab.compilation.rewriting.sources import source_of
+from qtab.compilation.rewriting.statements import Statements
+from qtab.compilation.rewriting.values import Array, Value, constant, in_words
+
+KEY = "action_mask"
+
+
+def add_action_mask(program: Program) -> bool:
+    """Adds the function ``action_mask(record)``; returns False for a class without masks.
+
+    Raises:
+        NotCompilable: if the class has masks that are not a function of its attributes.
+    """
+    program.phase = "mask"
+    member, owner = program.attributes.find("action_masks")
+    if isinstance(member, FunctionType):
+        method = compiled_function(program, source_of(member), owner, {_self_name(member): constant(specials.SELF)})
+        _add(program, f"{method.name}(record)", method.result, {method.name}, method)
+        return True
+    found = {role: _mask_of(scope, node) for role, infos in program.infos.items() for scope, node in infos}
+    expressions = {role: mask for role, mask in found.items() if mask is not None}
+    if not expressions:
+        return False
+    scope, node = next(iter(expressions.values()))
+    advice = "write a method action_masks(self)"
+    if len({ast.dump(mask) for _, mask in expressions.values()}) > 1 or set(expressions) != {"reset", "step"}:
+        raise scope.refuse(node, "the action masks of reset and step are not the same expression", advice)
+    own = next(iter(scope.parameters))
+    if any(isinstance(one, ast.Name) and one.id in scope.names.counts and one.id != own for one in ast.walk(node)):
+        raise scope.refuse(node, "the action mask in the info dict depends on local variables", advice)
+    compiled = program.named[program.new_name("mask")]
+    compiled.file = scope.source.file
+    inner = Statements(program, scope.source, scope.owner, {own: constant(specials.SELF)}, compiled, "mask")
+    inner.fixed, inner.returns = {own: constant(specials.SELF)}, []
+    value = inner.lifted(node)
+    if compiled.changes or compiled.draws:
+        raise scope.refuse(node, "the action mask changes the state", advice)
+    code = value.code if value.fresh or value.raw else f"{value.code}.copy()"
+    compiled.lines = [(f"def {compiled.name}(record):", node.lineno), (f"    return {code}", node.lineno)]
+    _add(program, f"{compiled.name}(record)", value, {compiled.name}, compiled)
+    return True
+
+
+def _self_name(function: FunctionType) -> str:
+    return function.__code__.co_varnames[0]
+
+
+def _add(program: Program, code: str, result: Value, uses: set[str], compiled: Compiled) -> None:
+    kind: Any = result.kind
+    count = int(program.env.action_space.n)  # type: ignore[attr-defined]
+    if not isinstance(kind, Array) or kind.shape not in (None, (count,)) or kind.ndim != 1:
+        reason = f"the action mask is {in_words(kind) if kind is not None else 'not an array'}"
+        raise NotCompilable(reason, compiled.file, compiled.lines[0][1], f"return an array of {count} booleans")
+    if compiled.changes:
+        advice = "compute the mask without changing attributes"
+        raise NotCompilable("the action mask changes the state", compiled.file, compiled.lines[0][1], advice)
+    program.named["action_mask"] = Compiled(
+        "action_mask", Value(), [("def action_mask(record):", 0), (f"    return {code}", 0)], uses=uses
+    )
+
+
+def _mask_of(scope: Any, node: ast.expr, depth: int = 0) -> Any:
+    """Returns the expression of the action mask in an info dict, with its scope; None if there is none."""
+    if isinstance(node, ast.Dict):
+        for key, value in zip(node.keys, node.values, strict=True):
+            if isinstance(key, ast.Constant) and key.value == KEY:
+                return scope, value
+        return None
+    if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and depth < 3:
+        member, owner = scope.program.attributes.find(node.func.attr)
+        if isinstance(member, FunctionType) and isinstance(node.func.value, ast.Name):
+            source = source_of(member)
+            compiled = Compiled("info", Value(), file=source.file)
+            parameters = {_self_name(member): constant(specials.SELF)}
+            inner = Statements(scope.program, source, owner, parameters, compiled, "")
+            returned = [one.value for one in ast.walk(source.node) if isinstance(one, ast.Return)]
+            if len(returned) == 1 and returned[0] is not None:
+                return _mask_of(inner, returned[0], depth + 1)
+            member = None
+            node = source.node  # type: ignore[assignment]
+    if any(isinstance(one, ast.Constant) and one.value == KEY for one in ast.walk(scope.source.node)):
+        advice = "write a method action_masks(self)"
+        raise scope.refuse(node, "the action mask in the info dict is not found in a dict that is written out", advice)
+    return None

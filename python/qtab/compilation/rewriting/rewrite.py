@@ -1,0 +1,168 @@
+"""From an environment to functions over a record."""
+
+import copy
+from types import FunctionType
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from gymnasium import spaces
+
+from qtab.compilation.not_compilable import NotCompilable
+from qtab.compilation.rewriting import runtime, specials
+from qtab.compilation.rewriting.attributes import Attributes, Restart
+from qtab.compilation.rewriting.functions import called, compiled_function
+from qtab.compilation.rewriting.masks import add_action_mask
+from qtab.compilation.rewriting.observations import observation_code
+from qtab.compilation.rewriting.program import Compiled, Program, as_float
+from qtab.compilation.rewriting.rewritten import Rewritten
+from qtab.compilation.rewriting.sources import source_of
+from qtab.compilation.rewriting.values import INT, WIDE, Scalar, TupleKind, Value, constant, in_words
+
+MAX_ATTEMPTS = 200
+SPECIAL_METHODS = ("__getattr__", "__getattribute__", "__setattr__", "__delattr__")
+
+
+def rewrite(env: gym.Env) -> Rewritten:
+    """Returns an ordinary Gymnasium class as functions over a record of its attributes.
+
+    ``env`` is not changed: a copy of it is reset to see the types of its attributes.
+
+    Args:
+        env: The environment, without wrappers.
+
+    Raises:
+        NotCompilable: for what cannot be compiled, with the file, the line and what to write instead.
+    """
+    _check(env)
+    try:
+        twin = copy.deepcopy(env)
+        twin.reset(seed=0)
+    except Exception as error:
+        kind = type(error).__name__
+        raise NotCompilable(f"a copy of the environment cannot be reset ({kind}: {error})") from error
+    attributes = Attributes(env, twin)
+    for _ in range(MAX_ATTEMPTS):
+        try:
+            return _attempt(env, attributes)
+        except Restart:
+            continue
+        except RecursionError:
+            raise NotCompilable("the class is nested too deeply", advice="write smaller expressions") from None
+    raise NotCompilable("the types of the attributes are not clear", advice="give each attribute one type")
+
+
+def _check(env: gym.Env) -> None:
+    cls = type(env)
+    if isinstance(env, gym.Wrapper):
+        raise NotCompilable(f"{cls.__name__} is a wrapper", advice="pass the environment without this wrapper")
+    if not isinstance(env.action_space, spaces.Discrete):
+        space = type(env.action_space).__name__
+        raise NotCompilable(f"the action space is a {space}", advice="use a Discrete action space")
+    for base in cls.__mro__[: cls.__mro__.index(gym.Env)]:
+        for name in SPECIAL_METHODS:
+            if name in vars(base):
+                raise NotCompilable(f"{base.__name__} defines {name}", advice="use ordinary attributes")
+    for name in ("reset", "step"):
+        if name in getattr(env, "__dict__", {}):
+            raise NotCompilable(f"{name} was replaced on the object", advice="define it in the class")
+
+
+def _attempt(env: gym.Env, attributes: Attributes) -> Rewritten:
+    program = Program(env, attributes)
+    program.compile_call = called
+    for name in runtime.HELPERS:
+        program.named[name] = Compiled(name, Value())
+    reset, step = _method(program, "reset"), _method(program, "step")
+    _add_top(program, "reset", reset)
+    _add_top(program, "step", step)
+    draws = reset.draws or step.draws
+    if draws and not program.seeded:
+        file, line = reset.file, reset.lines[0][1]
+        reason = "the environment draws random numbers, but reset does not seed the generator"
+        raise NotCompilable(reason, file, line, "call super().reset(seed=seed) first in reset")
+    refusal, tops = "", ["reset", "step"]
+    try:
+        if add_action_mask(program):
+            tops.append("action_mask")
+    except NotCompilable as error:
+        refusal = str(error)
+    attributes.check_sharing()
+    source, lines = program.source(tops)
+    dtype, initial = attributes.record()
+    namespace: dict[str, Any] = {"__name__": "qtab_rewritten", "np": np, **runtime.HELPERS}
+    exec(compile(source, f"<{type(env).__name__}>", "exec"), namespace)  # noqa: S102
+    mask = namespace.get("action_mask")
+    return Rewritten(
+        namespace["reset"], namespace["step"], mask, refusal, dtype, initial, lines, source, namespace, program.reads
+    )
+
+
+def _method(program: Program, name: str) -> Compiled:
+    """Returns a method of the environment as a function of the program."""
+    program.phase = name
+    member, owner = program.attributes.find(name)
+    if not isinstance(member, FunctionType) or owner is gym.Env:
+        raise NotCompilable(f"{type(program.env).__name__} has no ordinary method {name}", advice=f"define {name}")
+    if hasattr(member, "__wrapped__"):
+        file, line = member.__code__.co_filename, member.__code__.co_firstlineno
+        raise NotCompilable(f"{name} is not an ordinary function", file, line, "remove its decorators")
+    source = source_of(member)
+    arguments = source.node.args
+    names = [one.arg for one in (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs)]
+    values: dict[str, Value] = {names[0]: constant(specials.SELF)}
+    for one in names[1:]:
+        if name == "step" and one == names[1]:
+            values[one] = Value(INT, f"v_{one}", action=True)
+        elif name == "reset" and one in ("seed", "options"):
+            values[one] = constant(specials.SEED if one == "seed" else None)
+        else:
+            values[one] = _default(source, one, name)
+    if arguments.vararg:
+        values[arguments.vararg.arg] = constant(())
+    if arguments.kwarg:
+        values[arguments.kwarg.arg] = constant({})
+    program.reads.note(owner, name, f"{type(program.env).__name__}.{name}", lambda: vars(owner)[name], member)
+    return compiled_function(program, source, owner, values)
+
+
+def _default(source: Any, parameter: str, method: str) -> Value:
+    import inspect
+
+    default = inspect.signature(source.function).parameters[parameter].default
+    if default is inspect.Parameter.empty:
+        advice = f"give {parameter} a default"
+        raise NotCompilable(f"{method} has a parameter without default", source.file, source.node.lineno, advice)
+    return constant(default)
+
+
+def _add_top(program: Program, name: str, method: Compiled) -> None:
+    """Adds the function of a method: it returns the observation and, for ``step``, the other results."""
+    kind = method.result.kind
+
+    def refuse(reason: str, advice: str) -> NotCompilable:
+        lines = [origin for line, origin in method.lines if line.strip().startswith("return") and origin]
+        return NotCompilable(reason, method.file, lines[-1] if lines else method.lines[0][1], advice)
+
+    length = 2 if name == "reset" else 5
+    if not isinstance(kind, TupleKind) or len(kind.items) != length:
+        what = "observation, info" if length == 2 else "observation, reward, terminated, truncated, info"
+        raise refuse(f"{name} returns something else", f"return {what}")
+    program.named[name] = Compiled(name, Value(), uses={method.name})
+    code = observation_code(program.env.observation_space, kind.items[0], "result[0]", refuse)
+    rng = ["rng"] if method.draws else []
+    if name == "reset":
+        call = f"{method.name}({', '.join(['record', *rng])})"
+        lines = ["def reset(record, rng):", f"    result = {call}", f"    return {code}"]
+    else:
+        for i, what in ((1, "reward"), (2, "terminated"), (3, "truncated")):
+            item = kind.items[i]
+            if not isinstance(item, Scalar) or (item not in WIDE and i > 1):
+                raise refuse(
+                    f"{what} is {in_words(item)}", "return a number" if i == 1 else "return a boolean: bool(...)"
+                )
+        call = f"{method.name}({', '.join(['record', *rng, 'action'])})"
+        reward = as_float(Value(kind.items[1], "result[1]"))
+        results = f"{code}, {reward}, bool(result[2]), bool(result[3])"
+        lines = ["def step(record, action, rng):", f"    result = {call}", f"    return {results}"]
+    program.named[name].lines = [(line, 0) for line in lines]

@@ -1,0 +1,74 @@
+"""The result of rewriting a class."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab.compilation.rewriting.reads import Reads
+
+
+@dataclass(frozen=True, eq=False)
+class Rewritten:
+    """A Gymnasium class as plain functions over a record of its numbers.
+
+    ``record`` is one element of a structured array of ``dtype``, and is changed in place; ``rng`` is a
+    ``numpy.random.Generator``. An exception means that the class would have raised one too, except that an integer may
+    have left its range, or an array may have changed its shape.
+    """
+
+    reset: Callable[..., Any]
+    """``reset(record, rng) -> observation``"""
+    step: Callable[..., Any]
+    """``step(record, action, rng) -> (observation, reward, terminated, truncated)``.
+
+    Actions count from ``action_space.start``, as in the class. Observations are numbers or arrays; those of Tuple and
+    Dict spaces are tuples in the order of the space."""
+    action_mask: Callable[..., Any] | None
+    """``action_mask(record) -> array of booleans or numbers``, from ``action_masks()`` or the info dict; None without
+    masks."""
+    mask_refusal: str
+    """Why there is no action mask although the class has one; empty otherwise."""
+    dtype: np.dtype[Any]
+    """The record: the attributes that steps and resets use and change."""
+    initial: NDArray[Any]
+    """(1,): the record before the first reset."""
+    lines: dict[int, tuple[str, int]]
+    """For each line of ``source`` the file and the line of the class."""
+    source: str
+    """The functions as a module, without imports except of NumPy and ``math``."""
+    namespace: dict[str, Any] = field(repr=False)
+    """The globals of the functions."""
+    reads: Reads = field(repr=False)
+
+    def changed(self) -> str | None:
+        """Returns the name of a constant that has changed since; None if the functions are still those of the class."""
+        return self.reads.changed()
+
+    def transformed(self, decorator: Callable[[Any], Any]) -> "Rewritten":
+        """Returns the same functions after a decorator, such as ``numba.njit``, was applied to all of them."""
+        namespace = dict(self.namespace)
+        exec(compile(self.source, "<rewritten>", "exec"), namespace)  # noqa: S102
+        for name, value in list(namespace.items()):
+            if name.startswith(("h_", "f_", "t_")) or name in ("reset", "step", "action_mask"):
+                namespace[name] = decorator(_with_globals(value, namespace))
+        mask = namespace.get("action_mask")
+        return Rewritten(
+            namespace["reset"],
+            namespace["step"],
+            mask,
+            self.mask_refusal,
+            self.dtype,
+            self.initial,
+            self.lines,
+            self.source,
+            namespace,
+            self.reads,
+        )
+
+
+def _with_globals(function: Any, namespace: dict[str, Any]) -> Any:
+    """Returns a function that looks up names in another namespace."""
+    return type(function)(function.__code__, namespace, function.__name__, function.__defaults__)

@@ -1,0 +1,141 @@
+"""Functions that compiled programs call, where compiled code differs from Python or lacks a check.
+
+They run in plain Python and under Numba, with the same results as the functions that they replace. Names start with
+``h_`` so that no name of a program can be the same.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+
+
+def h_clip(value: Any, low: Any, high: Any) -> Any:
+    """Does what ``np.clip`` does with numbers, also with zeros of either sign and with NaN."""
+    raised = value if (value != value or value > low) else low
+    return raised if (raised != raised or raised < high) else high
+
+
+def h_clip_array(values: Any, low: Any, high: Any) -> Any:
+    """``np.clip`` for an array of any shape, with numbers as bounds."""
+    clipped = values.copy()
+    flat = clipped.reshape(clipped.size)
+    for i in range(flat.size):
+        flat[i] = h_clip(flat[i], low, high)
+    return clipped
+
+
+def h_clip_arrays(values: Any, low: Any, high: Any) -> Any:
+    """``np.clip`` for an array of any shape, with contiguous arrays of its shape as bounds."""
+    clipped = values.copy()
+    flat, lows, highs = clipped.reshape(clipped.size), low.reshape(low.size), high.reshape(high.size)
+    for i in range(flat.size):
+        flat[i] = h_clip(flat[i], lows[i], highs[i])
+    return clipped
+
+
+def h_store(field: Any, values: Any) -> None:
+    """Assigns an array to an attribute; its shape must stay the same."""
+    if field.shape != values.shape:
+        raise ValueError
+    field[:] = values
+
+
+def h_index(key: Any, size: Any) -> Any:
+    """Returns the index of an element of a sequence, counted from the end if it is negative."""
+    index = key + size if key < 0 else key
+    if index < 0 or index >= size:
+        raise IndexError
+    return index
+
+
+def h_key(key: Any, size: Any) -> Any:
+    """Returns the key of a dict whose keys are 0 to size - 1."""
+    if key < 0 or key >= size:
+        raise KeyError
+    return key
+
+
+def h_choice(cumulative: Any, draw: Any) -> Any:
+    """Returns the index that ``Generator.choice`` draws with probabilities, given their cumulative sums."""
+    index = 0
+    while index < cumulative.size and cumulative[index] <= draw:
+        index += 1
+    return index
+
+
+def h_checked(argument: Any, result: Any) -> Any:
+    """Returns the result of a function of ``math``; raises an error where Python does."""
+    if result != result and argument == argument:
+        raise ValueError
+    if math.isinf(result) and not math.isinf(argument):
+        raise OverflowError
+    return result
+
+
+def h_within(value: Any, low: Any, high: Any) -> Any:
+    """Returns a number that is stored in an array of small integers; raises an error where NumPy does."""
+    if value < low or value > high:
+        raise OverflowError
+    return value
+
+
+def h_flag(value: Any) -> Any:
+    """Returns a number as a boolean; it must be 0 or 1."""
+    if value != 0 and value != 1:
+        raise ValueError
+    return value != 0
+
+
+def h_int(value: Any) -> Any:
+    """``int`` of a float; raises an error for NaN, infinity and numbers of more than 63 bits."""
+    if not (-9.2e18 < value < 9.2e18):
+        raise ValueError
+    return int(value)
+
+
+def h_floor(value: Any) -> Any:
+    """``math.floor``."""
+    return h_int(np.floor(value))
+
+
+def h_ceil(value: Any) -> Any:
+    """``math.ceil``."""
+    return h_int(np.ceil(value))
+
+
+def h_trunc(value: Any) -> Any:
+    """``math.trunc``."""
+    return h_int(value)
+
+
+def h_round(value: Any) -> Any:
+    """``round`` of a float to an integer."""
+    return h_int(np.rint(value))
+
+
+def h_equal(one: Any, other: Any) -> Any:
+    """``np.array_equal``."""
+    return one.shape == other.shape and np.all(one == other)
+
+
+def h_argmax(values: Any) -> Any:
+    """``np.argmax`` of a vector of integers or booleans."""
+    best = 0
+    for i in range(1, values.size):
+        if values[i] > values[best]:
+            best = i
+    return best
+
+
+def h_argmin(values: Any) -> Any:
+    """``np.argmin`` of a vector of integers or booleans."""
+    best = 0
+    for i in range(1, values.size):
+        if values[i] < values[best]:
+            best = i
+    return best
+
+
+HELPERS = {name: value for name, value in list(globals().items()) if name.startswith("h_")}
+"""All of them by name."""

@@ -1,0 +1,153 @@
+"""What a function's syntax tells before it is rewritten: its local names, and how they are used."""
+
+import ast
+from collections import Counter
+from collections.abc import Iterator
+from functools import cached_property
+
+from qtab.compilation.rewriting.sources import Source
+
+LOOPS = (ast.For, ast.While)
+CHANGING = (
+    *("add", "append", "appendleft", "clear", "discard", "extend", "fill", "insert", "pop", "popleft", "put"),
+    *("remove", "resize", "reverse", "setdefault", "sort", "update"),
+)
+"""The methods that change a list, a dict, a set or an array."""
+
+
+class Names:
+    """The local names of a function."""
+
+    def __init__(self, source: Source) -> None:
+        self.node = source.node
+        arguments = source.node.args
+        self.parameters = [one.arg for one in (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs)]
+        stored = [one for one in self._walk() if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)]
+        imported = [
+            alias for one in self._walk() if isinstance(one, ast.Import | ast.ImportFrom) for alias in one.names
+        ]
+        names = [one.id for one in stored] + [(alias.asname or alias.name.partition(".")[0]) for alias in imported]
+        self.counts = Counter([*self.parameters, *names])
+        augmented = {
+            one.target.id for one in self._walk() if isinstance(one, ast.AugAssign) and isinstance(one.target, ast.Name)
+        }
+        in_loops = {
+            one.id
+            for loop in self._walk()
+            if isinstance(loop, LOOPS)
+            for one in ast.walk(loop)
+            if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)
+        }
+        self.single = {name for name, count in self.counts.items() if count == 1} - augmented - in_loops
+        """The names that are bound once, outside of loops: they may hold a constant."""
+
+    def _walk(self) -> Iterator[ast.AST]:
+        for statement in self.node.body:
+            yield from ast.walk(statement)
+
+    def is_local(self, name: str) -> bool:
+        """Returns whether a name is a parameter or assigned in the function."""
+        return name in self.counts
+
+    def is_changed_in_place(self, name: str) -> bool:
+        """Returns whether the elements of a local array are assigned."""
+        return name in self._mutations
+
+    @cached_property
+    def _mutations(self) -> dict[str, list[int]]:
+        found: dict[str, list[int]] = {}
+        for one in self._walk():
+            targets: list[ast.expr] = []
+            if isinstance(one, ast.Assign):
+                targets = one.targets
+            elif isinstance(one, ast.AugAssign):
+                targets = [one.target]
+            elif isinstance(one, ast.Call) and isinstance(one.func, ast.Attribute) and one.func.attr in CHANGING:
+                targets = [one.func]
+            for target in targets:
+                base: ast.expr = target
+                while isinstance(base, ast.Subscript | ast.Attribute):
+                    base = base.value
+                direct = isinstance(target, ast.Name) and not isinstance(one, ast.AugAssign)
+                if isinstance(base, ast.Name) and not direct:
+                    found.setdefault(base.id, []).append(one.lineno)  # type: ignore[attr-defined]
+        return found
+
+    def shared_before_change(self, name: str) -> bool:
+        """Returns whether another name may refer to a local array when its elements are assigned."""
+        changes = self._mutations.get(name, [])
+        if name in self.parameters:
+            return True
+        shared = list(self._escapes(name))
+        if not changes or not shared:
+            return False
+        if any(isinstance(one, LOOPS) for one in self._walk()):
+            return True
+        return min(shared) < max(changes)
+
+    def _escapes(self, name: str) -> Iterator[int]:
+        for one in self._walk():
+            if isinstance(one, ast.Assign | ast.AnnAssign) and one.value is not None:
+                if any(_is_name(part, name) for part in _parts(one.value)):
+                    yield one.lineno
+            elif isinstance(one, ast.Call) and not _of_library(one.func):
+                if any(_is_name(part, name) for value in one.args for part in _parts(value)):
+                    yield one.lineno
+                if any(_is_name(keyword.value, name) for keyword in one.keywords):
+                    yield one.lineno
+
+
+def _is_name(node: ast.AST, name: str) -> bool:
+    return isinstance(node, ast.Name) and node.id == name
+
+
+def _parts(node: ast.expr) -> Iterator[ast.expr]:
+    """Yields an expression, or the parts of those that keep a reference to them; views keep one to the array."""
+    if isinstance(node, ast.Tuple | ast.List):
+        for part in node.elts:
+            yield from _parts(part)
+    elif isinstance(node, ast.Dict):
+        for part in node.values:
+            yield from _parts(part)
+    elif isinstance(node, ast.IfExp):
+        yield from _parts(node.body)
+        yield from _parts(node.orelse)
+    elif isinstance(node, (ast.Subscript, ast.Starred)):
+        yield from _parts(node.value)
+    else:
+        yield node
+
+
+def _of_library(function: ast.expr) -> bool:
+    """Returns whether a called function is a builtin, or has the prefix of NumPy or of ``math``."""
+    if isinstance(function, ast.Attribute):
+        return isinstance(function.value, ast.Name) and function.value.id in ("np", "numpy", "math")
+    return isinstance(function, ast.Name) and function.id in ("len", "int", "float", "bool", "abs", "min", "max", "sum")
+
+
+def calls_own_functions(node: ast.AST) -> bool:
+    """Returns whether a statement calls something that may change the state: anything but NumPy, ``math``, builtins."""
+    return any(isinstance(one, ast.Call) and not _of_library(one.func) for one in ast.walk(node))
+
+
+def info_names(node: ast.FunctionDef) -> set[str]:
+    """Returns the names of the info dicts that ``reset`` or ``step`` returns last."""
+    found = set()
+    for one in ast.walk(node):
+        if isinstance(one, ast.Return) and isinstance(one.value, ast.Tuple) and len(one.value.elts) in (2, 5):
+            last = one.value.elts[-1]
+            if isinstance(last, ast.Name):
+                found.add(last.id)
+    return found
+
+
+def leaves_loop(body: list[ast.stmt]) -> bool:
+    """Returns whether statements in the body of a loop break or continue this loop."""
+    for statement in body:
+        if isinstance(statement, ast.Break | ast.Continue):
+            return True
+        if not isinstance(statement, LOOPS):
+            for inner in ("body", "orelse"):
+                if leaves_loop(getattr(statement, inner, [])):
+                    return True
+    return False

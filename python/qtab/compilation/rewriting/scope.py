@@ -1,0 +1,132 @@
+"""The names of a function that is rewritten, and its errors."""
+
+import ast
+from types import FunctionType
+
+from qtab.compilation.not_compilable import NotCompilable
+from qtab.compilation.rewriting.program import Compiled, Program
+from qtab.compilation.rewriting.scan import Names
+from qtab.compilation.rewriting.sources import Source
+from qtab.compilation.rewriting.values import INFO, Array, Kind, Value, in_words, join
+
+MAX_SHOWN = 90
+
+
+class Scope:
+    """The state of rewriting one function.
+
+    Args:
+        program: The program that the function becomes a part of.
+        source: The function.
+        owner: The class that defines it; None for a function of a module.
+        parameters: The value of each parameter.
+        compiled: The function in the program.
+        role: ``reset``, ``step`` or ``mask`` if it is that method of the environment, else empty.
+    """
+
+    def __init__(
+        self,
+        program: Program,
+        source: Source,
+        owner: type | None,
+        parameters: dict[str, Value],
+        compiled: Compiled,
+        role: str,
+    ) -> None:
+        self.program, self.source, self.owner, self.role = program, source, owner, role
+        self.compiled = compiled
+        self.names = Names(source)
+        self.parameters = parameters
+        self.kinds: dict[str, Kind] = {}
+        self.fixed: dict[str, Value] = {}
+        self.versions: dict[str, str] = {}
+        self.owned: dict[str, bool] = {}
+        """Whether each local array was made by the function, so that no other name refers to it."""
+        self.dynamic: set[str] = set()
+        """The local names that cannot hold constants, as branches assign them."""
+        self.actions: set[str] = set()
+        """The names that hold the action that ``step`` was given."""
+        self.lines: list[tuple[str, int]] = []
+        self.indent = 1
+        self.depth = 0
+        """How many branches and loops that are decided at run time are around the statement."""
+        self.temporaries = 0
+        self.unstable = False
+        self.copies_state = False
+        """Whether arrays of the record are copied where they are read, as the statement may change them."""
+        self.is_shared = False
+        """Whether the value that is assigned may be an object with another name."""
+
+    @property
+    def function(self) -> FunctionType:
+        """The function."""
+        return self.source.function
+
+    def refuse(self, node: ast.AST | None, reason: str, advice: str) -> NotCompilable:
+        """Returns the error for code that cannot be compiled."""
+        if node is None or not hasattr(node, "lineno"):
+            node = self.source.node
+            return NotCompilable(reason, self.source.file, node.lineno, advice)
+        text = ast.unparse(node).splitlines()[0]
+        shown = text if len(text) <= MAX_SHOWN else text[: MAX_SHOWN - 3] + "..."
+        return NotCompilable(f"{reason} in `{shown}`", self.source.file, node.lineno, advice)
+
+    def local(self, name: str) -> Value:
+        """Returns a local variable."""
+        version = self.version(name)
+        return Value(self.kinds[version], version, action=name in self.actions)
+
+    def version(self, name: str) -> str:
+        """Returns the variable of the program that holds a local variable now."""
+        return self.versions.get(name, f"v_{name}")
+
+    def new_version(self, name: str, kind: Kind) -> None:
+        """Uses another variable of the program for a local variable that changes its type between statements."""
+        before = self.kinds.get(self.version(name))
+        if before is not None and before != kind and self.depth == 0:
+            count = int(self.version(name).partition("_")[0][1:] or 0) + 1
+            self.versions[name] = f"v{count}_{name}"
+
+    def note_kind(self, name: str, kind: Kind, node: ast.AST) -> None:
+        """Notes the kind of a value that is assigned to a local variable."""
+        version = self.version(name)
+        before = self.kinds.get(version)
+        if before is None:
+            self.kinds[version] = kind
+            return
+        joined = join(before, kind)
+        if joined is None:
+            reason = f"the variable {name} is {in_words(before)}, and later {in_words(kind)}"
+            raise self.refuse(node, reason, "use one variable for each type")
+        if joined != before:
+            self.kinds[version] = joined
+            self.unstable = True
+
+    def mark_array(self, name: str, value: Value) -> None:
+        """Notes whether an array that is assigned to a local variable has no other name."""
+        if isinstance(value.kind, Array):
+            version = self.version(name)
+            self.owned[version] = self.owned.get(version, True) and value.fresh
+
+    def is_owned(self, name: str) -> bool:
+        """Returns whether no other name refers to a local array that was made by the function."""
+        return self.owned.get(self.version(name), False)
+
+    def kind_of_local(self, name: str) -> Kind | None:
+        """Returns the kind of a local variable; None if it is not set."""
+        return self.kinds.get(self.version(name))
+
+    def element(self, value: Value, index: int) -> Value:
+        """Returns an element of a tuple, of which the code is evaluated once for each element."""
+        if value.parts is not None:
+            return value.parts[index]
+        items = value.kind.items
+        kind = items[index]
+        if kind == INFO:
+            return Value(INFO)
+        position = index - sum(one == INFO for one in items[:index])
+        return Value(kind, f"{value.code}[{position}]", effects=value.effects)
+
+    def emit(self, text: str, node: ast.AST | None = None) -> None:
+        """Adds a line to the function."""
+        self.lines.append(("    " * self.indent + text, getattr(node, "lineno", 0)))

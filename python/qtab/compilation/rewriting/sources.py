@@ -1,0 +1,81 @@
+"""The source code of functions, as syntax trees with the lines of the user's files."""
+
+import ast
+import inspect
+import linecache
+import textwrap
+from dataclasses import dataclass
+from types import CodeType, FunctionType
+
+from qtab.compilation.not_compilable import NotCompilable
+
+
+@dataclass(frozen=True, eq=False)
+class Source:
+    """A function's source."""
+
+    function: FunctionType
+    node: ast.FunctionDef
+    file: str
+
+
+_known: dict[CodeType, Source] = {}
+
+
+def source_of(function: FunctionType) -> Source:
+    """Returns the source of a function.
+
+    Raises:
+        NotCompilable: if it is not available, or if the file was edited since it was imported.
+    """
+    code = function.__code__
+    if code not in _known:
+        _known[code] = _read(function)
+    found = _known[code]
+    return Source(function, found.node, found.file)
+
+
+def _read(function: FunctionType) -> Source:
+    code, name = function.__code__, function.__qualname__
+    file = code.co_filename
+    linecache.checkcache(file)
+    try:
+        lines, first = inspect.getsourcelines(code)
+        tree = ast.parse(textwrap.dedent("".join(lines)))
+    except (OSError, TypeError, SyntaxError, IndentationError):
+        raise NotCompilable(
+            f"the source code of {name} is not available", file, code.co_firstlineno, "define the class in a file"
+        ) from None
+    ast.increment_lineno(tree, first - 1)
+    node = tree.body[0]
+    if not isinstance(node, ast.FunctionDef):
+        advice = "write it as an ordinary function with def"
+        raise NotCompilable(f"{name} is not an ordinary function", file, first, advice)
+    if not _is_current(function, node):
+        advice = "import it again"
+        raise NotCompilable(f"the source code of {name} was edited after it was imported", file, first, advice)
+    return Source(function, node, file)
+
+
+def _is_current(function: FunctionType, node: ast.FunctionDef) -> bool:
+    """Returns whether the file still has the code that runs; functions with assertions are not compared.
+
+    pytest rewrites assertions.
+    """
+    if any(isinstance(one, ast.Assert) for one in ast.walk(node)):
+        return node.name == function.__name__
+    code = function.__code__
+    try:
+        module = compile("".join(linecache.getlines(code.co_filename)), code.co_filename, "exec", dont_inherit=True)
+    except (SyntaxError, ValueError):
+        return node.name == function.__name__  # a cell of a notebook with commands of IPython
+    same = [one for one in _nested(module) if (one.co_name, one.co_firstlineno) == (code.co_name, code.co_firstlineno)]
+    return not same or any((one.co_code, one.co_names) == (code.co_code, code.co_names) for one in same)
+
+
+def _nested(code: CodeType) -> list[CodeType]:
+    found = [code]
+    for part in code.co_consts:
+        if isinstance(part, CodeType):
+            found += _nested(part)
+    return found

@@ -1,0 +1,160 @@
+"""Abstract values: what is known about an expression before it is run."""
+
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Scalar:
+    """A number. ``int`` and ``float`` have 64 bits, whether Python's or NumPy's."""
+
+    name: str
+    """``bool``, ``int``, ``float``, ``mixed`` (an integer or a float), or the name of another NumPy dtype."""
+
+
+@dataclass(frozen=True)
+class Array:
+    """A NumPy array."""
+
+    dtype: str
+    ndim: int
+    shape: tuple[int, ...] | None = None
+    """None if it is not known before the program runs."""
+
+
+@dataclass(frozen=True)
+class TupleKind:
+    """A tuple, or a list that is never changed."""
+
+    items: "tuple[Kind, ...]"
+
+
+@dataclass(frozen=True)
+class DictKind:
+    """A dict with constant keys; in compiled code a tuple of its values."""
+
+    keys: tuple[Any, ...]
+    items: "tuple[Kind, ...]"
+
+
+@dataclass(frozen=True)
+class InfoKind:
+    """An info dict, which compiled code leaves out."""
+
+
+Kind: TypeAlias = Scalar | Array | TupleKind | DictKind | InfoKind
+
+BOOL, INT, FLOAT, MIXED, INFO = Scalar("bool"), Scalar("int"), Scalar("float"), Scalar("mixed"), InfoKind()
+WIDE = (BOOL, INT, FLOAT, MIXED)
+"""The scalars that compute the same in Python, NumPy and compiled code."""
+REAL = (INT, FLOAT, MIXED)
+
+DYNAMIC: Any = type("Dynamic", (), {"__repr__": lambda _: "<known at run time>"})()
+"""The constant of a value that is not constant."""
+
+
+@dataclass(frozen=True, eq=False)
+class Value:
+    """What an expression is.
+
+    A constant has ``fixed``, and neither kind nor code until it is lifted into the compiled program.
+    """
+
+    kind: Any = None
+    code: str = ""
+    fixed: Any = DYNAMIC
+    parts: "tuple[Value, ...] | None" = None
+    """The elements of a tuple that is written out in the code."""
+    fresh: bool = False
+    """Whether an array was made by this expression, so that no other name refers to its memory."""
+    frozen: bool = False
+    """Whether it is an array that nothing changes, a constant."""
+    effects: bool = False
+    """Whether evaluating the code may change the state."""
+    action: bool = False
+    """Whether it is the action that ``step`` was given."""
+    raw: str = ""
+    """The code of the bytes of an array of booleans that is in the record."""
+
+    @property
+    def is_fixed(self) -> bool:
+        """Whether it is known now."""
+        return self.fixed is not DYNAMIC
+
+
+def constant(value: Any) -> Value:
+    """Returns a value that is known now."""
+    return Value(fixed=value)
+
+
+def scalar_of(dtype: str) -> Scalar:
+    """Returns the kind of an array's elements."""
+    return {"bool": BOOL, "int64": INT, "float64": FLOAT}.get(dtype, Scalar(dtype))
+
+
+def dtype_of(kind: Scalar) -> str:
+    """Returns the dtype of an array of such numbers."""
+    return {"bool": "bool", "int": "int64", "float": "float64", "mixed": "float64"}.get(kind.name, kind.name)
+
+
+def kind_of(value: Any) -> Kind | None:
+    """Returns the kind of a Python value; None for what has none, such as a string."""
+    if isinstance(value, bool | np.bool_):
+        return BOOL
+    if isinstance(value, int):
+        return INT if -(2**63) <= value < 2**63 else None
+    if isinstance(value, float):
+        return FLOAT
+    if isinstance(value, np.generic):
+        return scalar_of(value.dtype.name) if value.dtype.kind in "iuf" and value.dtype.itemsize <= 8 else None
+    if isinstance(value, np.ndarray):
+        simple = value.dtype.kind in "biuf" and value.dtype.itemsize <= 8 and value.dtype.isnative
+        return Array(value.dtype.name, value.ndim, value.shape) if simple and value.ndim else None
+    if type(value) in (tuple, list):
+        kinds = [kind_of(part) for part in value]
+        return None if any(kind is None for kind in kinds) else TupleKind(tuple(kinds))  # type: ignore[arg-type]
+    return None
+
+
+def join(one: Kind, other: Kind) -> Kind | None:
+    """Returns the kind of a value that is of either kind; None if compiled code cannot hold both."""
+    if one == other:
+        return one
+    if isinstance(one, Scalar) and isinstance(other, Scalar):
+        return MIXED if {one, other} <= {INT, FLOAT, MIXED} else None
+    if isinstance(one, Array) and isinstance(other, Array):
+        same = (one.dtype, one.ndim) == (other.dtype, other.ndim)
+        return Array(one.dtype, one.ndim) if same else None
+    if isinstance(one, TupleKind) and isinstance(other, TupleKind) and len(one.items) == len(other.items):
+        kinds = [join(*pair) for pair in zip(one.items, other.items, strict=True)]
+        return None if any(kind is None for kind in kinds) else TupleKind(tuple(kinds))  # type: ignore[arg-type]
+    if isinstance(one, DictKind) and isinstance(other, DictKind) and one.keys == other.keys:
+        inner = join(TupleKind(one.items), TupleKind(other.items))
+        return DictKind(one.keys, inner.items) if isinstance(inner, TupleKind) else None
+    return None
+
+
+def in_words(kind: Any) -> str:
+    """Returns the name of a kind for a message."""
+    match kind:
+        case Scalar("bool"):
+            return "a boolean"
+        case Scalar("int"):
+            return "an integer"
+        case Scalar("float"):
+            return "a float"
+        case Scalar("mixed"):
+            return "sometimes an integer and sometimes a float"
+        case Scalar(name):
+            return f"a NumPy {name}"
+        case Array(dtype, ndim, shape):
+            return f"an array of {dtype} {f'with shape {shape}' if shape is not None else f'with {ndim} dimensions'}"
+        case TupleKind(items):
+            return f"a tuple of {len(items)}"
+        case DictKind():
+            return "a dict"
+        case InfoKind():
+            return "an info dict"
+    return "None" if kind is None else "an object"
