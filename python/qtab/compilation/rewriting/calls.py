@@ -130,7 +130,7 @@ def _known(scope: "Expressions", node: ast.Call, callee: Any) -> Value:
     for prefix, (reason, advice) in MODULE_ADVICE.items():
         if module == prefix or module.startswith(prefix + "."):
             raise scope.refuse(node, reason, advice)
-    if isinstance(callee, MethodType) and type(callee.__self__).__module__ == "random":
+    if type(getattr(callee, "__self__", None)).__module__ == "random":
         raise scope.refuse(node, *MODULE_ADVICE["random"])
     if isinstance(callee, FunctionType):
         values, named = arguments(scope, node)

@@ -15,8 +15,11 @@ REFUSED = {
     "Try": ("try/except", "test the condition with if"),
     "TryStar": ("try/except", "test the condition with if"),
     "With": ("with", "do it in __init__"),
-    "Global": ("a global variable is assigned", "keep the value in an attribute of the environment"),
-    "Nonlocal": ("a variable of an outer function is assigned", "keep the value in an attribute of the environment"),
+    "Global": ("an assignment to a global variable", "keep the value in an attribute of the environment"),
+    "Nonlocal": (
+        "an assignment to a variable of an outer function",
+        "keep the value in an attribute of the environment",
+    ),
     "Delete": ("del", "leave it out"),
     "FunctionDef": ("a function within a function", "write a method"),
     "ClassDef": ("a class within a function", "define it outside"),

@@ -22,6 +22,8 @@ from qtab.compilation.rewriting.variables import in_variables, is_simple
 if TYPE_CHECKING:
     from qtab.compilation.rewriting.statements import Statements
 
+KEEP = "keep what changes in an array that is an attribute of the environment"
+
 
 def store(scope: "Statements", node: ast.stmt, name: str, value: Value) -> None:
     """Assigns a value to an attribute of the environment."""
@@ -125,7 +127,7 @@ def changeable(scope: "Statements", node: ast.stmt, target: ast.Subscript) -> Va
             return value
     if isinstance(base, ast.Subscript):
         raise scope.refuse(node, "an element of an element is assigned", "write one index: array[i, j]")
-    raise scope.refuse(node, "an element of something other than an array of self is assigned", "use a NumPy array")
+    raise scope.refuse(node, "an element is assigned of something other than an array of self", KEEP)
 
 
 def _store_list_element(
