@@ -39,6 +39,7 @@ _MODULES = {
     "Sweep": "qtab.sweeps.results",
     "SweepProgress": "qtab.sweeps.training",
     "TabularEnv": "qtab.envs.tabular",
+    "TabulatedEnv": "qtab.envs.tabulation.tabulated_env",
     "ValueEstimates": "qtab.prediction.estimates",
     "Verification": "qtab.training.verify",
     "animate": "qtab.rendering.animate",
@@ -66,6 +67,7 @@ _MODULES = {
     "sb3": "qtab.sb3",
     "stats": "qtab.stats",
     "sweep": "qtab.sweeps.sweep",
+    "tabulate": "qtab.envs.tabulation.tabulate",
     "train": "qtab.training.train",
     "train_many": "qtab.training.train_many",
     "verify": "qtab.training.verify",
@@ -90,6 +92,8 @@ if TYPE_CHECKING:
     from qtab.envs.external.native_env import NativeEnv as NativeEnv
     from qtab.envs.functional import FunctionalEnv as FunctionalEnv
     from qtab.envs.tabular import TabularEnv as TabularEnv
+    from qtab.envs.tabulation.tabulate import tabulate as tabulate
+    from qtab.envs.tabulation.tabulated_env import TabulatedEnv as TabulatedEnv
     from qtab.envs.vector import RustVectorEnv as RustVectorEnv
     from qtab.explanation.explain import explain as explain
     from qtab.explanation.explanation import Explanation as Explanation

@@ -45,7 +45,9 @@ def right_calls(run: qtab.Run, env: gym.Env) -> None:
     evaluation: qtab.Evaluation = qtab.evaluate(run, 10, seed=0, max_episode_steps=1000)
     config: qtab.Config = run.config.replace(env="Taxi-v4", learning_rate=0.5, tiles=None)
     config = qtab.Config("Taxi-v4", tiles=8, discretizer="tiles", scale=[])
-    del table, runs, sweep, playback, animation, evaluation, config
+    tabulated: qtab.TabulatedEnv = qtab.tabulate(env, max_states=1000)
+    tabular: qtab.TabularEnv = tabulated
+    del tabulated, tabular, table, runs, sweep, playback, animation, evaluation, config
 
 
 def stop_soon(progress: qtab.Progress) -> bool:

@@ -10,7 +10,7 @@ from gymnasium.envs.registration import EnvSpec, load_env_creator
 from gymnasium.wrappers import OrderEnforcing, PassiveEnvChecker, TimeLimit
 
 from qtab.envs.class_code import changed_library_code
-from qtab.envs.registry import TABULAR, EnvEntry, entry_for_id
+from qtab.envs.registry import TABULAR, TABULATED, EnvEntry, entry_for_id
 
 # The wrappers of gymnasium.make, none of which changes an observation or a reward.
 _HARMLESS_WRAPPERS = (OrderEnforcing, PassiveEnvChecker, TimeLimit)
@@ -158,12 +158,14 @@ def unknown_wrapper(env: gym.Env) -> str | None:
 def time_limit(env: gym.Env) -> int | None:
     """Returns the time limit in steps, the lowest of several; None without one.
 
-    It is that of ``TimeLimit`` wrappers, and the attribute ``max_episode_steps`` of an environment in a capsule.
+    It is that of ``TimeLimit`` wrappers, and the attribute ``max_episode_steps`` of an environment in a capsule or of a
+    ``TabulatedEnv``.
     """
     limits = [layer._max_episode_steps for layer in layers(env) if isinstance(layer, TimeLimit)]
-    own = getattr(env.unwrapped, "max_episode_steps", None)
-    if own is not None and getattr(type(env.unwrapped), "__qtab_env__", None) is not None:
-        limits.append(own)
+    unwrapped: Any = env.unwrapped
+    if hasattr(type(unwrapped), "__qtab_env__") or _entry_point(unwrapped) == TABULATED:
+        own = getattr(unwrapped, "max_episode_steps", None)
+        limits += [] if own is None else [own]
     return min(limits, default=None)
 
 

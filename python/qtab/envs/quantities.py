@@ -202,6 +202,15 @@ def observed_quantities(env: str, low: NDArray[Any], high: NDArray[Any]) -> Quan
     return _actions_of(known)
 
 
+def tabulated_quantities(attributes: Mapping[str, Any]) -> Quantities:
+    """Returns the names of the states and actions of a ``TabulatedEnv`` from the description of its attributes."""
+    states, actions = (
+        tuple(map(str, stored.get("items", ()))) if isinstance(stored, Mapping) else ()
+        for stored in (attributes.get("state_names"), attributes.get("action_names"))
+    )
+    return Quantities((Quantity("state", values=states),), actions)
+
+
 def behind(known: Quantities, wrappers: Iterable[str]) -> Quantities:
     """Returns the quantities that are still known behind wrappers, which are given as ``"module:Class"``.
 

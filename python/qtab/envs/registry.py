@@ -126,6 +126,8 @@ EXTRA: Mapping[str, EnvEntry] = {
 
 TABULAR = EnvEntry(_TABLE, "", "qtab.envs.tabular:TabularEnv", has_table=True)
 """:class:`qtab.TabularEnv`, which has no id."""
+TABULATED = "qtab.envs.tabulation.tabulated_env:TabulatedEnv"
+"""The class of the tables that :func:`qtab.tabulate` makes."""
 
 
 def gymnasium_id(env: str) -> str:

@@ -19,8 +19,9 @@ from qtab.envs.quantities import (
     behind,
     observation_quantities,
     observed_quantities,
+    tabulated_quantities,
 )
-from qtab.envs.registry import TABULAR, entry_for_id
+from qtab.envs.registry import TABULAR, TABULATED, entry_for_id
 
 if TYPE_CHECKING:
     from qtab.discretizers import Discretizer
@@ -64,6 +65,8 @@ def run_quantities(config: Config, discretizer: "Discretizer") -> Quantities:
         entry.gymnasium_entry_point,
         _bare_class(entry.entry_point),
     ):
+        if environment.cls == TABULATED:
+            return tabulated_quantities(environment.attributes)
         return known if environment.cls == TABULAR.entry_point else UNKNOWN
     return behind(known, (wrapper.cls for wrapper in environment.wrappers))
 

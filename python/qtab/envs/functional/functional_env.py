@@ -35,6 +35,9 @@ class FunctionalEnv(gym.Env[Any, Any], ABC):
 
     - ``action_mask(self, state)``: (actions,) booleans, the available actions. ``info["action_mask"]`` then contains
       the mask, as int8. In terminal states, it may be all zeros.
+    - ``outcomes(self, state, action)``: every outcome of ``transition``, as a list of (probability, state, reward,
+      terminated), and ``initial_outcomes(self)``: every first state, as a list of (probability, state). The
+      probabilities sum to 1 within 1e-9. :func:`qtab.tabulate` needs them only for draws that it cannot list itself.
     - ``render(self, state)``: a picture of the state in the render mode ``self.render_mode``. ``env.render()`` calls it
       with the current state. In the mode "human", resets and steps call it. Gymnasium's ``render(self)`` works as well.
 

@@ -1,0 +1,1 @@
+"""Transition tables of environments with few states: :func:`qtab.tabulate`."""

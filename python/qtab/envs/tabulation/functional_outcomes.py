@@ -1,0 +1,237 @@
+"""The outcomes of a :class:`qtab.FunctionalEnv`: as it lists them, or one by one for each value of its draws."""
+
+import copy
+import math
+from collections.abc import Callable, Hashable
+from contextlib import suppress
+from dataclasses import replace
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab._utils.shown import shown
+from qtab.envs.functional import FunctionalEnv
+from qtab.envs.functional.observations import observation_in
+from qtab.envs.tabulation.branches import Branches, CannotListError
+from qtab.envs.tabulation.generator import ListingGenerator
+from qtab.envs.tabulation.state_keys import NotComparableError, state_key, state_text
+from qtab.envs.tabulation.walk import Outcome, Visit
+
+_SAMPLES = 2
+"""The sampled transitions that must be among the listed outcomes of each state and action."""
+_INITIAL_SAMPLES = 50
+_OF_BASE = ("_state", "_structure", "_np_random", "_np_random_seed")
+"""Attributes that resets and steps of the base class change."""
+_TOLERANCE = 1e-9
+"""How far the sum of listed probabilities may be from 1, as for :class:`qtab.TabularEnv`."""
+
+
+class FunctionalOutcomes:
+    """The outcomes of a functional environment.
+
+    Args:
+        env: The environment. It is copied, and not stepped.
+    """
+
+    def __init__(self, env: FunctionalEnv) -> None:
+        self._branches = Branches()
+        self._name = type(env).__name__
+        self._rng = ListingGenerator(self._branches)
+        self._sampler = np.random.default_rng(0)
+        self._env = copy.copy(env)
+        self._env.np_random, self._env.render_mode = self._rng, None
+        self._before = _attributes(self._env)
+        self._visits: dict[tuple[Hashable, bool], Visit] = {}
+        """The states that were found, by their keys and whether they are terminal."""
+        self._outcomes: Callable[[Any, int], Any] | None = getattr(env, "outcomes", None)
+        self._initial_outcomes: Callable[[], Any] | None = getattr(env, "initial_outcomes", None)
+
+    def initial(self) -> list[tuple[Fraction, Visit]]:
+        """Returns the first states of an episode with their probabilities.
+
+        Raises:
+            TypeError: if ``initial_outcomes`` returns values of other types than it should.
+            ValueError: if the first states cannot be listed, or are not those that ``initial_outcomes`` lists.
+        """
+        if self._initial_outcomes is not None:
+            return self._listed_initial(self._initial_outcomes())
+        try:
+            return list(self._branches.outcomes(self._reset))
+        except CannotListError as error:
+            raise ValueError(
+                f"env must have initial states that can be listed, but initial_state of {self._name} calls "
+                f"{error.reason}. Add the method initial_outcomes(self), which returns a list of (probability, state)"
+            ) from None
+
+    def step(self, state: Any, action: int) -> list[Outcome]:
+        """Returns the outcomes of an action.
+
+        Raises:
+            TypeError: if ``outcomes`` returns values of other types than it should.
+            ValueError: if the outcomes cannot be listed, are not those that ``outcomes`` lists, or depend on more than
+                the state.
+        """
+        where = f"in state {state_text(state)} for action {action}"
+        if self._outcomes is not None:
+            return self._listed(self._outcomes(state, action), state, action, where)
+        before = self._key(state)
+
+        def take() -> Outcome:
+            return self._step(self._rng, state, action, where)
+
+        try:
+            found = list(self._branches.outcomes(take))
+            again = next(self._branches.outcomes(take))[1]
+        except CannotListError as error:
+            raise ValueError(
+                f"env must have outcomes that can be listed, but transition of {self._name} calls {error.reason}, "
+                f"{where}. Add the method outcomes(self, state, action), which returns a list of (probability, state, "
+                "reward, terminated)"
+            ) from None
+        if self._key(state) != before:
+            raise ValueError(
+                f"transition of {self._name} must not change the state that it is given, as it did {where}"
+            )
+        if _identity(again) != _identity(found[0][1]):
+            raise ValueError(
+                f"transition of {self._name} must depend only on its arguments: a repeated call with the same random "
+                f"numbers returned another result, {where}"
+            )
+        return [replace(one, probability=chance) for chance, one in found]
+
+    def check_unchanged(self) -> None:
+        """Checks that the methods did not change attributes of the environment.
+
+        Raises:
+            ValueError: if they did. The message names the attribute.
+        """
+        now = _attributes(self._env)
+        changed = next(
+            (name for name in sorted(now.keys() | self._before) if now.get(name) != self._before.get(name)), ""
+        )
+        if changed:
+            raise ValueError(
+                f"env must keep what changes in its state, but a method of {self._name} changed self.{changed}"
+            )
+
+    def _reset(self) -> Visit:
+        self._env.reset()
+        return self._visit(self._env.state, terminated=False)
+
+    def _step(self, rng: np.random.Generator, state: Any, action: int, where: str) -> Outcome:
+        returned: Any = self._env.transition(state, action, rng)
+        name = f"transition of {self._name}"
+        if not isinstance(returned, tuple) or len(returned) != 3:
+            raise TypeError(f"{name} must return (state, reward, terminated), got {shown(returned)} {where}")
+        next_state, reward, terminated = returned
+        return self._outcome(Fraction(1), next_state, reward, terminated, name, where)
+
+    def _outcome(
+        self, probability: Fraction, state: Any, reward: Any, terminated: Any, name: str, where: str
+    ) -> Outcome:
+        if not isinstance(terminated, bool | np.bool_):
+            raise TypeError(f"{name} must return a boolean as terminated, got {shown(terminated)} {where}")
+        try:
+            number = float(reward)
+        except (TypeError, ValueError):
+            raise TypeError(f"{name} must return a number as the reward, got {shown(reward)} {where}") from None
+        if not math.isfinite(number):
+            raise ValueError(f"{name} must return a finite reward, got {number} {where}")
+        return Outcome(probability, self._visit(state, bool(terminated)), number, bool(terminated))
+
+    def _visit(self, state: Any, terminated: bool) -> Visit:
+        """Returns a state with its observation and its mask, which are computed once."""
+        key = self._key(state)
+        visit = self._visits.get((key, terminated))
+        if visit is None:
+            visit = self._visits[key, terminated] = Visit(state, key, *self._seen(state, terminated))
+        return visit
+
+    def _seen(self, state: Any, terminated: bool) -> tuple[Any, NDArray[np.bool_] | None]:
+        env = self._env
+        if terminated:
+            return observation_in(env.observation_space, env.observe(state), f"observe of {self._name}"), None
+        observation, info = env.reset(options={"state": state})
+        mask = info.get("action_mask")
+        return observation, None if mask is None else mask.astype(np.bool_)
+
+    def _listed_initial(self, given: Any) -> list[tuple[Fraction, Visit]]:
+        name = f"initial_outcomes of {self._name}"
+        if not isinstance(given, list | tuple) or not all(isinstance(one, tuple) and len(one) == 2 for one in given):
+            raise TypeError(f"{name} must return a list of (probability, state), got {shown(given)}")
+        chances = _probabilities(name, "", [one[0] for one in given])
+        found = [
+            (chance, self._visit(one[1], terminated=False))
+            for chance, one in zip(chances, given, strict=True)
+            if chance
+        ]
+        known = {visit.key for _, visit in found}
+        for _ in range(_INITIAL_SAMPLES):
+            sampled = self._env.initial_state(self._sampler)
+            if self._key(sampled) not in known:
+                raise ValueError(
+                    f"{name} must list every first state, but initial_state returned {state_text(sampled)}"
+                )
+        return found
+
+    def _listed(self, given: Any, state: Any, action: int, where: str) -> list[Outcome]:
+        name = f"outcomes of {self._name}"
+        if not isinstance(given, list | tuple) or not all(isinstance(one, tuple) and len(one) == 4 for one in given):
+            raise TypeError(
+                f"{name} must return a list of (probability, state, reward, terminated), got {shown(given)} {where}"
+            )
+        chances = _probabilities(name, f" {where}", [one[0] for one in given])
+        found = [
+            self._outcome(chance, next_state, reward, terminated, name, where)
+            for chance, (_, next_state, reward, terminated) in zip(chances, given, strict=True)
+            if chance
+        ]
+        known = set(map(_identity, found))
+        for _ in range(_SAMPLES):
+            sampled = self._step(self._sampler, state, action, where)
+            if _identity(sampled) not in known:
+                raise ValueError(
+                    f"{name} must list every outcome of transition, which returned state "
+                    f"{state_text(sampled.visit.state)}, reward {sampled.reward!r} and terminated "
+                    f"{sampled.terminated} {where}"
+                )
+        return found
+
+    def _key(self, state: Any) -> Hashable:
+        try:
+            key: Hashable = state_key(state)
+        except NotComparableError as error:
+            raise ValueError(
+                f"env must have states of numbers, tuples and arrays, but in {self._name}, {error}"
+            ) from None
+        return key
+
+
+def _attributes(env: FunctionalEnv) -> dict[str, Hashable]:
+    """Returns the attributes that can be compared, without those of Gymnasium and of the base class."""
+    found: dict[str, Hashable] = {}
+    for name, value in vars(env).items():
+        if name not in _OF_BASE:
+            with suppress(NotComparableError):
+                found[name] = state_key(value)
+    return found
+
+
+def _identity(outcome: Outcome) -> tuple[Hashable, float, bool]:
+    return outcome.visit.key, outcome.reward, outcome.terminated
+
+
+def _probabilities(name: str, where: str, given: list[Any]) -> list[Fraction]:
+    chances: list[Fraction]
+    try:
+        chances = [one if isinstance(one, Fraction) else Fraction(float(one)) for one in given]
+    except (OverflowError, TypeError, ValueError):  # infinity, no number, NaN
+        chances = [Fraction(-1)]
+    if not all(0 <= one <= 1 for one in chances):
+        raise ValueError(f"{name} must have probabilities in [0, 1], got {shown(given)}{where}")
+    total = sum(chances, Fraction(0))
+    if abs(float(total) - 1.0) > _TOLERANCE:
+        raise ValueError(f"{name} must have probabilities that sum to 1, got {float(total)!r}{where}")
+    return chances

@@ -1,0 +1,119 @@
+"""``qtab.tabulate``: the transition table of an environment with few states."""
+
+import random
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from gymnasium.wrappers import HumanRendering, RecordEpisodeStatistics, RecordVideo, RenderCollection
+
+from qtab._utils import checks
+from qtab._utils.shown import shown
+from qtab.envs.functional import FunctionalEnv
+from qtab.envs.matching import layers, time_limit, unknown_wrapper
+from qtab.envs.tabulation.functional_outcomes import FunctionalOutcomes
+from qtab.envs.tabulation.known_table import has_known_table, tabulate_known
+from qtab.envs.tabulation.state_keys import state_text
+from qtab.envs.tabulation.tabulated_env import MOST_NAMES, TabulatedEnv
+from qtab.envs.tabulation.walk import Outcomes, Walk
+
+_WATCHING = (HumanRendering, RecordEpisodeStatistics, RecordVideo, RenderCollection)
+"""Wrappers that change no number; they are left out."""
+
+
+def tabulate(env: gym.Env[Any, Any], *, max_states: int = 100_000) -> TabulatedEnv:
+    """Makes the transition table of an environment with few states, by listing every outcome of every action.
+
+    Rust steps the table, and :func:`qtab.optimum` computes its exact optimum. Probabilities are exact, or the
+    environment is refused; they are never estimated.
+
+    - An environment with ``P`` and ``initial_state_distrib``, such as Gymnasium's toy text, gives its own table,
+      unchanged to the bit. For classes outside Gymnasium and qtab, 2,000 sampled steps are compared with the table.
+    - For a :class:`qtab.FunctionalEnv`, the states that can be reached are visited breadth first. A transition that
+      draws random numbers is repeated once for each combination of values. This works for ``integers``, ``choice``,
+      ``permutation``, ``shuffle`` and ``binomial`` with few values, and for ``random()`` and ``uniform(low, high)`` if
+      they are only compared with numbers, as in ``rng.random() < 0.1``. Any other draw needs the environment's methods
+      ``outcomes`` and ``initial_outcomes``.
+
+    States are numbered in the order in which they are found. The outcomes of an action are in the order of the drawn
+    values, or in that of ``outcomes``. Equal outcomes are joined into one. A probability is computed as a fraction and
+    rounded once to float64.
+
+    The observation of the table is the number of the state, also where the environment's observation hides part of the
+    state. Actions are counted from 0. The table has the time limit of the environment. With an action mask,
+    ``action_mask=True`` trains with it; an unavailable action ends the episode with a reward below every possible
+    return within the time limit (10,000 steps without one), so that no best policy takes it.
+
+    Args:
+        env: The environment. It is copied, and neither stepped nor closed. Wrappers of ``gymnasium.make`` and those
+            that only record or show episodes are left out; its action space must be Discrete.
+        max_states: The most states.
+
+    Returns:
+        The table, with the states, their observations and names, the time limit, and the masks.
+
+    Raises:
+        TypeError: if an argument has the wrong type, or a method of the environment returns one.
+        ValueError: for more than ``max_states`` states, outcomes that cannot be listed, states that cannot be compared,
+            other action spaces, or wrappers that may change a number. The message names the state, the action and the
+            draw.
+    """
+    if not isinstance(env, gym.Env):
+        raise TypeError(f"env must be an environment, got {shown(env)}")
+    max_states = checks.count("max_states", max_states, least=1)
+    inner = _without_watching(env)
+    wrapper = unknown_wrapper(inner)
+    if wrapper is not None:
+        raise ValueError(f"env must have no wrapper that may change observations, actions or rewards, got {wrapper}")
+    unwrapped: Any = inner.unwrapped
+    if not isinstance(unwrapped.action_space, gym.spaces.Discrete):
+        raise ValueError(f"env must have a Discrete action space, got {unwrapped.action_space}")
+    limit = time_limit(inner)
+    if has_known_table(unwrapped):
+        return tabulate_known(unwrapped, limit, max_states)
+    if not isinstance(unwrapped, FunctionalEnv):
+        raise ValueError(
+            "env must be a qtab.FunctionalEnv, or have a transition table P and an initial_state_distrib, got "
+            f"{type(unwrapped).__name__}"
+        )
+    return _tabulated(FunctionalOutcomes(unwrapped), unwrapped, limit, max_states)
+
+
+def _without_watching(env: gym.Env) -> gym.Env:
+    """Returns the environment without the outermost wrappers that change no number."""
+    for layer in layers(env):
+        if type(layer) not in _WATCHING:
+            return layer
+    return env
+
+
+def _tabulated(outcomes: Outcomes, env: Any, limit: int | None, max_states: int) -> TabulatedEnv:
+    space = env.action_space
+    walk = Walk(outcomes, int(space.n), int(space.start), max_states)
+    before = np.random.get_state(), random.getstate()  # noqa: NPY002 - the state that a wrong environment changes
+    distribution = walk.run()
+    _check_unchanged(type(env).__name__, *before)
+    states = [visit.state for visit in walk.visits]
+    names = [state_text(state) for state in states] if len(states) <= MOST_NAMES else []
+    table = TabulatedEnv(
+        walk.table(limit),
+        distribution,
+        state_names=names,
+        action_names=getattr(env, "action_names", ()),
+        masks=walk.masks(),
+        max_episode_steps=limit,
+    )
+    table.states, table.observations = tuple(states), tuple(visit.observation for visit in walk.visits)
+    return table
+
+
+def _check_unchanged(name: str, of_numpy: Any, of_python: Any) -> None:
+    now: Any = np.random.get_state()  # noqa: NPY002 - see above
+    used = "random" if random.getstate() != of_python else ""
+    if now[2:] != of_numpy[2:] or not np.array_equal(now[1], of_numpy[1]):
+        used = "np.random"
+    if used:
+        raise ValueError(
+            f"env must draw its random numbers from the generator that it is given, but {name} or another thread drew "
+            f"from the module {used}"
+        )
