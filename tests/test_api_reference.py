@@ -11,7 +11,7 @@ from support.repository import ROOT
 package: Any = qtab  # its `__all__` is hidden from type checkers
 PUBLIC: list[str] = package.__all__
 PAGES = sorted((ROOT / "docs/reference/api").glob("*.md"))
-MODULES = ("book", "callbacks", "designs", "planning", "playground", "plots", "prediction", "sb3", "stats")
+MODULES = ("book", "callbacks", "designs", "exercises", "planning", "playground", "plots", "prediction", "sb3", "stats")
 LISTED = re.compile(r"^(?:   |\.\. py:data:: )(qtab\.[\w.]+)$", re.MULTILINE)
 
 

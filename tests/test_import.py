@@ -17,7 +17,7 @@ def in_a_process(code):
     return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=120).stdout
 
 
-MODULES = ["book", "callbacks", "designs", "planning", "playground", "plots", "prediction", "sb3", "stats"]
+MODULES = ["book", "callbacks", "designs", "exercises", "planning", "playground", "plots", "prediction", "sb3", "stats"]
 HEAVY = "matplotlib", "tqdm", "pygame", "PIL", "tomllib", "numba", "IPython", "tensorboardX"
 
 

@@ -32,6 +32,7 @@ ORDER = (
     {"prediction"},
     {"sb3"},
     {"book"},
+    {"exercises"},
     {"playground"},
     {"cli"},
     {"", "__main__"},

@@ -49,6 +49,7 @@ _MODULES = {
     "diagnose": "qtab.diagnosis.diagnose",
     "estimate_values": "qtab.prediction.estimate",
     "evaluate": "qtab.training.evaluate",
+    "exercises": "qtab.exercises",
     "explain": "qtab.explanation.explain",
     "get_include": "qtab.envs.external.include",
     "load": "qtab.results.loading",
@@ -78,6 +79,7 @@ if TYPE_CHECKING:
     # The same table, in the only form that editors and type checkers read. A test compares the two.
     from qtab import book as book
     from qtab import callbacks as callbacks
+    from qtab import exercises as exercises
     from qtab import planning as planning
     from qtab import playground as playground
     from qtab import plots as plots

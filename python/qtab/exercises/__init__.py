@@ -1,0 +1,22 @@
+"""Twelve exercises in reinforcement learning, and a grader that compares a solution with the reference to the last bit.
+
+    import qtab
+
+    print(qtab.exercises.find("sarsa").starter)  # the task, and the code to start from
+    qtab.exercises.check("sarsa", sarsa)  # shows where your function and the reference part
+    qtab.exercises.check("sarsa", sarsa).assert_passed()  # in pytest
+
+A solution is plain Python with NumPy and Gymnasium. Each exercise is a module in :mod:`qtab.exercises.definitions`.
+"""
+
+from qtab.exercises.collection import EXERCISES, find
+from qtab.exercises.exercise import Exercise
+from qtab.exercises.grader import check
+from qtab.exercises.record import Difference
+from qtab.exercises.report import CheckResult, Report
+
+__all__ = ["EXERCISES", "CheckResult", "Difference", "Exercise", "Report", "check", "find"]
+
+
+def __dir__() -> list[str]:
+    return [*__all__, *(name for name in globals() if name.startswith("__"))]

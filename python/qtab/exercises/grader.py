@@ -1,0 +1,166 @@
+"""``qtab.exercises.check``: a student's function against the reference, to the last bit."""
+
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+
+from qtab._utils import checks
+from qtab._utils.shown import shown
+from qtab.exercises.collection import find
+from qtab.exercises.exercise import Check, Exercise
+from qtab.exercises.mistakes import MISTAKES
+from qtab.exercises.record import Event, Misuse, Record, equal, first_difference
+from qtab.exercises.recording_env import RANDOM_NUMBERS
+from qtab.exercises.report import CheckResult, Report
+
+MODEL_SECONDS = 60.0
+"""The time limit of the reference, which never needs it."""
+NEVER_CHANGED = (
+    "{table} never changes: change the array that you are given, as in {table}[...] += ..., and not a copy of it. "
+    "Nothing needs to be returned"
+)
+
+
+def check(exercise: str | int, solution: Callable[..., Any], *, exact: bool = True, seconds: float = 10.0) -> Report:
+    """Checks a function that you wrote against the reference, to the last bit.
+
+    The function is called with the arguments that its exercise lists, in their order, in a few small checks. A
+    learner's tables, random numbers and actions are compared after every step, so that the report names the first
+    episode, step and number that differ. If they do, the checks are repeated with known mistakes built into the
+    reference, one or two at a time: a mistake that gives exactly the same numbers is explained.
+
+    A function that raises an exception, does not return in time, returns a value of the wrong shape or type, changes
+    arguments that it should not change, or uses a global random generator fails this check, and the next one follows.
+    See :mod:`qtab.exercises.time_limit` for what the time limit cannot end.
+
+    Args:
+        exercise: The name of the exercise, such as ``"sarsa"``, or its number, from 1 to 12.
+        solution: The function.
+        exact: Whether the numbers must be equal to the last bit. With False a check passes if all numbers of it are
+            equal except for rounding (a relative difference of 1e-9).
+        seconds: The time limit of each call.
+
+    Returns:
+        The report. In a notebook it shows itself; ``report.passed`` is True if all checks passed, and
+        ``report.assert_passed()`` raises an AssertionError otherwise, for pytest.
+
+    Raises:
+        TypeError: for an argument of the wrong type, such as a solution that cannot be called.
+        ValueError: if there is no such exercise, or for a time limit that is not positive.
+    """
+    found = find(exercise)
+    if not callable(solution):
+        raise TypeError(f"solution must be a function, such as {found.name}, got {shown(solution)}")
+    checks.boolean("exact", exact)
+    if checks.finite("seconds", seconds) <= 0.0:
+        raise ValueError(f"seconds must be positive, got {seconds!r}")
+    records = [_record(one, solution, seconds) for one in found.checks]
+    references = [_record(one, found.model, MODEL_SECONDS) for one in found.checks]
+    results = []
+    for one, mine, reference in zip(found.checks, records, references, strict=True):
+        difference = first_difference(mine, reference)
+        if mine.faults and difference is not None and difference.entries == (ONLY_REFERENCE,):
+            difference = None  # everything is equal until the function was stopped
+        results.append(CheckResult(one.title, tuple(mine.faults), difference, exact))
+    report = Report(found, tuple(results), ())
+    if report.passed:
+        return report
+    mistakes, alternatives = recognised(found, records)
+    return Report(found, tuple(results), mistakes, tuple(_advice(records, references)), alternatives)
+
+
+ONLY_REFERENCE = "only the reference goes that far"
+
+
+def _record(one: Check, function: Callable[..., Any], seconds: float) -> Record:
+    """Returns the record of a check, with the reason if the function was stopped."""
+    record = Record()
+    try:
+        one.run(function, record, seconds)
+    except Misuse as misuse:
+        record.faults.insert(0, str(misuse))
+    return record
+
+
+def recognised(exercise: Exercise, records: Sequence[Record]) -> tuple[tuple[str, ...], bool]:
+    """Returns the explanations of the mistakes with which the reference gives the same records.
+
+    Args:
+        exercise: The exercise.
+        records: The records of a solution in all of its checks. Those of calls that were stopped are left out.
+
+    Returns:
+        The explanations, and whether each of them alone is enough: one mistake, several of which each one is enough, or
+        two that are made together.
+    """
+    finished = [
+        (one, record)
+        for one, record in zip(exercise.checks, records, strict=True)
+        if record.events and not any(record.faults)
+    ]
+    if not finished:
+        return (), False
+    for exact in (True, False):
+        single = [key for key in exercise.mistakes if _explains(exercise, {key}, finished, exact)]
+        if single:
+            return tuple(MISTAKES[key] for key in single), len(single) > 1
+        for pair in combinations(exercise.mistakes, 2):
+            if _explains(exercise, set(pair), finished, exact):
+                return tuple(MISTAKES[key] for key in pair), False
+    return (), False
+
+
+def _explains(exercise: Exercise, keys: set[str], finished: Sequence[tuple[Check, Record]], exact: bool) -> bool:
+    """Returns whether the reference with these mistakes built in gives the same records."""
+    model = partial(exercise.model, wrong=frozenset(keys))
+    for one, record in finished:
+        theirs = Record(_Same(record.events, exact))
+        try:
+            with np.errstate(all="ignore"):  # values may diverge
+                one.run(model, theirs, MODEL_SECONDS)
+        except Misuse:
+            return False
+        if len(theirs.events) != len(record.events):
+            return False
+    return True
+
+
+class _Same(list[Event]):
+    """Events that must be the same as others: the first one that differs ends the call, which saves time."""
+
+    def __init__(self, others: Sequence[Event], exact: bool) -> None:
+        super().__init__()
+        self._others, self._exact = others, exact
+
+    def append(self, event: Event) -> None:
+        other = self._others[len(self)] if len(self) < len(self._others) else None
+        if other is None or (event.place, event.quantity) != (other.place, other.quantity):
+            raise Misuse("another order of events")
+        if not equal(other.value, event.value, self._exact):
+            raise Misuse("another value")
+        super().append(event)
+
+
+def _advice(records: Sequence[Record], references: Sequence[Record]) -> Iterator[str]:
+    """Yields remarks on tables that never change and generators that are never used."""
+    for quantity in {event.quantity: None for reference in references for event in reference.events}:
+        if not (_constant(records, quantity) and not _constant(references, quantity)):
+            continue
+        if quantity == RANDOM_NUMBERS:
+            yield "rng is never used: draw all random numbers from it"
+        elif quantity in ("q", "w", "values", "estimates", "counts"):
+            yield NEVER_CHANGED.format(table=quantity)
+
+
+def _constant(records: Sequence[Record], quantity: str) -> bool:
+    """Returns whether a quantity is recorded, and keeps its first value in every record."""
+    compared = 0
+    for record in records:
+        values = [event.value for event in record.events if event.quantity == quantity]
+        compared += len(values)
+        if not all(equal(value, values[0], exact=True) for value in values):
+            return False
+    return compared > len(records)

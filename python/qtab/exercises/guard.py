@@ -1,0 +1,81 @@
+"""Calls a solution, and turns whatever goes wrong into a sentence for the student."""
+
+import inspect
+import random
+import traceback
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from qtab.exercises.record import Misuse, Record
+from qtab.exercises.time_limit import TimeIsUp, call_within
+
+GLOBAL_NUMPY = (
+    "it uses NumPy's global generator (np.random.random, np.random.seed, ...): draw all random numbers from rng"
+)
+GLOBAL_PYTHON = "it uses Python's global generator (the module random): draw all random numbers from rng"
+
+
+def guarded(function: Callable[..., Any], arguments: Sequence[Any], record: Record, seconds: float) -> Any:
+    """Calls a function; returns its result.
+
+    The states of the global generators are the same afterwards.
+
+    Raises:
+        Misuse: if the function raises an exception, or does not return in time.
+    """
+    check_parameters(function, len(arguments))
+    numpy_before, python_before = np.random.get_state(legacy=False), random.getstate()  # noqa: NPY002
+    try:
+        return call_within(seconds, function, arguments)
+    except Misuse:
+        raise
+    except TimeIsUp:
+        raise Misuse(f"it was stopped after {seconds:g} seconds: is there a loop that never ends?") from None
+    except (Exception, SystemExit) as error:
+        raise Misuse(f"it raised {_named(error)}{_line(function, error)}") from None
+    finally:
+        if not _same_state(numpy_before, np.random.get_state(legacy=False)):  # noqa: NPY002
+            record.faults.append(GLOBAL_NUMPY)
+            np.random.set_state(numpy_before)  # noqa: NPY002
+        if random.getstate() != python_before:
+            record.faults.append(GLOBAL_PYTHON)
+            random.setstate(python_before)
+
+
+def check_parameters(function: Callable[..., Any], count: int) -> None:
+    """Checks that a function takes so many arguments.
+
+    Raises:
+        Misuse: if it does not.
+    """
+    try:
+        signature = inspect.signature(function)
+    except (TypeError, ValueError):  # a function in C
+        return
+    try:
+        signature.bind(*range(count))
+    except TypeError:
+        raise Misuse(f"it must take {count} arguments in the order of the exercise, but takes {signature}") from None
+
+
+def _same_state(one: Any, other: Any) -> bool:
+    return bool(
+        one["state"]["pos"] == other["state"]["pos"] and np.array_equal(one["state"]["key"], other["state"]["key"])
+    )
+
+
+def _named(error: BaseException) -> str:
+    message = str(error)
+    return f"{type(error).__name__}: {message}" if message else type(error).__name__
+
+
+def _line(function: Callable[..., Any], error: BaseException) -> str:
+    """Returns the last line of the student's file, or cell, that led to an error."""
+    code = getattr(inspect.unwrap(function), "__code__", None)
+    frames = traceback.extract_tb(error.__traceback__)
+    own = [frame for frame in frames if code is not None and frame.filename == code.co_filename]
+    if not own:
+        return ""
+    return f", in line {own[-1].lineno}" + (f": {own[-1].line}" if own[-1].line else "")

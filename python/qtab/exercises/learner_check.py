@@ -1,0 +1,123 @@
+"""Checks of learners: a few episodes in an environment, whose tables are compared after each step."""
+
+from collections.abc import Callable, Mapping
+from contextlib import closing
+from dataclasses import dataclass, field
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab.config import Config
+from qtab.envs.quantities import quantities_of
+from qtab.exercises.exercise import Solution, parameters
+from qtab.exercises.guard import guarded
+from qtab.exercises.record import Record
+from qtab.exercises.recording_env import RecordingEnv
+from qtab.reference.discretizers import TileCoding
+from qtab.reference.streams import agent_stream
+
+Table = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class LearnerCheck:
+    """Lets a learner learn for a few episodes."""
+
+    title: str
+    model: Solution
+    env_id: str
+    episodes: int
+    max_episode_steps: int
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    """The learning rate, the discount and the others, by the names of the parameters."""
+    table: str = "q"
+    """The name of the array that the learner changes: ``q``, (states, actions), or ``values``, (states,)."""
+    spread: float = 0.0
+    """The initial values lie between minus this number and this number."""
+    seed: int = 0
+
+    def run(self, function: Solution, record: Record, seconds: float) -> None:
+        """Calls a learner, and records its tables, draws and actions."""
+        with closing(gym.make(self.env_id, max_episode_steps=self.max_episode_steps)) as env:
+            rng: Any = agent_stream(self.seed, "PCG64")
+            names = parameters(self.model)
+            table = self.initial_table(env)
+            used_rng = rng if "rng" in names else None
+            known = quantities_of(self.env_id)
+            recording = RecordingEnv(env, known, self.seed, self.episodes, {self.table: table}, used_rng, record)
+            given: dict[str, Any] = {
+                "env": recording,
+                self.table: table,
+                "episodes": self.episodes,
+                "rng": rng,
+                **self.settings,
+                **self.own_arguments(env),
+            }
+            guarded(function, [given[name] for name in names], record, seconds)
+            recording.finish()
+
+    def initial_table(self, env: gym.Env) -> Table:
+        """Returns the values before the first episode."""
+        return self._spread((self.states(env), int(env.action_space.n)))  # type: ignore[attr-defined]
+
+    def states(self, env: gym.Env) -> int:
+        """Returns the number of rows of the table."""
+        return int(env.observation_space.n)  # type: ignore[attr-defined]
+
+    def own_arguments(self, env: gym.Env) -> Mapping[str, Any]:  # noqa: ARG002
+        """Returns the arguments that only this kind of learner takes."""
+        return {}
+
+    def _spread(self, shape: tuple[int, ...]) -> Table:
+        return np.random.default_rng(self.seed).uniform(-self.spread, self.spread, shape)
+
+
+@dataclass(frozen=True)
+class PredictionCheck(LearnerCheck):
+    """Lets a learner estimate the values of a policy."""
+
+    table: str = "values"
+
+    def initial_table(self, env: gym.Env) -> Table:
+        """Returns the values before the first episode."""
+        return self._spread((self.states(env),))
+
+    def own_arguments(self, env: gym.Env) -> Mapping[str, Any]:
+        """Returns the policy: an action for each state."""
+        space: Any = env.action_space
+        return {"policy": np.random.default_rng(self.seed + 1).integers(int(space.n), size=self.states(env))}
+
+
+@dataclass(frozen=True)
+class FeatureCheck(LearnerCheck):
+    """Lets a learner with linear function approximation learn on tiles."""
+
+    table: str = "w"
+    tilings: int = 4
+    tiles: tuple[int, ...] = (2, 2, 2, 2)
+    low: tuple[float, ...] = (-2.4, -2.0, -0.21, -2.0)
+    high: tuple[float, ...] = (2.4, 2.0, 0.21, 2.0)
+
+    def states(self, env: gym.Env) -> int:
+        """Returns the number of features."""
+        return self._tiles(env).shape[0]
+
+    def own_arguments(self, env: gym.Env) -> Mapping[str, Any]:
+        """Returns the function from an observation to its active features."""
+        coding = self._tiles(env)
+        features: Callable[[Any], NDArray[np.int64]] = lambda observation: np.array(coding.rows(observation))  # noqa: E731
+        return {"features": features}
+
+    def _tiles(self, env: gym.Env) -> TileCoding:
+        space: Any = env.observation_space
+        config = Config(
+            env=self.env_id,
+            discretizer="tiles",
+            tilings=self.tilings,
+            tiles=self.tiles,
+            low=self.low,
+            high=self.high,
+        )
+        return TileCoding(space, config)

@@ -1,0 +1,113 @@
+"""The result of checking a solution."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from qtab._utils import html
+from qtab._utils.fields import with_fields
+from qtab.exercises.exercise import Exercise
+from qtab.exercises.record import Difference
+
+
+@with_fields
+@dataclass(frozen=True)
+class CheckResult:
+    """The result of one check."""
+
+    title: str
+    """The settings of the check."""
+    faults: tuple[str, ...]
+    """What the function did wrong besides its numbers, such as an exception that it raised."""
+    difference: Difference | None
+    """The first difference from the reference; None if there is none, or if the function was stopped before one."""
+    exact: bool
+    """Whether a difference by rounding counts."""
+
+    @property
+    def passed(self) -> bool:
+        """Whether the function was not at fault, and its numbers are those of the reference."""
+        return not self.faults and (self.difference is None or (not self.exact and self.difference.only_rounding))
+
+    @property
+    def lines(self) -> list[str]:
+        """What is wrong, line by line; empty if the check passed."""
+        if self.passed:
+            return []
+        lines = list(self.faults)
+        if self.difference is not None:
+            lines += str(self.difference).splitlines()
+            if self.difference.only_rounding:
+                lines.append("  everything is equal except for rounding: the operations are in another order")
+        return lines
+
+
+@with_fields
+@dataclass(frozen=True, repr=False)
+class Report:
+    """The result of :func:`qtab.exercises.check`: what passed, the first differences, recognised mistakes."""
+
+    exercise: Exercise
+    results: tuple[CheckResult, ...]
+    """The result of each check, in order."""
+    mistakes: tuple[str, ...]
+    """An explanation of each recognised mistake: with them built in, the reference gives the solution's numbers in
+    every check. Empty if none was recognised."""
+    advice: tuple[str, ...] = ()
+    """Other remarks on how to go on."""
+    alternatives: bool = False
+    """Whether each of ``mistakes`` alone explains the numbers, because the checks cannot distinguish them."""
+
+    @property
+    def passed(self) -> bool:
+        """Whether all checks passed."""
+        return all(result.passed for result in self.results)
+
+    def assert_passed(self) -> None:
+        """Does nothing if all checks passed.
+
+        Raises:
+            AssertionError: if one did not. Its message is the report.
+        """
+        if not self.passed:
+            raise AssertionError(f"\n{self}")
+
+    def __repr__(self) -> str:
+        """Returns one line; ``print`` shows the whole report."""
+        return f"<Report on {self._heading}>"
+
+    def __str__(self) -> str:
+        """Returns the report as text."""
+        lines = [self._heading]
+        for result in self.results:
+            lines.append(f"  {_word(result)}  {result.title}")
+            lines += [f"          {line}" for line in result.lines]
+        return "\n".join([*lines, *self._notes()])
+
+    def _repr_html_(self) -> str:
+        """Returns the report as a table, for notebooks."""
+        rows = [(_word(result), "\n".join([result.title, *result.lines])) for result in self.results]
+        return html.sentences(self._heading, (), rows, self._notes())
+
+    @property
+    def _heading(self) -> str:
+        count = sum(result.passed for result in self.results)
+        found = f"all {count} checks passed" if self.passed else f"{count} of {len(self.results)} checks passed"
+        return f"exercise {self.exercise.number}, {self.exercise.name}: {found}"
+
+    def _notes(self) -> list[str]:
+        return [*_recognised(self.mistakes, self.alternatives), *self.advice]
+
+
+def _word(result: CheckResult) -> str:
+    return "passed" if result.passed else "FAILED"
+
+
+def _recognised(mistakes: Sequence[str], alternatives: bool) -> list[str]:
+    if not mistakes:
+        return []
+    if len(mistakes) == 1:
+        count = "this mistake"
+    else:
+        count = "any one of these mistakes" if alternatives else f"these {len(mistakes)} mistakes"
+    lead = f"The reference with {count} built in gives the same numbers as your function in all checks:"
+    return [lead, *(f"- {mistake}" for mistake in mistakes)]

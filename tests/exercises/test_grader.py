@@ -1,0 +1,249 @@
+"""The grader passes what is right, and says what is wrong with everything else."""
+
+import random
+import re
+import threading
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+import numpy as np
+import pytest
+
+import qtab
+from qtab.exercises import EXERCISES, check, find
+from qtab.exercises.mistakes import MISTAKES
+
+SARSA = find("sarsa").model
+NAMES = sorted(EXERCISES)
+
+
+def epsilon_greedy(values, epsilon, rng):
+    return np.argmax(values) if rng.random() < 1 - epsilon else rng.integers(len(values))
+
+
+def book_sarsa(env, q, episodes, learning_rate, discount, epsilon, rng):
+    """As many students write it: an action in every next state, and no value after the end."""
+    for _ in range(episodes):
+        state, _ = env.reset()
+        action, done = epsilon_greedy(q[state], epsilon, rng), False
+        while not done:
+            next_state, reward, terminated, truncated, _ = env.step(action)
+            done = terminated or truncated
+            next_action = epsilon_greedy(q[next_state], epsilon, rng)
+            target = reward + discount * q[next_state, next_action] * (not done)
+            q[state, action] += learning_rate * (target - q[state, action])
+            state, action = next_state, next_action
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_reference_passes(name: str) -> None:
+    report = check(name, EXERCISES[name].model)
+    assert report.passed
+    assert report.mistakes == report.advice == ()
+    report.assert_passed()
+    assert f"all {len(report.results)} checks passed" in repr(report)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_each_mistake_fails_and_is_recognised(name: str) -> None:
+    exercise = EXERCISES[name]
+    for key in exercise.mistakes:
+        report = check(name, partial(exercise.model, wrong=frozenset([key])))
+        assert not report.passed, key
+        assert report.mistakes == (MISTAKES[key],), key
+        assert any(result.difference is not None for result in report.results), key
+
+
+def test_every_mistake_belongs_to_an_exercise() -> None:
+    assert MISTAKES.keys() == {key for exercise in EXERCISES.values() for key in exercise.mistakes}
+
+
+def test_two_mistakes_at_once_are_recognised() -> None:
+    report = check("sarsa", book_sarsa)
+    assert not report.passed
+    assert set(report.mistakes) == {MISTAKES["truncation"], MISTAKES["draws_at_end"]}
+    assert not report.alternatives
+    assert "these 2 mistakes" in str(report)
+
+
+def test_an_unknown_mistake_is_not_explained() -> None:
+    def odd(env, q, *others):
+        SARSA(env, q, *others)
+        q *= 1.5
+
+    report = check("sarsa", odd)
+    assert not report.passed
+    assert report.mistakes == ()
+    assert report.results[0].difference is not None
+    assert report.results[0].difference.episode == 2  # after the last of three episodes
+
+
+def test_the_first_difference_has_its_episode_step_and_numbers() -> None:
+    def late(env, q, episodes, learning_rate, discount, epsilon, rng):
+        """Sarsa until the third step, and then another learning rate."""
+        steps = 0
+        for _ in range(episodes):
+            state, _ = env.reset()
+            action, over = epsilon_greedy(q[state], epsilon, rng), False
+            while not over:
+                next_state, reward, terminated, truncated, _ = env.step(action)
+                over, next_action, target = terminated or truncated, 0, reward
+                if not terminated:
+                    next_action = epsilon_greedy(q[next_state], epsilon, rng)
+                    target = reward + discount * q[next_state, next_action]
+                rate = learning_rate if steps < 2 else 0.25
+                q[state, action] += rate * (target - q[state, action])
+                state, action, steps = next_state, next_action, steps + 1
+
+    difference = check("sarsa", late).results[0].difference
+    assert difference is not None
+    assert (difference.episode, difference.step, difference.quantity) == (0, 2, "q")
+    (at,) = np.argwhere(difference.yours != difference.reference)
+    assert difference.yours[tuple(at)] == difference.reference[tuple(at)] / 2 == -0.25
+    assert re.search(
+        r"state \d+ \(row \d, column \d+\); action \d \((up|down|left|right)\); reward -1", str(difference)
+    )
+    assert f"q[{at[0]}, {at[1]}]: before 0, yours -0.25, reference -0.5" in str(difference)
+
+
+def test_rounding_counts_unless_it_is_allowed() -> None:
+    def average(estimates, counts, action, reward):
+        counts[action] += 1
+        estimates[action] = estimates[action] * (1 - 1 / counts[action]) + reward / counts[action]
+
+    report = check("sample_average", average)
+    assert not report.passed
+    assert "except for rounding" in str(report)
+    assert check("sample_average", average, exact=False).passed
+    assert not check("sample_average", lambda *_: None, exact=False).passed
+
+
+def broken(function: Callable[..., Any], message: str, name: str = "sarsa", seconds: float = 10.0) -> None:
+    """Checks that every check of a function fails with a message, and none is left out."""
+    report = check(name, function, seconds=seconds)
+    assert len(report.results) == len(EXERCISES[name].checks)
+    for result in report.results:
+        assert not result.passed
+        assert any(message in fault for fault in result.faults), result.faults
+
+
+def raises(env, q, *others):
+    q[0, 99] = 1.0
+
+
+def returns_late(env, *others):
+    while True:
+        try:
+            env.reset()
+        except BaseException:  # noqa: S112 - as careless as can be
+            continue
+
+
+@pytest.mark.parametrize(
+    ("function", "message"),
+    [
+        (raises, "it raised IndexError: index 99 is out of bounds for axis 1 with size 4, in line"),
+        (lambda *_: exit(), "it raised SystemExit"),
+        (lambda env, q: None, "it must take 7 arguments in the order of the exercise, but takes (env, q)"),
+        (lambda env, *_: env.reset(seed=1), "it calls env.reset with a seed"),
+        (lambda env, *_: env.step(0), "it calls env.step before env.reset()"),
+        (lambda env, *_: (env.reset(), env.step(4)), "an action must be an integer from 0 to 3, got 4"),
+        (lambda env, *_: (env.reset(), env.step(1.0)), "an action must be an integer from 0 to 3, got 1.0"),
+        (lambda env, *_: [env.reset() for _ in range(50)], "but episodes is"),
+        (lambda env, *_: (env.reset(), [env.step(0) for _ in range(2000)]), "env.step after the end of the episode"),
+    ],
+)
+def test_misuse_is_reported_and_the_next_check_follows(function: Callable[..., Any], message: str) -> None:
+    broken(function, message)
+
+
+@pytest.mark.parametrize("in_thread", [False, True])
+def test_a_loop_without_an_end_is_stopped(in_thread: bool) -> None:
+    done = []
+
+    def checked() -> None:
+        broken(returns_late, "it was stopped after 0.2 seconds", seconds=0.2)
+        assert check("sarsa", SARSA).passed
+        done.append(True)
+
+    if in_thread:
+        thread = threading.Thread(target=checked)
+        thread.start()
+        thread.join()
+    else:
+        checked()
+    assert done == [True]
+
+
+@pytest.mark.parametrize(
+    ("function", "message"),
+    [
+        (lambda values, epsilon, rng: 1.5, "call 0: action must be an integer, got 1.5 (float)"),
+        (lambda values, epsilon, rng: None, "call 0: action must be an integer, got None"),
+        (lambda values, epsilon, rng: int(values.sort() is None), "call 0: it changes its argument values"),
+    ],
+)
+def test_results_of_the_wrong_type_and_changed_arguments_are_reported(function: Any, message: str) -> None:
+    broken(function, message, "epsilon_greedy")
+
+
+def test_results_of_the_wrong_shape_are_reported() -> None:
+    broken(lambda *_: (np.zeros(3), np.zeros(3)), "values must be an array of shape (", "value_iteration")
+    broken(lambda *_: np.zeros(3), "it must return values, policy, got an array of shape (3,)", "value_iteration")
+    broken(lambda P, policy, values, discount: values.tolist(), "values must be an array of", "policy_evaluation")  # noqa: N803
+
+
+def test_global_generators_are_reported_and_left_as_they_were() -> None:
+    def legacy(env, q, episodes, learning_rate, discount, epsilon, rng):
+        np.random.seed(1)  # noqa: NPY002
+        SARSA(env, q, episodes, learning_rate, discount, epsilon, rng)
+
+    def python(env, q, episodes, learning_rate, discount, epsilon, rng):
+        random.random()  # noqa: S311
+        SARSA(env, q, episodes, learning_rate, discount, epsilon, rng)
+
+    numpy_before, python_before = np.random.get_state()[1].copy(), random.getstate()  # type: ignore[index]  # noqa: NPY002
+    broken(legacy, "it uses NumPy's global generator")
+    broken(python, "it uses Python's global generator")
+    assert np.array_equal(np.random.get_state()[1], numpy_before)  # type: ignore[index]  # noqa: NPY002
+    assert random.getstate() == python_before
+
+
+def test_a_copied_table_and_an_unused_generator_are_remarked() -> None:
+    report = check("sarsa", lambda env, q, *others: SARSA(env, q.copy(), *others))
+    assert any("q never changes" in remark for remark in report.advice)
+
+    def own_generator(env, q, episodes, learning_rate, discount, epsilon, rng):
+        SARSA(env, q, episodes, learning_rate, discount, epsilon, np.random.default_rng(0))
+
+    assert any("rng is never used" in remark for remark in check("sarsa", own_generator).advice)
+
+
+def test_a_report_is_an_assertion_and_a_table() -> None:
+    report = check(7, book_sarsa)
+    with pytest.raises(AssertionError, match=r"exercise 7, sarsa: 0 of 3 checks passed"):
+        report.assert_passed()
+    shown = report._repr_html_()
+    assert "FAILED" in shown
+    assert "first difference" in shown
+    assert "truncation is treated as termination" in shown
+    assert repr(report) == "<Report on exercise 7, sarsa: 0 of 3 checks passed>"
+
+
+def test_stopped_functions_are_not_compared_with_mistakes() -> None:
+    assert check("sarsa", raises).mistakes == ()
+
+
+def test_exercises_are_found_by_name_and_number() -> None:
+    assert [exercise.number for exercise in EXERCISES.values()] == list(range(1, 13))
+    assert find("Q-learning") is find(8) is find("8") is EXERCISES["q_learning"]
+    assert repr(find(8)) == "<Exercise 8, q_learning: Q-learning, section 6.5>"
+    with pytest.raises(ValueError, match=r"there is no exercise 'sarsaa' \(did you mean 'sarsa'\?\)"):
+        find("sarsaa")
+    with pytest.raises(TypeError, match="exercise must be a name or a number, got None"):
+        find(None)  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match="solution must be a function, such as sarsa, got 3"):
+        qtab.exercises.check("sarsa", 3)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="seconds must be positive"):
+        check("sarsa", SARSA, seconds=0)
