@@ -45,6 +45,7 @@ def test_the_reference_passes(name: str) -> None:
     assert f"all {len(report.results)} checks passed" in repr(report)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_each_mistake_fails_and_is_recognised(name: str) -> None:
     exercise = EXERCISES[name]
