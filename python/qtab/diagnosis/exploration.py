@@ -1,6 +1,7 @@
 """Exploration: values that were never updated, too little of it, or so much at the end that it costs returns."""
 
 from collections.abc import Mapping
+from contextlib import closing
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,8 @@ from qtab.diagnosis.facts import Facts
 from qtab.diagnosis.finding import Finding, Unchecked, as_keywords, change, changes, given, percent
 from qtab.diagnosis.learning_rate import overwrites
 from qtab.results.rates import epsilons
+from qtab.results.words import cell_in_words, map_columns
+from qtab.training.setup.run_env import can_be_made, make_run_env
 
 MOST_UNTRIED = 0.2
 """A larger share of untried actions in visited states is reported."""
@@ -32,7 +35,8 @@ def coverage(facts: Facts) -> Finding | Unchecked | None:
     if per_entry > MOST_UPDATES:
         return None
     states = np.flatnonzero((entries & ~tried).sum(axis=1))
-    where = ", ".join(_place(facts, int(row)) for row in states[:SHOWN])
+    columns = _columns(facts)
+    where = "; ".join(cell_in_words(facts.run, int(row), columns) for row in states[:SHOWN])
     more = 5 * facts.config.episodes
     return Finding(
         name="coverage",
@@ -59,11 +63,12 @@ def _coarser(facts: Facts) -> tuple[Mapping[str, Any], ...]:
     return ()
 
 
-def _place(facts: Facts, row: int) -> str:
-    discretizer = facts.run.discretizer
-    if not discretizer.has_cells or len(discretizer.shape) == 1:
-        return f"{'cell' if discretizer.has_cells else 'row'} {row}"
-    return f"cell {tuple(int(index) for index in np.unravel_index(row, discretizer.shape))}"
+def _columns(facts: Facts) -> int | None:
+    """Returns the number of columns of the map of numbered states; None if there is no map, or it is not known."""
+    if facts.run.discretizer.low.ndim or not can_be_made(facts.config):
+        return None
+    with closing(make_run_env(facts.config)) as env:
+        return map_columns(env)
 
 
 LEAST_REACHED = 0.01

@@ -4,6 +4,7 @@ A state is the number of a cell, counted row by row from the upper left corner.
 """
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 from qtab._utils import checks
 from qtab._utils.shown import shown
@@ -112,7 +113,14 @@ def grid_world(
         return 1.0, next_cell[0] * columns + next_cell[1], float(entered[next_cell]), at_goal
 
     table = {state: {action: [transition(cell, action)] for action in _MOVES} for state, cell in enumerate(cells)}
-    return TabularEnv(table, [float(cell in starts) / len(starts) for cell in cells])
+    return with_names(TabularEnv(table, [float(cell in starts) / len(starts) for cell in cells]), layout)
+
+
+def with_names(env: TabularEnv, layout: Sequence[str]) -> TabularEnv:
+    """Gives an environment its map and the names of its actions, for texts that name them; returns it."""
+    named: Any = env  # not every transition table has a map
+    named.layout, named.action_names = tuple(layout), ACTION_NAMES
+    return env
 
 
 def _size(layout: Sequence[str]) -> tuple[int, int]:
@@ -161,7 +169,7 @@ def grid_world_5x5() -> TabularEnv:
 
     cells = [(row, column) for row in range(size) for column in range(size)]
     table = [[[transition(*cell, action)] for action in _MOVES] for cell in cells]
-    return TabularEnv(table, [1 / len(cells)] * len(cells))
+    return with_names(TabularEnv(table, [1 / len(cells)] * len(cells)), GRID_WORLD_5X5)
 
 
 def grid_world_4x4() -> TabularEnv:
@@ -184,4 +192,5 @@ def grid_world_4x4() -> TabularEnv:
 
     states = range(size * size)
     table = [[[transition(state, action)] for action in _MOVES] for state in states]
-    return TabularEnv(table, [float(state not in goals) / (len(states) - len(goals)) for state in states])
+    starts = [float(state not in goals) / (len(states) - len(goals)) for state in states]
+    return with_names(TabularEnv(table, starts), GRID_WORLD_4X4)

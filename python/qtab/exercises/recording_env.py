@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from qtab.envs.quantities import Quantities
 from qtab.exercises.record import Event, Misuse, Record
-from qtab.explanation.words import map_columns, state_in_words
+from qtab.results.words import map_columns, state_in_words
 
 RANDOM_NUMBERS = "random numbers"
 """The quantity that holds the state of the random generator."""

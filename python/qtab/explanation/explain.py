@@ -1,9 +1,9 @@
 """``qtab.explain``: the steps of an episode, repeated by the reference learner, with the numbers of every update."""
 
 import time
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import gymnasium as gym
 import numpy as np
@@ -15,17 +15,21 @@ from qtab.config import Config
 from qtab.config.options import AVERAGE_REWARD, MONTE_CARLO
 from qtab.explanation.explanation import Explanation
 from qtab.explanation.fast_forward import Start, start_of
-from qtab.explanation.records import ExplainedStep
+from qtab.explanation.records import ExplainedStep, Trace, Update
 from qtab.explanation.watcher import SeenStep, Watcher
-from qtab.explanation.words import map_columns, state_in_words
 from qtab.reference import LEARNERS
 from qtab.reference.parts.observer import observed_by
 from qtab.reference.parts.schedules import LearningRate
-from qtab.results.axes import run_quantities
 from qtab.results.rates import ONLY_FIRST, repeatable
 from qtab.results.run import Run
 from qtab.results.time_steps import rows_of
+from qtab.results.words import Names, checked_action_names, numbered_states
 from qtab.training.setup.run_env import check_same, make_run_env
+
+if TYPE_CHECKING:
+    from qtab.plots.arrangements.grid_map import Layout
+
+Record = TypeVar("Record", Update, Trace)
 
 N_STEP = ("n_step_sarsa", "n_step_tree_backup", "n_step_q_sigma")
 """The algorithms whose updates wait for n steps."""
@@ -38,6 +42,8 @@ def explain(
     start: int = 0,
     env: gym.Env | None = None,
     *,
+    layout: "Layout | None" = None,
+    action_names: Sequence[str] | None = None,
     progress: bool | None = None,
 ) -> Explanation:
     """Explains steps of an episode: the observation, the reason for the action, and the update from the result.
@@ -54,6 +60,10 @@ def explain(
         steps: The number of steps to explain; fewer if the episode ends before.
         start: The first of these steps, from 0.
         env: The environment, if that of the run cannot be made again. It must be the environment of the training.
+        layout: The map of an environment with numbered states, as for :func:`qtab.plots.values`, which names them by
+            their row and column. None takes the known one, or the environment's attribute ``layout`` or ``shape``.
+        action_names: A name for each action, as for :func:`qtab.plots.policy`. None takes the environment's attribute
+            ``action_names``, or else ``run.action_names``.
         progress: Whether to show a progress bar. None shows one on a terminal if it takes more than a second.
 
     Raises:
@@ -79,6 +89,12 @@ def explain(
         raise TypeError(f"env must be an environment, got {env!r}")
     if env is not None:
         check_same(run, env)
+    columns = None
+    if layout is not None:
+        from qtab.plots.arrangements.grid_map import checked_layout
+
+        columns = len(checked_layout(layout, numbered_states(run))[0])
+    checked_action_names(run.action_names, action_names)
     began = time.perf_counter()
     config = run.config
     beginning = start_of(run, episode) if env is None else None
@@ -93,11 +109,12 @@ def explain(
                 f"the reference does not repeat this run: episode {first + int(np.argmax(theirs != kept))} differs. "
                 "Was it trained on another environment, machine or version? qtab.verify(run) compares them"
             )
+    names = Names.of(run, repeated.env, columns, action_names)
     explained = range(len(watcher.steps))[start:][:steps]
     return Explanation(
         config=config,
         episode=episode,
-        steps=tuple(_explained(run, watcher, index, repeated.map_columns) for index in explained),
+        steps=tuple(_explained(run, watcher, index, names) for index in explained),
         episode_length=len(watcher.steps),
         episode_return=float(repeated.returns[-1]),
         learning_rate=_learning_rate(config, episode),
@@ -113,7 +130,8 @@ class _Repeated:
     table: NDArray[np.float64]
     returns: NDArray[np.float64]
     lengths: NDArray[np.int64]
-    map_columns: int | None
+    env: gym.Env
+    """The environment, for the names that it gives; it may be closed."""
 
     def agrees_with(self, start: Start, run: Run) -> bool:
         """Returns whether the actions, the return, and every value after the episode are those of Rust.
@@ -142,7 +160,7 @@ def _repeat(run: Run, episode: int, env: gym.Env | None, start: Start | None, pr
         with ProgressBar(episodes, "episode", progress, "repeating") as bar, observed_by(watcher):
             watched = _Watched(stepped, run, watcher, episodes, bar.move_to)
             table, returns, lengths = LEARNERS[run.config.algorithm](watched, run.config, stop_after=episodes)
-        return _Repeated(watcher, table, returns, lengths, map_columns(stepped))
+        return _Repeated(watcher, table, returns, lengths, stepped)
     finally:
         if env is None:
             stepped.close()
@@ -162,39 +180,43 @@ def _learning_rate(config: Config, episode: int) -> float:
     return schedule.value
 
 
-def _explained(run: Run, watcher: Watcher, index: int, columns: int | None) -> ExplainedStep:
+def _explained(run: Run, watcher: Watcher, index: int, names: Names) -> ExplainedStep:
     step, choice = watcher.steps[index], watcher.choices[index]
     pending: tuple[int, ...] = ()
     if run.config.algorithm in N_STEP:
         pending = tuple(range(sum(len(seen.updates) for seen in watcher.steps[: index + 1]), index + 1))
-    known = run_quantities(run.config, run.discretizer)
     return ExplainedStep(
         step=index,
         observation=step.observation,
         rows=step.rows,
         cell=_cell(run, step.rows[0]),
-        state=state_in_words(known, step.observation, columns),
+        state=names.state(step.observation),
         action=run.actions[choice.action],
-        action_name=run.action_names[choice.action],
+        action_name=names.actions[choice.action],
         choice=choice,
         reward=step.reward,
         bonus=step.bonus,
         next_observation=step.next_observation,
         next_rows=step.next_rows,
         next_cell=_cell(run, step.next_rows[0]),
-        next_state=state_in_words(known, step.next_observation, columns),
+        next_state=names.state(step.next_observation),
         terminated=step.terminated,
         truncated=step.truncated,
         terminal=step.terminal,
         updates=tuple(step.updates),
         policy_updates=tuple(step.policy_updates),
-        planning=tuple(step.planning),
-        traces=step.traces,
+        planning=tuple(_named(update, update.rows[0], names) for update in step.planning),
+        traces=tuple(_named(trace, trace.row, names) for trace in step.traces),
         n_traces=step.n_traces,
         pending=pending,
         future_return=step.future_return,
         note=_note(run.config.algorithm, step),
     )
+
+
+def _named(record: Record, row: int, names: Names) -> Record:
+    """Returns a planning update or a trace with the names of its state and action."""
+    return replace(record, state=names.cell(row), action_name=names.actions[record.action])
 
 
 def _note(algorithm: str, step: SeenStep) -> str:

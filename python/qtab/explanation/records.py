@@ -109,6 +109,10 @@ class Update:
     """The equations of the update."""
     numbers: tuple[str, ...]
     """The same equations with their numbers, rounded to six digits."""
+    state: str = ""
+    """S in words, for planning updates; empty for others, whose state is that of their step."""
+    action_name: str = ""
+    """The name of A, for planning updates."""
 
     @property
     def assigned(self) -> bool:
@@ -126,6 +130,9 @@ class Trace:
     trace: float
     before: float
     after: float
+    state: str = ""
+    """The state in words: a place on a map, or the bounds of its cell."""
+    action_name: str = ""
 
 
 @dataclass(frozen=True)

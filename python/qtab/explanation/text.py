@@ -50,11 +50,11 @@ def details(step: ExplainedStep) -> list[tuple[str, str]]:
     if step.n_traces:
         for trace in step.traces:
             values = f"z = {number(trace.trace)}, {number(trace.before)} -> {number(trace.after)}"
-            lines.append(("trace", f"{place((trace.row,), trace.cell)} action {trace.action}: {values}"))
+            lines.append(("trace", f"{trace.state}, {trace.action_name}: {values}"))
         if step.n_traces > len(step.traces):
             lines.append(("trace", f"and {step.n_traces - len(step.traces)} more"))
     for update in step.planning[:SHOWN_PLANNING]:
-        lines.append(("planning", f"{place(update.rows, update.cell)} action {update.action}: {update.numbers[-1]}"))
+        lines.append(("planning", f"{update.state}, {update.action_name}: {update.numbers[-1]}"))
     if len(step.planning) > SHOWN_PLANNING:
         lines.append(("planning", f"and {len(step.planning) - SHOWN_PLANNING} more"))
     return lines

@@ -13,6 +13,7 @@ from qtab.plots.parts.colors import COLORS, brightness, is_dark
 from qtab.plots.parts.labels import below_label
 from qtab.plots.parts.panels import arranged, axes_for, cell_font_size, draw_cells, finish_panel, shade_unknown
 from qtab.plots.parts.subject import Drawable, Subject
+from qtab.results.words import checked_action_names
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -76,13 +77,7 @@ def checked_names(subject: Subject, given: Sequence[str] | None) -> tuple[str, .
         TypeError: if the given ones are not strings.
         ValueError: if there are too few or too many.
     """
-    if given is None:
-        return subject.action_names
-    if isinstance(given, str) or not all(isinstance(name, str) for name in given):
-        raise TypeError(f"action_names must hold a name for each action, got {given!r}")
-    if len(given) != len(subject.action_names):
-        raise ValueError(f"action_names must hold {len(subject.action_names)} names, got {len(given)}")
-    return tuple(given)
+    return checked_action_names(subject.action_names, given)
 
 
 def draw_moves(ax: "Axes", raster: Raster, taken: NDArray[np.bool_], names: Sequence[str]) -> None:

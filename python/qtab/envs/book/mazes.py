@@ -82,6 +82,7 @@ class ChangingMazeEnv(TabularEnv):
         self.mazes = tuple(grid_world(layout, step_reward=0.0, goal_reward=1.0) for layout in (before, after))
         first, _ = self.mazes
         super().__init__(first.P, first.initial_state_distrib)
+        self.layout = tuple(before)
         self.total_steps = 0
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[int, dict[str, Any]]:
