@@ -272,7 +272,7 @@ SPACES = {
     ),
     "unbounded observations": (
         "CartPole-v1",
-        "observation space must have finite bounds, got Box.*take low= and high=",
+        "observation space must have finite bounds for discretizer 'round', got Box.*take low= and high=, such as ",
     ),
     "an image": (
         ScriptedEnv([], dtype=np.uint8, high=255, dimensions=100),

@@ -13,6 +13,10 @@ from qtab.envs.actions import FLOATS
 
 Span = tuple[NDArray[np.float64], NDArray[np.float64]]
 """The lower and the upper limits of the components, two arrays of (d,)."""
+UNBOUNDED = 3.0
+"""The limit of a component without bounds in an example."""
+MOST_SHOWN = 8
+"""The largest number of components of an example."""
 
 
 class BoxDiscretizer(Discretizer):
@@ -53,12 +57,31 @@ def span(space: spaces.Box, low: Sequence[float] | None, high: Sequence[float] |
         if not np.isfinite(limit).all():
             raise ValueError(
                 f"{name} must be given, a number for each component, as the observation space has no finite bounds: "
-                f"{' '.join(str(space).split())}"
+                f"{' '.join(str(space).split())}{example_of_limits(space)}"
             )
         limits.append(limit)
     if not (limits[0] < limits[1]).all():
         raise ValueError(f"low must lie below high, got {limits[0].tolist()} and {limits[1].tolist()}")
     return limits[0], limits[1]
+
+
+def example_of_limits(space: spaces.Box, more: str = "") -> str:
+    """Returns the end of a message, an example of limits: the bounds of a space, and -3 and 3 for infinite ones.
+
+    Args:
+        space: The observation space.
+        more: Other settings of the example, before the limits.
+
+    Returns:
+        ``", such as low=[...], high=[...]"``; empty for a space of many components.
+    """
+    if len(space.low) > MOST_SHOWN:
+        return ""
+    low, high = (
+        [float(f"{bound:.3g}") if np.isfinite(bound) else instead for bound in bounds.tolist()]
+        for bounds, instead in ((space.low, -UNBOUNDED), (space.high, UNBOUNDED))
+    )
+    return f", such as {more}low={low}, high={high}"
 
 
 def per_dimension(name: str, given: tuple[int, ...], space: spaces.Box) -> tuple[int, ...]:

@@ -11,7 +11,7 @@ from qtab._discretizer_spec import RoundSpec
 from qtab._utils.shown import counted, shown
 from qtab.config import Config
 from qtab.discretizers.base import check_table_size
-from qtab.discretizers.box import BoxDiscretizer, box_of, check_stored_bounds
+from qtab.discretizers.box import BoxDiscretizer, box_of, check_stored_bounds, example_of_limits
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -31,8 +31,9 @@ class Rounding(BoxDiscretizer):
         box, scale = box_of(space), config.scale
         if not (np.isfinite(box.low).all() and np.isfinite(box.high).all()):
             raise ValueError(
-                f"the observation space must have finite bounds, got {box}; "
-                "discretizer 'bins' and 'tiles' take low= and high="
+                f"the observation space must have finite bounds for discretizer 'round', got "
+                f"{' '.join(str(box).split())}; discretizer 'bins' and 'tiles' take low= and high="
+                + example_of_limits(box, "discretizer='bins', bins=6, ")
             )
         if not (box.low <= box.high).all():
             raise ValueError(f"the observation space must have low <= high, got {box}")
