@@ -19,6 +19,7 @@ from qtab.config.functions import STORED, MissingFunction
 from qtab.config.merge import over
 from qtab.config.options import is_set
 from qtab.config.origin import copied, trained_on
+from qtab.config.schedules import epsilon
 from qtab.discretizers import AssignedRows
 from qtab.envs.origin.description import differences
 from qtab.envs.registry import versioned
@@ -240,16 +241,30 @@ def _config(name: str, run: Run, episodes: Any) -> Config:
     return run.config if count == run.config.episodes else run.config.replace(episodes=count)
 
 
+def rising_epsilon(run: Run, config: Config) -> str:
+    """Returns the end of a message: how far ε rises when a run is extended, and how to keep it low."""
+    schedule, finished = epsilon(config), len(run.episode_returns)
+    before, after = schedule.after(finished, run.config.episodes), schedule.after(finished, config.episodes)
+    if after <= before or finished == 0:
+        return ""
+    return (
+        f": epsilon rises from {before:.3g} to {after:.3g} and falls again, and the returns may become worse at first. "
+        "To keep it low, train on from the table instead: qtab.train(config=run.config.replace("
+        f"episodes={config.episodes - finished}, epsilon={config.min_epsilon!r}, initial_q=run.tables))"
+    )
+
+
 def log_what_differs(run: Run, config: Config) -> None:
     """Logs why the result differs, or may differ, from that of an uninterrupted run."""
     falling = falling_rates(config)
     if config.episodes != run.config.episodes and falling:
         _LOGGER.warning(
-            "%s now %s linearly over %s episodes instead of %s",
+            "%s now %s linearly over %s episodes instead of %s%s",
             " and ".join(falling),
             "fall" if len(falling) > 1 else "falls",
             f"{config.episodes:,}",
             f"{run.config.episodes:,}",
+            rising_epsilon(run, config) if "epsilon" in falling else "",
         )
     here = versions()
     others = [f"{name} {run.versions.get(name)}" for name in here if run.versions.get(name) != here[name]]

@@ -27,8 +27,10 @@ def resume(
 
     With the same number of episodes, the result equals the uninterrupted run bit for bit, including its visits and
     snapshots, even if the run was stopped in the middle of an episode. With more episodes, schedules such as a falling
-    ε are spread over all of them, as if the run had had so many from the start: ε jumps to another value than the one
-    at which it stopped, which the logger ``qtab`` reports. Training the config of such a run again gives different
+    ε are spread over all of them, as if the run had had so many from the start: ε rises again from the value at which
+    it stopped, and the returns may become worse at first. The logger ``qtab`` reports this. To keep ε low, train on
+    from the table instead: ``qtab.train(config=run.config.replace(episodes=1000, epsilon=0.0,
+    initial_q=run.tables))``. Training the config of such a run again gives different
     numbers, and :func:`qtab.verify` and :func:`qtab.explain` can repeat only the episodes before the extension.
 
     An environment that is stepped in Python is resumed with its next episode, since qtab cannot restore its state
@@ -41,6 +43,7 @@ def resume(
     Args:
         run: The run, or the path of a file that :meth:`qtab.Run.save` wrote.
         episodes: The number of episodes of the whole run, including the finished ones. None takes that of the run.
+            More than the run's let a falling ε rise again.
         env: The environment, for a run whose environment qtab cannot make again. It is not closed. It must be the one
             that the run was trained on, with the same arguments, wrappers, changed attributes and spaces, and no
             shorter time limit. None makes it again.

@@ -23,7 +23,8 @@ def add_arguments(parser: Parser) -> None:
     """Adds the arguments of the command."""
     parser.positional("run", "A file written by qtab train --save.")
     parser.output_flags()
-    episodes = "The number of episodes of the whole run, including the finished ones; by default that of the run."
+    episodes = "The number of episodes of the whole run, including the finished ones; by default that of the run. "
+    episodes += "With more, a falling epsilon is spread over all of them, and therefore rises again at first."
     parser.option("episodes", integer, episodes)
     save = "Save the run to this file; by default to RUN, which is replaced. Ctrl-C saves what was learned so far."
     parser.option("save", Path, save)
