@@ -15,8 +15,8 @@ from qtab.exercises.exercise import parameters
 from qtab.exercises.learner_check import FeatureCheck, LearnerCheck
 from qtab.exercises.record import Record
 from qtab.reference.dynamic_programming import sweep
-from qtab.reference.policies import EpsilonGreedy
-from qtab.reference.streams import agent_stream
+from qtab.reference.parts.policies import EpsilonGreedy
+from qtab.reference.parts.streams import agent_stream
 
 CONTROL = ["monte_carlo", "sarsa", "q_learning", "expected_sarsa", "n_step_sarsa", "dyna_q", "sarsa_lambda"]
 NAMES = {"n": "n_steps"}

@@ -2,8 +2,7 @@
 
 from collections.abc import Mapping
 
-from qtab._utils.shown import shown
-from qtab._utils.suggestions import did_you_mean
+from qtab._utils.shown import did_you_mean, shown
 from qtab.exercises.definitions import (
     dyna_q,
     epsilon_greedy,

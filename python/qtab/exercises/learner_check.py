@@ -15,8 +15,8 @@ from qtab.exercises.exercise import Solution, parameters
 from qtab.exercises.guard import guarded
 from qtab.exercises.record import Record
 from qtab.exercises.recording_env import RecordingEnv
-from qtab.reference.discretizers import TileCoding
-from qtab.reference.streams import agent_stream
+from qtab.reference.parts.discretizers import TileCoding
+from qtab.reference.parts.streams import agent_stream
 
 Table = NDArray[np.float64]
 

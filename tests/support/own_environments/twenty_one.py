@@ -9,7 +9,7 @@ import qtab
 
 
 def drawn_card(rng: np.random.Generator) -> int:
-    return int(min(rng.integers(1, 14), 10))
+    return min(int(rng.integers(1, 14)), 10)
 
 
 class TwentyOne(qtab.FunctionalEnv):
