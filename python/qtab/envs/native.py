@@ -17,6 +17,7 @@ from gymnasium.envs.toy_text.blackjack import BlackjackEnv
 from qtab import _core
 from qtab.envs.actions import Actions
 from qtab.envs.class_code import changed_library_code
+from qtab.envs.matching import NotInRustError
 from qtab.envs.registry import ENTRIES, TABULAR, gymnasium_id
 
 VERSION = "1.4."
@@ -172,3 +173,10 @@ def table_env(env: Any) -> _core.NativeEnv:
     if isinstance(env, BlackjackEnv):
         return native_env("Blackjack", env)
     return native_env("Taxi" if hasattr(env, "fickle_passenger") else TABULAR.name, env)
+
+
+def check_not_shown(env: gym.Env) -> None:
+    """Raises an error for an environment with a render mode, so that Python steps it and its frames are shown."""
+    if getattr(env.unwrapped, "render_mode", None) is not None:
+        remedy = "without a render mode Rust steps it; record= and qtab train --watch show the last episodes afterwards"
+        raise NotInRustError(f"its render_mode is {env.unwrapped.render_mode!r}", remedy)

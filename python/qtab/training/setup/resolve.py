@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, TypeAlias
 
 import gymnasium as gym
 import numpy as np
@@ -27,7 +27,7 @@ from qtab.envs.external.capsule import external_env
 from qtab.envs.functional import FunctionalEnv
 from qtab.envs.goals import UNLIMITED_MAX_EPISODE_STEPS
 from qtab.envs.matching import NotInRustError, changed_entry_code, entry_for_env, rust_unavailable, time_limit
-from qtab.envs.native import KnownTable, known_table, native_env
+from qtab.envs.native import KnownTable, check_not_shown, known_table, native_env
 from qtab.envs.origin.describe import describe, describe_known
 from qtab.envs.origin.description import EnvironmentDescription
 from qtab.envs.registry import EnvEntry, entry_for_spec, make_env, spec_of, versioned
@@ -45,6 +45,8 @@ from qtab.training.setup.preset_fit import infer_discretizer, set_aside
 from qtab.training.setup.resolved_run import ResolvedRun, derived_settings
 
 READ_IN_PYTHON = "a function as the discretizer, or max_rows, reads each observation in Python"
+InRust: TypeAlias = EnvEntry | _core.ExternalEnv
+"""An environment that Rust steps: an entry of the registry, or that of a capsule."""
 MASKS_BY_STEP = "its action masks are known only from step to step"
 
 
@@ -53,8 +55,8 @@ class _Request:
     """An environment, and the settings requested for it."""
 
     env: gym.Env
-    entry: EnvEntry | _core.ExternalEnv | None
-    """The registry entry of the environment that Rust may step instead, or the environment of its capsule."""
+    entry: InRust | None
+    """The environment that Rust may step instead."""
     config: Config
     """The settings given, over those of the preset: checked, not yet complete."""
     asked: Mapping[str, Any]
@@ -117,7 +119,7 @@ def _from_spec(env: str | EnvSpec, layers: tuple[Mapping[str, Any], ...]) -> _Re
     name, spec = (env.id, env) if isinstance(env, EnvSpec) else (env, spec_of(env))
     asked = merge_layers({"env_kwargs": dict(spec.kwargs)}, *layers)
     config = config_of(name, asked)
-    entry: EnvEntry | _core.ExternalEnv | None = entry_for_spec(spec, config.env_kwargs)
+    entry: InRust | None = entry_for_spec(spec, config.env_kwargs)
     python_reason = None
     if entry is not None and changed_entry_code(spec) is not None:
         entry = None
@@ -133,21 +135,19 @@ def _from_spec(env: str | EnvSpec, layers: tuple[Mapping[str, Any], ...]) -> _Re
         except ValueError:
             made.close()
             raise
-    limit = spec.max_episode_steps
-    if isinstance(entry, _core.ExternalEnv):
-        config, limit = _within_limit(config, time_limit(made))
+    of_capsule = isinstance(entry, _core.ExternalEnv)
+    config, limit = _within_limit(config, time_limit(made)) if of_capsule else (config, spec.max_episode_steps)
     return _Request(made, entry, config, asked, limit, python_reason, spec)
 
 
 def _within_limit(config: Config, limit: int | None) -> tuple[Config, int | None]:
-    """Returns the config with a time limit that is not above that of the environment, and the latter."""
-    if limit is not None and config.max_episode_steps is not None:
-        # Its TimeLimit wrapper, or the environment itself, ends episodes there, whatever the settings.
+    """Returns the config with a time limit of at most that of the environment, and the latter."""
+    if limit is not None and config.max_episode_steps is not None:  # it ends episodes there, whatever the settings
         config = replace_checked(config, max_episode_steps=min(limit, config.max_episode_steps))
     return config, limit
 
 
-def _match(env: gym.Env, config: Config, *, is_made: bool) -> tuple[EnvEntry | _core.ExternalEnv | None, str | None]:
+def _match(env: gym.Env, config: Config, *, is_made: bool) -> tuple[InRust | None, str | None]:
     """Returns the entry, or the capsule, of an environment that Rust can step; else None, and the reason with a remedy.
 
     Args:
@@ -166,7 +166,7 @@ def _match(env: gym.Env, config: Config, *, is_made: bool) -> tuple[EnvEntry | _
             raise NotInRustError("Numba compiles environments of the class qtab.FunctionalEnv", "derive from it")
         entry = external_env(env) or entry_for_env(env)
         if is_made or config.backend == "auto":
-            _check_not_shown(env)
+            check_not_shown(env)
     except NotInRustError as error:
         if config.backend == "numba":
             raise rust_unavailable(f"{error}; {error.remedy}" if error.remedy else str(error), "numba") from None
@@ -194,15 +194,6 @@ def _from_env(env: gym.Env, layers: tuple[Mapping[str, Any], ...]) -> _Request:
     entry, python_reason = _match(env, config, is_made=False)
     config, limit = _within_limit(config, time_limit(env))
     return _Request(env, entry, config, asked, limit, python_reason)
-
-
-def _check_not_shown(env: gym.Env) -> None:
-    """Raises an error for an environment with a render mode, so that Python steps it and its frames are shown."""
-    if getattr(env.unwrapped, "render_mode", None) is not None:
-        raise NotInRustError(
-            f"its render_mode is {env.unwrapped.render_mode!r}",
-            "without a render mode Rust steps it; record= and qtab train --watch show the last episodes afterwards",
-        )
 
 
 def _fill_defaults(request: _Request, owns_env: bool) -> ResolvedRun:

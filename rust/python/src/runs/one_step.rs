@@ -70,8 +70,8 @@ where
         let mut rng = agent_pcg64(seed);
         let agent = Agent {
             table: initial_q.table((0, 1), (n_rows, num_actions), &mut rng, stop)?,
-            policy: policy.clone(),
-            learning_rate: learning_rate.clone(),
+            policy,
+            learning_rate,
             discount,
             terminal_update,
             masks: None,

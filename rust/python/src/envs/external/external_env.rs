@@ -31,7 +31,7 @@ pub(crate) struct ExternalEnv {
 }
 
 /// A call that failed: what is needed to repeat it.
-pub(super) struct Failure<'a> {
+pub(super) struct FailedCall<'a> {
     /// The state before the step; `None` for a reset.
     pub(super) state: Option<&'a [u8]>,
     pub(super) words_drawn: u64,
@@ -42,8 +42,8 @@ pub(super) struct Failure<'a> {
 
 impl ExternalEnv {
     /// The error of a call, which `on_failure` raises if the function itself reported it.
-    pub(super) fn error(&self, py: Python<'_>, error: CallError, failure: &Failure<'_>) -> PyErr {
-        let Failure { state, words_drawn, buffered_u32, action, seed } = failure;
+    pub(super) fn error(&self, py: Python<'_>, error: CallError, failed: &FailedCall<'_>) -> PyErr {
+        let FailedCall { state, words_drawn, buffered_u32, action, seed } = failed;
         if error != CallError::Failed {
             return PyValueError::new_err(error.to_string());
         }

@@ -15,7 +15,7 @@ use qtab_core::{Features, Task};
 use qtab_env::Number;
 use qtab_env::host::{BitGenerator, CallError, Ending, Environment, Episode, RandomBits};
 
-use super::external_env::{ExternalEnv, Failure};
+use super::external_env::{ExternalEnv, FailedCall};
 use crate::convert::Seed;
 use crate::error::{RunError, allocation};
 use crate::rng::environment_rng;
@@ -103,17 +103,17 @@ impl<T: Number, F: Features<[T]>> ExternalTask<T, F> {
 
     /// The error of a call. The generator is moved back to its position before the call.
     #[cold]
-    fn failure(&mut self, error: CallError, before: (u64, Option<u32>), action: Option<usize>) -> RunError {
+    fn call_error(&mut self, error: CallError, before: (u64, Option<u32>), action: Option<usize>) -> RunError {
         let (words_drawn, buffered_u32) = before;
         self.bits.0.move_to(words_drawn, buffered_u32);
-        let failure = Failure {
+        let failed = FailedCall {
             state: action.map(|_| self.episode.state()),
             words_drawn,
             buffered_u32,
             action,
             seed: &self.seed,
         };
-        Python::attach(|py| self.episode.shared().0.error(py, error, &failure)).into()
+        Python::attach(|py| self.episode.shared().0.error(py, error, &failed)).into()
     }
 
     /// Reads the action mask of a state that is not terminal.
@@ -149,7 +149,7 @@ impl<T: Number, F: Features<[T]>> ExternalTask<T, F> {
                 *elapsed += 1;
                 Ok((reward, self.next_kind(ending, *elapsed)))
             }
-            Err(error) => Err(self.failure(error, before, Some(action))),
+            Err(error) => Err(self.call_error(error, before, Some(action))),
         }
     }
 }
@@ -169,7 +169,7 @@ impl<T: Number, F: Features<[T]>> Task for ExternalTask<T, F> {
     fn reset(&mut self) -> Result<(u64, F::Active), RunError> {
         let before = self.position();
         if let Err(error) = self.episode.reset(&mut RandomBits::new(&mut self.bits)) {
-            return Err(self.failure(error, before, None));
+            return Err(self.call_error(error, before, None));
         }
         let rows = self.features.active_rows(self.episode.observation())?;
         self.read_mask()?;

@@ -2,6 +2,7 @@
 
 mod box_features;
 mod observation_policy;
+mod py_observation;
 mod spec;
 
 pub(crate) use box_features::{BoxFeatures, ReadRows};

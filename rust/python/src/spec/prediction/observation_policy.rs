@@ -9,7 +9,8 @@ use qtab_core::prediction::ObservationPolicy;
 use qtab_core::random::Rng;
 
 use super::box_features::ReadRows;
-use crate::convert::{array_from, in_c_order, small_array};
+use super::py_observation::PyObservation;
+use crate::convert::in_c_order;
 use crate::error::{RunError, invalid};
 use crate::spec::{DiscretizerSpec, Fields, Variant};
 
@@ -120,29 +121,6 @@ pub(super) fn check_probabilities(
     let states = states.map_or("the".to_owned(), |states| states.to_string());
     let expected = format!("{num_actions} probabilities for each of {states} states");
     Err(invalid(name, expected, format!("{} numbers", probabilities.len())))
-}
-
-/// An observation that a policy in Python can read.
-pub(crate) trait PyObservation {
-    fn to_python<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>>;
-}
-
-impl<const M: usize> PyObservation for [f32; M] {
-    fn to_python<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        Ok(small_array(py, self).into_any())
-    }
-}
-
-impl<T: numpy::Element + Copy> PyObservation for Vec<T> {
-    fn to_python<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        Ok(array_from(py, self)?.into_any())
-    }
-}
-
-impl PyObservation for Py<PyAny> {
-    fn to_python<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        Ok(self.bind(py).clone())
-    }
 }
 
 /// A policy, with its choice for the observation that it read last.
@@ -281,9 +259,7 @@ impl<O: PyObservation, G: ReadRows<O>> ObservationPolicy<O> for ObservationPolic
         for other in 0..self.num_actions {
             let probability = target.probability(other);
             if probability > 0.0 && self.behavior.probability(other) == 0.0 {
-                return Err(Python::attach(|py| Ok(not_covered(&observation.to_python(py)?, other, probability)))
-                    .unwrap_or_else(|error| error)
-                    .into());
+                return Err(Python::attach(|py| not_covered(observation.to_python(py), other, probability)).into());
             }
         }
         Ok((action, target.probability(action) / self.behavior.probability(action)))
@@ -295,8 +271,9 @@ impl<O: PyObservation, G: ReadRows<O>> ObservationPolicy<O> for ObservationPolic
     }
 }
 
-fn not_covered(observation: &Bound<'_, PyAny>, action: usize, probability: f64) -> PyErr {
-    let shown = observation.call_method0("tolist").and_then(|list| list.repr()).map(|text| text.to_string());
+fn not_covered(observation: PyResult<Bound<'_, PyAny>>, action: usize, probability: f64) -> PyErr {
+    let list = observation.and_then(|observation| observation.call_method0("tolist"));
+    let shown = list.and_then(|list| list.repr()).map(|text| text.to_string());
     pyo3::exceptions::PyValueError::new_err(format!(
         "behavior must cover policy: it never takes action {action} at the observation {}, which policy takes with \
          probability {probability}",
