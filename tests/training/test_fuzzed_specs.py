@@ -94,7 +94,7 @@ def test_a_changed_discretizer_finds_rows_of_the_table_or_refuses(spec, observat
     assert ((rows >= 0) & (rows < discretizer.n_rows)).all()
 
 
-@given(st.sampled_from(SPECS), st.lists(st.integers(0, 3), min_size=5, max_size=5), VALUES)
+@given(st.sampled_from(SPECS), st.lists(st.integers(0, 3), min_size=6, max_size=6), VALUES)
 def test_arrays_for_results_of_other_shapes_are_refused(spec, sizes, seeds):
     results: Any = {
         "returns": np.zeros((2, 3 + sizes[0] // 3)),
@@ -102,6 +102,7 @@ def test_arrays_for_results_of_other_shapes_are_refused(spec, sizes, seeds):
         "terminated": np.zeros((2 + sizes[2] // 3, 3), bool),
         "tables": np.zeros((2, sizes[3])),
         "finished": np.zeros(2 + sizes[4] // 3, bool),
+        "masks": np.zeros((2 + sizes[5] // 3, sizes[5] // 2), bool),
     }
     try:
         failed = _core.train_many(spec, seeds if sizes[0] == 1 else [0, 1], results, 2, False)
