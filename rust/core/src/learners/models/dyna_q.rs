@@ -44,7 +44,7 @@ impl<R: Copy + AsRef<[u32]>, M: DynaModel> UpdateRule<R, Agent> for DynaQ<M> {
         rng: &mut impl Rng,
     ) -> usize {
         let (row, entry) = (single_row(&state), ModelEntry::new(reward, &next));
-        agent.update_from_entry(row, action, entry);
+        agent.update_from_transition(row, action, entry.reward, entry.next);
         self.model.record(row, action, entry);
         self.planning.begin(self.planning_steps);
         self.resume(agent, next, rng)
@@ -69,8 +69,8 @@ impl<R: Copy + AsRef<[u32]>, M: DynaModel> UpdateRule<R, Agent> for DynaQ<M> {
         for _ in 0..self.planning.take(row_work(self.model.num_actions()) + self.model.work()) {
             let row = self.model.sample_state(rng);
             let action = self.model.sample_action(row, rng);
-            if let Some(entry) = self.model.sample(row, action, rng) {
-                agent.update_from_entry(row, action, entry);
+            if let Some(ModelEntry { reward, next }) = self.model.sample(row, action, rng) {
+                agent.update_from_transition(row, action, reward, next);
             }
         }
         if self.planning.is_unfinished() { 0 } else { agent.next_action(next, rng) }

@@ -58,7 +58,7 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for DynaQPlus {
         let (row, entry) = (single_row(&state), ModelEntry::new(reward, &next));
         self.now += 1;
         self.last_tried[agent.table.weight_index(row, action)] = self.now;
-        agent.update_from_entry(row, action, entry);
+        agent.update_from_transition(row, action, entry.reward, entry.next);
         self.model.record(row, action, entry);
         self.planning.begin(self.planning_steps);
         self.resume(agent, next, rng)
@@ -83,7 +83,7 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for DynaQPlus {
                 self.model.entry(row, action).unwrap_or(ModelEntry { reward: 0.0, next: Some(row) });
             let elapsed = (self.now - self.last_tried[agent.table.weight_index(row, action)]) as f64;
             let reward = reward + self.time_weight * elapsed.sqrt();
-            agent.update_from_entry(row, action, ModelEntry { reward, next });
+            agent.update_from_transition(row, action, reward, next);
         }
         if self.planning.is_unfinished() { 0 } else { agent.next_action(next, rng) }
     }

@@ -100,11 +100,13 @@ impl Model {
     ///
     /// # Panics
     /// If no row was visited.
+    #[inline]
     pub fn sample_state(&self, rng: &mut impl Rng) -> u32 {
         self.visited[rng.integers(self.visited.len() as u32) as usize]
     }
 
     /// A random action among those tried in a visited row.
+    #[inline]
     pub fn sample_action(&self, row: u32, rng: &mut impl Rng) -> usize {
         let index = rng.integers(self.counts[row as usize]);
         self.tried[row as usize * self.num_actions + index as usize] as usize
@@ -160,14 +162,17 @@ impl Model {
 }
 
 impl Agent {
-    /// Q-learning's update from a model entry: Q(S, A) ← Q(S, A) + α [R + γ maxₐ Q(S′, a) - Q(S, A)].
-    pub(crate) fn update_from_entry(&mut self, row: u32, action: usize, entry: ModelEntry) {
-        match entry.next {
+    /// Q-learning's update from a transition: Q(S, A) ← Q(S, A) + α [R + γ maxₐ Q(S′, a) - Q(S, A)]. `next` is the row
+    /// of S′; `None` if it is terminal.
+    ///
+    /// The parameters are the fields of a [`ModelEntry`], which would itself be passed through memory.
+    pub(crate) fn update_from_transition(&mut self, row: u32, action: usize, reward: f64, next: Option<u32>) {
+        match next {
             Some(next) => {
-                let target = entry.reward + self.discount * maximum(self.action_values([next]));
+                let target = reward + self.discount * maximum(self.action_values([next]));
                 self.update([row], action, target);
             }
-            None => self.update_terminal([row], action, entry.reward),
+            None => self.update_terminal([row], action, reward),
         }
     }
 }

@@ -60,7 +60,7 @@ impl PrioritizedSweeping {
             *updates += 1;
             let (row, action) = ((pair / model.num_actions()) as u32, pair % model.num_actions());
             if let Some(entry) = model.entry(row, action) {
-                agent.update_from_entry(row, action, entry);
+                agent.update_from_transition(row, action, entry.reward, entry.next);
             }
             let mut done = work;
             let mut predecessor = predecessors.first(row);
