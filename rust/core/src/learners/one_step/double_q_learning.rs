@@ -33,9 +33,9 @@ impl DoubleQLearning {
 
     #[inline]
     fn choose(&mut self, agent: &mut Agent, rows: &[u32], rng: &mut impl Rng) -> usize {
-        self.sums.copy_from_slice(agent.action_values(rows));
-        for (sum, value) in self.sums.iter_mut().zip(self.second_table.action_values(rows)) {
-            *sum += value;
+        let values = agent.action_values(rows).iter().zip(self.second_table.action_values(rows));
+        for (sum, (first, second)) in self.sums.iter_mut().zip(values) {
+            *sum = first + second;
         }
         agent.policy.choose_in(rows, &self.sums, rng)
     }
