@@ -108,19 +108,18 @@ impl Traces {
         rows: impl AsRef<[u32]>,
         action: usize,
     ) -> f64 {
-        match kind {
-            TraceKind::Accumulating => self.update(table, rows, action, |trace| trace + 1.0),
-            TraceKind::Replacing => self.replace(table, rows, action),
-            TraceKind::Clearing => {
-                let value = self.replace(table, &rows, action);
-                for &row in rows.as_ref() {
-                    for other in (0..table.num_actions()).filter(|&other| other != action) {
-                        self.eligible.remove_weight(table, table.weight_index(row, other));
-                    }
+        if kind == TraceKind::Accumulating {
+            return self.update(table, rows, action, |trace| trace + 1.0);
+        }
+        let value = self.replace(table, &rows, action);
+        if kind == TraceKind::Clearing {
+            for &row in rows.as_ref() {
+                for other in (0..table.num_actions()).filter(|&other| other != action) {
+                    self.eligible.remove_weight(table, table.weight_index(row, other));
                 }
-                value
             }
         }
+        value
     }
 
     /// Replaces the traces of a state-action pair by a function of each. They become active. Returns Q(S, A).
