@@ -49,6 +49,7 @@ where
         match error {
             TrainingError::Task(error) => error.into(),
             TrainingError::Allocation(error) => error.into(),
+            TrainingError::Diverged { episode } => Self::Diverged { episode },
         }
     }
 }

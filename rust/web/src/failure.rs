@@ -1,6 +1,5 @@
 //! Why a run cannot be made or continued.
 
-use qtab_core::TrainingError;
 use qtab_core::features::OutOfBounds;
 use qtab_core::memory::AllocationError;
 
@@ -17,14 +16,5 @@ impl From<OutOfBounds> for Failure {
 impl From<AllocationError> for Failure {
     fn from(error: AllocationError) -> Self {
         Self(format!("the run does not fit into memory: {error}"))
-    }
-}
-
-impl From<TrainingError<Failure>> for Failure {
-    fn from(error: TrainingError<Failure>) -> Self {
-        match error {
-            TrainingError::Task(failure) => failure,
-            TrainingError::Allocation(error) => error.into(),
-        }
     }
 }

@@ -3,7 +3,7 @@
 use qtab_core::features::ActiveRows;
 use qtab_core::random::AgentRng;
 use qtab_core::tasks::BoxedTask;
-use qtab_core::{Budget, EpisodeLog, Learner, Task, Trainer};
+use qtab_core::{Budget, EpisodeLog, Learner, Task, Trainer, TrainingError};
 
 use crate::failure::Failure;
 use crate::update_recorder::UpdateRecorder;
@@ -38,8 +38,13 @@ pub(crate) trait Run {
 }
 
 impl<R: ActiveRows> Run for Trainer<BoxedTask<R, Failure>, UpdateRecorder<R>, AgentRng> {
+    /// That a run has diverged is a state of the page, not a failure.
     fn advance(&mut self, episodes: usize, work: u64) -> Result<(), Failure> {
-        Trainer::advance(self, Budget { episodes, work }).map_err(Failure::from)
+        match Trainer::advance(self, Budget { episodes, work }) {
+            Err(TrainingError::Diverged { .. }) | Ok(()) => Ok(()),
+            Err(TrainingError::Task(failure)) => Err(failure),
+            Err(TrainingError::Allocation(error)) => Err(error.into()),
+        }
     }
 
     fn episodes(&self) -> &EpisodeLog {

@@ -4,12 +4,12 @@ use super::BatchRule;
 use super::batch_loop::BatchLoop;
 use crate::envs::{Env, SimdEnv};
 use crate::features::{BatchFeatures, Features, OutOfBounds};
-use crate::learners::{Agent, TdLearner, UpdateRule};
+use crate::learners::{Agent, Learner, TdLearner, UpdateRule};
 use crate::policies::EpsilonGreedy;
-use crate::random::Pcg64;
+use crate::random::{Pcg64, Rng};
 use crate::schedules::StepSize;
 use crate::simd::SimdLevel;
-use crate::tasks::NativeTask;
+use crate::tasks::{NativeTask, Task};
 use crate::trainer::{Budget, Trainer};
 use crate::training_error::TrainingError;
 
@@ -34,7 +34,7 @@ pub trait BatchedRun: Sized {
     /// without a row.
     ///
     /// # Errors
-    /// As [`Trainer::advance`](crate::Trainer::advance), with the index of the run that failed. The others can be
+    /// As [`Trainer::advance`](crate::Trainer::advance), with the index of the first run that failed. The others can be
     /// continued.
     fn advance_all<const K: usize>(
         runs: &mut [Self; K],
@@ -70,7 +70,7 @@ where
     U: BatchRule + UpdateRule<F::Active, Agent<N, EpsilonGreedy, A>>,
 {
     if runs.iter().any(|run| run.episodes.returns.len() >= budget.episodes) {
-        return Ok(());
+        return check_divergence(runs);
     }
     for (lane, run) in runs.iter_mut().enumerate() {
         run.reserve(budget).map_err(|error| (lane, error.into()))?;
@@ -81,7 +81,15 @@ where
         work = advanced.map_err(|(lane, error)| (lane, TrainingError::Task(error)))?;
     }
     let mut lanes = runs.iter_mut().enumerate();
-    lanes.try_for_each(|(lane, run)| run.advance(Budget { work, ..budget }).map_err(|error| (lane, error)))
+    lanes.try_for_each(|(lane, run)| run.advance_or_stop(Budget { work, ..budget }).map_err(|error| (lane, error)))?;
+    check_divergence(runs)
+}
+
+/// The error of the first run that has diverged.
+fn check_divergence<T: Task, L: Learner<T::Active>, R: Rng + Clone>(
+    runs: &[Trainer<T, L, R>],
+) -> Result<(), (usize, TrainingError<T::Error>)> {
+    runs.iter().enumerate().try_for_each(|(lane, run)| run.check_divergence().map_err(|error| (lane, error)))
 }
 
 /// Whether two runs share everything that a batch reads only once, and the first has neither diverged nor come near an

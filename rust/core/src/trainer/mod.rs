@@ -98,13 +98,28 @@ impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> Trainer<T, L, R> {
         std::mem::take(&mut self.episodes)
     }
 
-    /// Trains until the budget is used up. The next call resumes exactly where this one stopped. If the learner has
-    /// diverged, training stops after that episode.
+    /// Trains until the budget is used up. The next call resumes exactly where this one stopped.
     ///
     /// # Errors
-    /// The task's error; `Allocation` if the data of the run exceeds the memory or its limit. Everything learned before
-    /// is kept. An episode in which the task fails is abandoned and not counted.
+    /// - The task's error. The episode is abandoned and not counted.
+    /// - `Allocation` if the data of the run exceeds the memory or its limit.
+    /// - `Diverged` if the action values have overflowed. Training stops after that episode, and every later call returns
+    ///   the error again. Overflows are found in the values that the learner reads, and with one active row only by
+    ///   learners with traces or a critic: there, a step size of at most 1 keeps the values within their targets.
+    ///
+    /// After the other errors, everything learned before is kept.
     pub fn advance(&mut self, budget: Budget) -> Result<(), TrainingError<T::Error>> {
+        self.advance_or_stop(budget)?;
+        self.check_divergence()
+    }
+
+    /// The error of a learner that has diverged.
+    pub(crate) fn check_divergence(&self) -> Result<(), TrainingError<T::Error>> {
+        if self.learner.diverged() { Err(TrainingError::Diverged { episode: self.last_episode() }) } else { Ok(()) }
+    }
+
+    /// [`advance`](Self::advance), which stops without an error if the learner has diverged.
+    pub(crate) fn advance_or_stop(&mut self, budget: Budget) -> Result<(), TrainingError<T::Error>> {
         self.reserve(budget)?;
         // The generator and the episode are local variables: behind `self` each step would load and store them.
         let mut rng = self.rng.clone();
