@@ -43,14 +43,14 @@ CRATE_ORDERS = {
     "core": (
         {"checkpoint", "simd", "stop_flag"},
         {"memory", "numeric"},
-        {"random", "schedules", "training_error"},
+        {"build_error", "random", "schedules", "training_error"},
         {"features", "policies", "q_table"},
         {"envs"},
         {"planning", "vector"},
         {"tasks"},
         {"learners"},
         {"prediction", "settings", "trainer"},
-        {"batch"},
+        {"batch", "builder"},
     ),
     "python": (
         {"error", "interrupt"},

@@ -1,6 +1,9 @@
 //! Writing and reading a checkpoint, with one description of its contents.
 
+use std::error::Error;
 use std::fmt::{self, Display, Formatter};
+
+use super::Persist;
 
 /// A checkpoint that is being written or read. The same calls do both, so that the two cannot disagree: a value passed
 /// to the checkpoint is appended to the bytes, or replaced by the value that they hold.
@@ -16,6 +19,7 @@ enum Mode<'a> {
 
 /// The reason why a checkpoint cannot be written or read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum CheckpointError {
     /// The bytes end too early.
     Truncated,
@@ -37,6 +41,8 @@ impl Display for CheckpointError {
         }
     }
 }
+
+impl Error for CheckpointError {}
 
 impl<'a> Checkpoint<'a> {
     /// A checkpoint that appends to these bytes.
@@ -93,6 +99,21 @@ impl<'a> Checkpoint<'a> {
         Ok(())
     }
 
+    /// Values whose number may change, with their number before them.
+    ///
+    /// # Errors
+    /// As for any value; `Invalid` for more values than there are bytes.
+    pub fn values<T: Persist + Default + Clone>(&mut self, values: &mut Vec<T>) -> Result<(), CheckpointError> {
+        let mut count = values.len();
+        let left = if let Mode::Restore(bytes) = &self.0 { bytes.len() } else { usize::MAX };
+        self.index(&mut count, left, "number of values")?;
+        if count > values.len() {
+            values.try_reserve(count - values.len()).map_err(|_| CheckpointError::OutOfMemory)?;
+        }
+        values.resize(count, T::default());
+        values.persist(self)
+    }
+
     /// Rejects restored values that are not valid; `what` names them. While saving, it rejects nothing: only a lack of
     /// memory may prevent a run from being saved.
     ///
@@ -117,7 +138,6 @@ impl<'a> Checkpoint<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::checkpoint::Persist;
 
     #[test]
     fn what_was_saved_is_restored() {

@@ -3,9 +3,12 @@
 mod bytes;
 mod episode_progress;
 mod persist;
+mod persist_types;
+mod run_identity;
 #[cfg(test)]
 mod tests;
 
 pub use bytes::{Checkpoint, CheckpointError};
 pub use episode_progress::EpisodeProgress;
 pub use persist::Persist;
+pub use run_identity::RunIdentity;

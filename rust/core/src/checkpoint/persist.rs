@@ -3,6 +3,13 @@
 use super::{Checkpoint, CheckpointError};
 
 /// A value that changes during a run, and therefore belongs in a checkpoint.
+///
+/// Numbers, booleans, tuples, arrays and options of such values have it. [`persist_struct!`](crate::persist_struct) and
+/// [`persist_enum!`](crate::persist_enum) implement it for the state of an environment.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` cannot be saved in a checkpoint",
+    note = "implement it in one line: `qtab_core::persist_struct!(State {{ field, other_field }});`"
+)]
 pub trait Persist {
     /// Saves the value, or replaces it by the saved one.
     ///
@@ -23,7 +30,23 @@ macro_rules! persist_number {
     )*};
 }
 
-persist_number!(u8, u32, u64, i64, f32, f64);
+persist_number!(u8, u16, u32, u64, u128, i8, i16, i32, i64, i128, f32, f64);
+
+/// Numbers of the machine's size, in 64 bits.
+macro_rules! persist_sized {
+    ($($number:ty as $stored:ty),*) => {$(
+        impl Persist for $number {
+            fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+                let mut number = *self as $stored;
+                number.persist(checkpoint)?;
+                *self = Self::try_from(number).map_err(|_| CheckpointError::Invalid("integer"))?;
+                Ok(())
+            }
+        }
+    )*};
+}
+
+persist_sized!(usize as u64, isize as i64);
 
 impl Persist for bool {
     fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
@@ -86,6 +109,9 @@ persist_tuple!(A, B);
 persist_tuple!(A, B, C);
 persist_tuple!(A, B, C, D);
 persist_tuple!(A, B, C, D, E);
+persist_tuple!(A, B, C, D, E, F);
+persist_tuple!(A, B, C, D, E, F, G);
+persist_tuple!(A, B, C, D, E, F, G, H);
 
 impl<T: Persist + ?Sized> Persist for &mut T {
     fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {

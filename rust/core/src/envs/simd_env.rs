@@ -3,10 +3,16 @@
 use super::Env;
 use crate::simd::{F64s, Mask, Simd, U64s};
 
-/// An environment whose deterministic dynamics can be computed in SIMD lanes. The state is `M` numbers, and the
-/// observation is the state in float32.
+/// Closes [`SimdEnv`] to other crates, which cannot compute with numbers in lanes.
+pub(in crate::envs) mod sealed {
+    pub trait Sealed {}
+}
+
+/// An environment of this crate whose deterministic dynamics can be computed in SIMD lanes. The state is `M` numbers,
+/// and the observation is the state in float32. Environments of other crates implement [`Env`] alone, which the compiler
+/// optimizes with the training loop.
 pub trait SimdEnv<const M: usize>:
-    Copy + PartialEq + Env<Action = usize, State: From<[f64; M]> + Into<[f64; M]>, Observation = [f32; M]>
+    sealed::Sealed + Copy + PartialEq + Env<Action = usize, State: From<[f64; M]> + Into<[f64; M]>, Observation = [f32; M]>
 {
     /// Whether `step_batch` gives the results of `step` with these parameters on this platform.
     fn is_exact(&self) -> bool;

@@ -3,6 +3,7 @@
 use std::marker::PhantomData;
 
 use super::{BatchFeatures, Features, OutOfBounds};
+use crate::build_error::BuildError;
 use crate::numeric::Float;
 use crate::simd::{F32s, F64s, Mask, Simd, U64s};
 
@@ -29,6 +30,18 @@ impl Edges {
     pub fn equal_width<T: Float>(low: T, high: T, bins: u32) -> Self {
         let width = (high - low) / T::from_count(bins);
         Self::new((1..bins).map(|edge| (T::from_count(edge) * width + low).into()).collect())
+    }
+
+    /// As [`new`](Self::new), checked.
+    ///
+    /// # Errors
+    /// If the edges are not ascending, or one is NaN.
+    pub fn try_new(edges: Vec<f64>) -> Result<Self, BuildError> {
+        if edges.is_sorted() && !edges.iter().any(|edge| edge.is_nan()) {
+            Ok(Self(edges))
+        } else {
+            Err(BuildError::invalid("edges", "ascending numbers", format!("{edges:?}")))
+        }
     }
 
     /// The number of bins, one more than edges.
@@ -71,6 +84,11 @@ impl<T: Float, A: AsRef<[Edges]>> Bins<T, A> {
     /// The grid with these edges along each component.
     pub fn new(axes: A) -> Self {
         Self { axes, dtype: PhantomData }
+    }
+
+    /// The number of cells, each of which has a row of the table.
+    pub fn n_rows(&self) -> usize {
+        Features::<[T]>::len(self)
     }
 }
 
@@ -149,6 +167,13 @@ mod tests {
     #[test]
     fn nan_has_no_bin() {
         assert!(Bins::new([Edges::equal_width(-1.0_f32, 1.0, 4)]).active_rows(&[f32::NAN]).is_err());
+    }
+
+    #[test]
+    fn edges_can_be_checked() {
+        assert_eq!(Edges::try_new(vec![0.0, 1.0]), Ok(Edges::new(vec![0.0, 1.0])));
+        let error = Edges::try_new(vec![1.0, 0.0]).map_err(|error| error.to_string());
+        assert_eq!(error, Err("edges must be ascending numbers, got [1.0, 0.0]".into()));
     }
 
     #[test]

@@ -4,6 +4,7 @@ use std::error::Error;
 use std::fmt;
 
 use super::{LaneRows, MAX_TILINGS};
+use crate::build_error::BuildError;
 use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::simd::{F32s, Simd};
 
@@ -14,7 +15,8 @@ impl<R: Copy + AsRef<[u32]> + for<'a> TryFrom<&'a [u32]>> ActiveRows for R {}
 
 /// Maps an observation to the active rows of a Q table: one row for a grid, several for tile coding.
 pub trait Features<O: ?Sized> {
-    /// The active rows, in the order in which a learner sums their values.
+    /// The active rows, in the order in which a learner sums their values: `[u32; 1]` for a grid, `[u32; N]` for `N`
+    /// rows.
     type Active: ActiveRows;
 
     /// Whether the active rows are computed in vector registers, so that code that computes them is worth compiling for
@@ -42,9 +44,44 @@ pub trait Features<O: ?Sized> {
     /// The number of rows of the table.
     fn len(&self) -> usize;
 
+    /// Checks what the constructors do not: that the bounds of each component are in order.
+    /// [`TrainerBuilder::build`](crate::TrainerBuilder::build) calls it.
+    ///
+    /// # Errors
+    /// `Invalid`, with the setting that is wrong.
+    fn check(&self) -> Result<(), BuildError> {
+        Ok(())
+    }
+
     /// Whether the table has no rows.
     fn is_empty(&self) -> bool {
         self.len() == 0
+    }
+}
+
+impl<O: ?Sized, F: Features<O>> Features<O> for &F {
+    type Active = F::Active;
+
+    const USES_VECTORS: bool = F::USES_VECTORS;
+
+    #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
+    #[inline(always)]
+    fn active_rows(&self, observation: &O) -> Result<F::Active, OutOfBounds> {
+        F::active_rows(self, observation)
+    }
+
+    #[expect(clippy::inline_always, reason = "as for `active_rows`")]
+    #[inline(always)]
+    fn write_active_rows(&self, observation: &O, active: &mut F::Active) -> Result<(), OutOfBounds> {
+        F::write_active_rows(self, observation, active)
+    }
+
+    fn len(&self) -> usize {
+        F::len(self)
+    }
+
+    fn check(&self) -> Result<(), BuildError> {
+        F::check(self)
     }
 }
 

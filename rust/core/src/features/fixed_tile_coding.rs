@@ -6,6 +6,7 @@ use std::array::TryFromSliceError;
 
 use super::tile_coding::TiledAxis;
 use super::{BatchFeatures, Features, OutOfBounds, TileCoding};
+use crate::build_error::BuildError;
 use crate::numeric::Float;
 use crate::simd::{F32s, Simd};
 
@@ -96,6 +97,17 @@ impl<T: Float, const D: usize, const N: usize> FixedTileCoding<T, D, N> {
         Some(Self { axes: fixed, first_rows, general, len })
     }
 
+    /// As [`TileCoding::check_axes`].
+    fn check_axes(&self) -> Result<(), BuildError> {
+        let ordered = |axis: &FixedAxis<N>| axis.low.is_finite() && axis.high.is_finite() && axis.low < axis.high;
+        match self.axes.iter().position(|axis| !ordered(axis)) {
+            None => Ok(()),
+            Some(component) => {
+                Err(BuildError::invalid("high", "finite and above low", format!("otherwise for component {component}")))
+            }
+        }
+    }
+
     #[inline(never)]
     fn write_general_rows(
         tiles: &TileCoding<T, N>,
@@ -148,6 +160,10 @@ impl<T: Float, const D: usize, const N: usize> Features<[T; D]> for FixedTileCod
         }
         *active = FixedTiles(rows);
         Ok(())
+    }
+
+    fn check(&self) -> Result<(), BuildError> {
+        self.check_axes()
     }
 
     fn len(&self) -> usize {

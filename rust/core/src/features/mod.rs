@@ -2,6 +2,7 @@
 
 mod any_grid;
 mod bins;
+mod checked_tilings;
 #[expect(clippy::module_inception, reason = "each trait is in the file named for it")]
 mod features;
 mod fixed_tile_coding;

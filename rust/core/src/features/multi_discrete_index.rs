@@ -7,6 +7,13 @@ use super::{Features, OutOfBounds};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MultiDiscreteIndex<C>(pub C);
 
+impl<C: AsRef<[u32]>> MultiDiscreteIndex<C> {
+    /// The number of combinations, each of which has a row of the table.
+    pub fn n_rows(&self) -> usize {
+        Features::<[u32]>::len(self)
+    }
+}
+
 impl<C: AsRef<[u32]>> Features<[u32]> for MultiDiscreteIndex<C> {
     type Active = [u32; 1];
 
@@ -47,7 +54,7 @@ mod tests {
     #[test]
     fn combinations_are_in_c_order() {
         let index = MultiDiscreteIndex([2, 3, 4]);
-        assert_eq!(Features::<[u32]>::len(&index), 24);
+        assert_eq!(index.n_rows(), 24);
         assert_eq!(index.active_rows(&[0, 0, 3]), Ok([3]));
         assert_eq!(index.active_rows(&[1, 2, 3]), Ok([23]));
         assert_eq!(index.active_rows(&[1, 3, 0]), Err(OutOfBounds { axis: 1, value: 3.0 }));

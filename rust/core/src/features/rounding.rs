@@ -3,6 +3,7 @@
 use std::marker::PhantomData;
 
 use super::{BatchFeatures, Features, OutOfBounds};
+use crate::build_error::BuildError;
 use crate::numeric::Float;
 use crate::simd::{F32s, Mask, Simd, U64s};
 
@@ -23,6 +24,21 @@ impl<T: Float> Axis<T> {
     pub fn new(low: T, high: T, scale: f64) -> Self {
         let last = ((high - low).into() * scale).round_ties_even();
         Self { low, scale, size: (last as u32).saturating_add(1) }
+    }
+
+    /// As [`new`](Self::new), checked.
+    ///
+    /// # Errors
+    /// If a bound is not finite, `high` is below `low`, `scale` is not above 0, or there are 2³² cells or more.
+    pub fn try_new(low: T, high: T, scale: f64) -> Result<Self, BuildError> {
+        let [lower, upper]: [f64; 2] = [low.into(), high.into()];
+        if !(lower.is_finite() && upper.is_finite() && lower <= upper) {
+            return Err(BuildError::invalid("high", format!("finite and at least low, {lower}"), upper));
+        }
+        if !(scale > 0.0 && (upper - lower) * scale < f64::from(u32::MAX)) {
+            return Err(BuildError::invalid("scale", "above 0, for fewer than 2**32 cells", scale));
+        }
+        Ok(Self::new(low, high, scale))
     }
 
     /// The number of cells.
@@ -64,6 +80,11 @@ impl<T: Float, A: AsRef<[Axis<T>]>> Rounding<T, A> {
     /// The number of components of an observation.
     pub fn dimensions(&self) -> usize {
         self.axes.as_ref().len()
+    }
+
+    /// The number of cells, each of which has a row of the table.
+    pub fn n_rows(&self) -> usize {
+        Features::<[T]>::len(self)
     }
 
     /// The number of cells along each axis.
@@ -130,7 +151,7 @@ mod tests {
 
     #[test]
     fn the_articles_grid_has_285_cells() {
-        assert_eq!(article().shape(), [19, 15]);
+        assert_eq!((article().shape(), article().n_rows()), (vec![19, 15], 285));
         assert_eq!(Features::<[f32; 2]>::len(&article()), 285);
     }
 
@@ -146,6 +167,15 @@ mod tests {
         for (value, row) in [(0.5, 0), (1.5, 2), (2.5, 2), (3.5, 4)] {
             assert_eq!(halves.active_rows(&[value]), Ok([row]));
         }
+    }
+
+    #[test]
+    fn invalid_axes_are_refused_by_name() {
+        let error = |low, high, scale| Axis::try_new(low, high, scale).map_err(|error| error.to_string());
+        assert_eq!(error(1.0_f64, 0.0, 1.0), Err("high must be finite and at least low, 1, got 0".into()));
+        assert_eq!(error(0.0, 1.0, -1.0), Err("scale must be above 0, for fewer than 2**32 cells, got -1".into()));
+        assert!(error(0.0, 1e10, 1.0).is_err() && error(0.0, f64::INFINITY, 1.0).is_err());
+        assert_eq!(error(0.0, 10.0, 1.0), Ok(Axis::new(0.0, 10.0, 1.0)));
     }
 
     #[test]

@@ -4,6 +4,7 @@ use std::marker::PhantomData;
 
 use super::hashing::{HashTable, mix};
 use super::{Features, OutOfBounds};
+use crate::build_error::BuildError;
 use crate::numeric::Float;
 
 /// The maximum number of tilings.
@@ -66,8 +67,7 @@ pub struct TileCoding<T = f64, const M: usize = MAX_TILINGS> {
 }
 
 impl<T: Float, const M: usize> TileCoding<T, M> {
-    /// `tilings` tilings of the box from `low` to `high`, with `tiles` tiles along each component. Observations are
-    /// clipped to the box.
+    /// As [`try_new`](TileCoding::try_new), without checking the bounds.
     ///
     /// # Panics
     /// If `tilings` is 0 or greater than `M`.
@@ -98,6 +98,11 @@ impl<T: Float, const M: usize> TileCoding<T, M> {
     pub fn hashed(self, rows: u32) -> Self {
         assert!(rows > 0, "hashed_rows must be at least 1");
         Self { hash_table: Some(HashTable { rows }), ..self }
+    }
+
+    /// The number of rows of the table.
+    pub fn n_rows(&self) -> usize {
+        Features::<[T]>::len(self)
     }
 
     /// The number of tilings.
@@ -179,6 +184,10 @@ impl<T: Float, O: AsRef<[T]> + ?Sized, const M: usize> Features<O> for TileCodin
             }
         }
         Ok(ActiveTiles { rows, tilings: tilings as usize })
+    }
+
+    fn check(&self) -> Result<(), BuildError> {
+        self.check_axes()
     }
 
     fn len(&self) -> usize {

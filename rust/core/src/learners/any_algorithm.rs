@@ -1,17 +1,20 @@
-//! An algorithm chosen at run time, and the construction of its learner.
+//! An algorithm chosen at run time.
 
+#[cfg(doc)]
 use super::{
-    ActorCritic, ActorCriticLambda, Agent, Critic, DifferentialQLearning, DifferentialSarsa, DoubleQLearning, DynaQ,
-    DynaQPlus, ExpectedSarsa, GradientBandit, Learner, Model, MonteCarloControl, NStepQSigma, NStepSarsa,
-    NStepTreeBackup, OffPolicyMonteCarlo, PrioritizedSweeping, QLearning, Reinforce, Sarsa, SarsaLambda,
-    StochasticModel, TargetPolicy, TdLearner, TraceOptions, Traces, TrueOnlineSarsaLambda, UpdateRule, WatkinsQLambda,
+    ActorCritic, ActorCriticLambda, Critic, DifferentialQLearning, DifferentialSarsa, DoubleQLearning, DynaQ,
+    DynaQPlus, ExpectedSarsa, GradientBandit, MonteCarloControl, NStepQSigma, NStepSarsa, NStepTreeBackup,
+    OffPolicyMonteCarlo, PrioritizedSweeping, QLearning, Reinforce, Sarsa, SarsaLambda, StochasticModel,
+    TrueOnlineSarsaLambda, WatkinsQLambda,
 };
+use super::{Agent, AnyLearner, LearnerVisitor, TargetPolicy, TraceOptions};
 use crate::features::ActiveRows;
 use crate::memory::AllocationError;
 use crate::{QTable, StopFlag};
 
 /// One of the algorithms with its options.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum AnyAlgorithm {
     /// [`QLearning`]
     QLearning,
@@ -132,15 +135,6 @@ pub enum AnyAlgorithm {
     },
 }
 
-/// Receives the learner that [`AnyAlgorithm::learner`] creates, whatever its type.
-pub trait LearnerVisitor<R> {
-    /// The result.
-    type Output;
-
-    /// Receives the learner.
-    fn visit<L: Learner<R> + Send + 'static>(self, learner: L) -> Self::Output;
-}
-
 impl AnyAlgorithm {
     /// The number of tables that the algorithm learns.
     pub fn n_tables(&self) -> usize {
@@ -200,98 +194,6 @@ impl AnyAlgorithm {
         R: ActiveRows + Send + 'static,
         V: LearnerVisitor<R>,
     {
-        // This is known at compile time, so algorithms that need single rows are not compiled for several rows.
-        if self.needs_single_rows() && size_of::<R>() != size_of::<u32>() {
-            return Ok(None);
-        }
-        let (n_rows, num_actions) = agent.table.shape();
-        let n_active = agent.learning_rate.n_active();
-        let new_critic = |table, learning_rate: f64| Critic { table, step_size: learning_rate / n_active };
-        let new_model = || Model::new(n_rows, num_actions, stop);
-        let new_traces = |cutoff: f64| Traces::new(n_rows * num_actions, cutoff, stop);
-        Ok(Some(match self {
-            Self::QLearning => with_rule(agent, QLearning, visitor),
-            Self::Sarsa => with_rule(agent, Sarsa, visitor),
-            Self::ExpectedSarsa => with_rule(agent, ExpectedSarsa, visitor),
-            Self::DoubleQLearning => match second_table {
-                Some(second_table) => {
-                    let rule = DoubleQLearning::new(agent.learning_rate.clone(), second_table);
-                    with_rule(agent, rule, visitor)
-                }
-                None => return Ok(None),
-            },
-            Self::NStepSarsa { n_steps } => with_rule(agent, NStepSarsa::new(n_steps), visitor),
-            Self::SarsaLambda(TraceOptions { kind, decay, cutoff }) => {
-                with_rule(agent, SarsaLambda { traces: new_traces(cutoff)?, kind, trace_decay: decay }, visitor)
-            }
-            Self::TrueOnlineSarsaLambda { trace_decay, trace_cutoff } => {
-                with_rule(agent, TrueOnlineSarsaLambda::new(new_traces(trace_cutoff)?, trace_decay), visitor)
-            }
-            Self::WatkinsQLambda(TraceOptions { kind, decay, cutoff }) => {
-                with_rule(agent, WatkinsQLambda { traces: new_traces(cutoff)?, kind, trace_decay: decay }, visitor)
-            }
-            Self::DynaQ { planning_steps } => with_rule(agent, DynaQ::new(new_model()?, planning_steps), visitor),
-            Self::DynaQPlus { planning_steps, time_weight } => {
-                with_rule(agent, DynaQPlus::new(new_model()?, planning_steps, time_weight, stop)?, visitor)
-            }
-            Self::StochasticDynaQ { planning_steps } => {
-                let model = StochasticModel::new(n_rows, num_actions, stop)?;
-                with_rule(agent, DynaQ::new(model, planning_steps), visitor)
-            }
-            Self::MonteCarlo { max_episode_steps } | Self::MonteCarloEs { max_episode_steps } => {
-                let exploring_starts = matches!(self, Self::MonteCarloEs { .. });
-                let rule = MonteCarloControl::new(n_rows * num_actions, max_episode_steps, exploring_starts, stop)?;
-                with_rule(agent, rule, visitor)
-            }
-            Self::OffPolicyMonteCarlo { max_episode_steps, learning_rate, min_learning_rate } => {
-                let rates = (learning_rate, min_learning_rate);
-                let rule = OffPolicyMonteCarlo::new(n_rows * num_actions, max_episode_steps, rates, stop)?;
-                with_rule(agent, rule, visitor)
-            }
-            Self::NStepTreeBackup { n_steps, target_policy } => {
-                with_rule(agent, NStepTreeBackup::new(n_steps, target_policy), visitor)
-            }
-            Self::NStepQSigma { n_steps, sigma, target_policy } => {
-                with_rule(agent, NStepQSigma::new(n_steps, sigma, target_policy), visitor)
-            }
-            Self::PrioritizedSweeping { planning_steps, priority_threshold } => {
-                let rule = PrioritizedSweeping::new(new_model()?, planning_steps, priority_threshold, stop)?;
-                with_rule(agent, rule, visitor)
-            }
-            Self::DifferentialSarsa { reward_learning_rate } => {
-                with_rule(agent, DifferentialSarsa::new(reward_learning_rate), visitor)
-            }
-            Self::DifferentialQLearning { reward_learning_rate } => {
-                with_rule(agent, DifferentialQLearning::new(reward_learning_rate), visitor)
-            }
-            Self::GradientBandit { baseline } => {
-                with_rule(agent, GradientBandit::new(baseline, n_rows, stop)?, visitor)
-            }
-            Self::Reinforce => with_rule(agent, Reinforce::new(None), visitor),
-            Self::ReinforceWithBaseline { value_learning_rate } => match second_table {
-                Some(table) => with_rule(agent, Reinforce::new(Some(new_critic(table, value_learning_rate))), visitor),
-                None => return Ok(None),
-            },
-            Self::ActorCritic { value_learning_rate } => match second_table {
-                Some(table) => with_rule(agent, ActorCritic::new(new_critic(table, value_learning_rate)), visitor),
-                None => return Ok(None),
-            },
-            Self::ActorCriticLambda { value_learning_rate, trace_decay } => match second_table {
-                Some(table) => {
-                    let critic = new_critic(table, value_learning_rate);
-                    with_rule(agent, ActorCriticLambda::new(critic, trace_decay, stop)?, visitor)
-                }
-                None => return Ok(None),
-            },
-        }))
+        Ok(AnyLearner::new(self, agent, second_table, stop)?.and_then(|learner| learner.visit(visitor)))
     }
-}
-
-fn with_rule<R, U, V>(agent: Agent, rule: U, visitor: V) -> V::Output
-where
-    R: ActiveRows + Send + 'static,
-    U: UpdateRule<R, Agent> + Send + 'static,
-    V: LearnerVisitor<R>,
-{
-    visitor.visit(TdLearner { agent, rule })
 }

@@ -1,6 +1,7 @@
 //! The learning algorithms, grouped by the experience that they learn from. Shared parts are in `common`.
 
 mod any_algorithm;
+mod any_learner;
 mod common;
 mod models;
 mod monte_carlo;
@@ -9,7 +10,8 @@ mod one_step;
 mod policy_gradient;
 mod traces;
 
-pub use any_algorithm::{AnyAlgorithm, LearnerVisitor};
+pub use any_algorithm::AnyAlgorithm;
+pub use any_learner::{AnyLearner, LearnerVisitor};
 pub(crate) use common::StepInParts;
 #[cfg(test)]
 use common::test_support;

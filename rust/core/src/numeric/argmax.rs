@@ -2,8 +2,11 @@
 
 /// The index of the maximum, and of the first one if several are equal: `np.argmax` of values without NaN. With NaN the
 /// index is unspecified: a table with NaN has diverged, and its run ends.
+///
+/// # Panics
+/// If there are no values.
 #[inline]
-pub(crate) fn argmax(values: &[f64]) -> usize {
+pub fn argmax(values: &[f64]) -> usize {
     // The pairs carry the value: looking it up by index would add a load to the chain of comparisons.
     let better = |one: (usize, f64), other: (usize, f64)| if other.1 > one.1 { other } else { one };
     let mut best = (0, values[0]);

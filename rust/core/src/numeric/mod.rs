@@ -8,7 +8,8 @@ mod numpy_f32_cos_sin;
 mod python_float;
 mod scalar;
 
-pub(crate) use argmax::{argmax, maximum};
+pub use argmax::argmax;
+pub(crate) use argmax::maximum;
 pub(crate) use cos_sin::cos_sin;
 pub use float::Float;
 pub use numpy_f32_cos_sin::numpy_f32_cos_sin;

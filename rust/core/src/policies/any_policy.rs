@@ -8,6 +8,7 @@ use crate::schedules::Schedule;
 
 /// One of the policies, chosen at run time.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum AnyPolicy {
     /// The ε-greedy policy (Sutton & Barto, section 2.2).
     EpsilonGreedy {

@@ -2,6 +2,7 @@
 
 mod any_policy;
 mod epsilon_greedy;
+mod greedy_policy;
 mod policy;
 mod softmax;
 mod tie_breaking;
@@ -10,6 +11,7 @@ mod ucb;
 pub use any_policy::AnyPolicy;
 pub(crate) use any_policy::random_available_action;
 pub use epsilon_greedy::EpsilonGreedy;
+pub use greedy_policy::GreedyPolicy;
 pub use policy::Policy;
 pub use softmax::Softmax;
 pub use tie_breaking::TieBreaking;

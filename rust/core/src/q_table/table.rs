@@ -17,8 +17,27 @@ pub struct QTable<const N: usize = 0> {
     pub(super) divergence: f64,
 }
 
+/// Tables whose number of actions is a value, not a type: what [`AnyLearner`](crate::learners::AnyLearner) takes.
+impl QTable {
+    /// A table of zeros.
+    pub fn zeros(rows: usize, num_actions: usize) -> Self {
+        Self::filled(rows, num_actions, 0.0)
+    }
+
+    /// A table that holds the same value everywhere.
+    pub fn filled(rows: usize, num_actions: usize, value: f64) -> Self {
+        Self::new(vec![value; rows * num_actions], num_actions)
+    }
+
+    /// A table with these values, row by row; `None` if they do not fill rows of `num_actions` values.
+    pub fn from_values(values: Vec<f64>, num_actions: usize) -> Option<Self> {
+        (num_actions > 0 && values.len().is_multiple_of(num_actions)).then(|| Self::new(values, num_actions))
+    }
+}
+
 impl<const N: usize> QTable<N> {
-    /// A table with these values, in C order.
+    /// A table with these values, in C order. Where the compiler cannot infer `N`, write `QTable::<0>::new`, or use
+    /// [`zeros`](QTable::zeros) or [`from_values`](QTable::from_values).
     ///
     /// # Panics
     /// If `num_actions` is 0, differs from a non-zero `N`, or does not divide the number of values.
@@ -30,6 +49,9 @@ impl<const N: usize> QTable<N> {
     }
 
     /// A table of random values: `rng.uniform(low, high, (rows, num_actions))`.
+    ///
+    /// # Panics
+    /// As for `new`.
     pub fn uniform(rows: usize, num_actions: usize, low: f64, high: f64, rng: &mut impl Rng) -> Self {
         Self::new((0..rows * num_actions).map(|_| rng.uniform(low, high)).collect(), num_actions)
     }
@@ -56,7 +78,7 @@ impl<const N: usize> QTable<N> {
     }
 
     /// The number of rows and of actions.
-    pub(crate) fn shape(&self) -> (usize, usize) {
+    pub fn shape(&self) -> (usize, usize) {
         (self.len / self.num_actions, self.num_actions)
     }
 
@@ -91,6 +113,15 @@ impl<const N: usize> QTable<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_table_needs_no_type_arguments() {
+        assert_eq!(QTable::zeros(2, 3).shape(), (2, 3));
+        assert_eq!(QTable::filled(1, 2, 0.5).values(), [0.5, 0.5]);
+        assert_eq!(QTable::from_values(vec![1.0, 2.0], 2).map(|table| table.row(0).to_vec()), Some(vec![1.0, 2.0]));
+        assert_eq!(QTable::from_values(vec![1.0], 2), None);
+        assert_eq!(QTable::from_values(vec![1.0], 0), None);
+    }
 
     #[test]
     #[should_panic(expected = "rows of 3 values")]

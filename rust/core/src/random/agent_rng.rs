@@ -40,6 +40,13 @@ impl Rng for AgentRng {
             Self::Mt19937(rng) => rng.integers(below),
         }
     }
+
+    fn seed_fingerprint(&self) -> Option<u64> {
+        match self {
+            Self::Pcg64(rng) => rng.seed_fingerprint(),
+            Self::Mt19937(rng) => rng.seed_fingerprint(),
+        }
+    }
 }
 
 impl Persist for AgentRng {

@@ -123,6 +123,13 @@ impl Rng for Pcg64 {
     fn integers(&mut self, below: u32) -> u32 {
         lemire_bounded(below, || self.next_u32())
     }
+
+    /// The first word of the generator.
+    fn seed_fingerprint(&self) -> Option<u64> {
+        let mut first = self.engine;
+        first.advance(u128::from(self.words_drawn).wrapping_neg());
+        Some(first.next_u64())
+    }
 }
 
 /// A float in [0, 1) from the upper 53 bits of a word.
@@ -166,7 +173,8 @@ impl Persist for Pcg64 {
 
 #[cfg(test)]
 mod tests {
-    use proptest::prelude::*;
+    // Not the whole prelude: its `RngExt` has a method `random` too.
+    use proptest::prelude::{any, prop_assert_eq, proptest};
 
     use super::*;
     use crate::random::{Mt19937, Rng};
@@ -188,6 +196,16 @@ mod tests {
             assert_eq!(rng.clone().random_u53() as f64 / TWO_POW_53, rng.random());
             assert_eq!(other.clone().random_u53() as f64 / TWO_POW_53, other.random());
         }
+    }
+
+    #[test]
+    fn the_fingerprint_depends_on_the_seed_alone() {
+        let mut rng = Pcg64::new(&SeedSequence::new(&[0]));
+        let first = rng.seed_fingerprint();
+        rng.next_u64();
+        rng.next_u32();
+        assert_eq!(rng.seed_fingerprint(), first);
+        assert_ne!(Pcg64::new(&SeedSequence::new(&[1])).seed_fingerprint(), first);
     }
 
     #[test]

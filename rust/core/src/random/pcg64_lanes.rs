@@ -152,7 +152,7 @@ mod tests {
 
     use super::*;
     use crate::random::pcg64::u64_to_f64;
-    use crate::random::{Rng as _, SeedSequence};
+    use crate::random::{Rng, SeedSequence};
     use crate::simd::{SimdCode, SimdLevel};
 
     const LANES: usize = 5;
@@ -206,7 +206,7 @@ mod tests {
             for (greedy_below, below) in &draws {
                 actions.push(std::array::from_fn(|lane| {
                     let rng = &mut rngs[lane];
-                    (rng.random() >= greedy_below[lane]).then(|| u64::from(rng.integers(*below)))
+                    (Rng::random(rng) >= greedy_below[lane]).then(|| u64::from(rng.integers(*below)))
                 }));
             }
             for level in SimdLevel::available() {

@@ -17,6 +17,12 @@ pub trait Rng {
     /// The next integer in [0, `below`): `rng.integers(0, below)`. Draws nothing if `below` is 0 or 1, and returns 0.
     fn integers(&mut self, below: u32) -> u32;
 
+    /// A number that depends on the seed, but not on the draws since, so that a checkpoint of another seed is refused;
+    /// `None` if the generator does not know its seed.
+    fn seed_fingerprint(&self) -> Option<u64> {
+        None
+    }
+
     /// The next float in [`low`, `high`): `rng.uniform(low, high)`.
     fn uniform(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.random()

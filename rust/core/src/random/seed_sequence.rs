@@ -19,6 +19,14 @@ pub struct SeedSequence {
     pool: [u32; POOL_SIZE],
 }
 
+/// `numpy.random.SeedSequence(seed)`.
+impl From<u64> for SeedSequence {
+    fn from(seed: u64) -> Self {
+        let words = [seed as u32, (seed >> 32) as u32];
+        Self::new(if words[1] == 0 { &words[..1] } else { &words })
+    }
+}
+
 impl SeedSequence {
     /// The sequence of a non-negative integer, given as 32-bit words with the least significant first. Zero is one word.
     pub fn new(entropy: &[u32]) -> Self {
@@ -95,6 +103,12 @@ mod tests {
     fn the_words_of_seed_0_match_numpy() {
         // np.random.SeedSequence(0).generate_state(2, np.uint64)
         assert_eq!(SeedSequence::new(&[0]).generate_state(), [15_793_235_383_387_715_774, 12_390_638_538_380_655_177]);
+    }
+
+    #[test]
+    fn a_seed_of_64_bits_is_two_words() {
+        assert_eq!(SeedSequence::from(0), SeedSequence::new(&[0]));
+        assert_eq!(SeedSequence::from((7 << 32) | 5), SeedSequence::new(&[5, 7]));
     }
 
     #[test]

@@ -3,7 +3,8 @@
 use super::{Schedule, UpdateLog};
 use crate::checkpoint::{Checkpoint, CheckpointError};
 
-/// The step size of each weight of a Q table: the learning rate divided by the number of active rows. The index of a
+/// The step size of each weight of a Q table. With several active rows it should be the learning rate divided by their
+/// number: [`LearningRate`](super::LearningRate) divides by itself, numbers and schedules do not. The index of a
 /// weight is `row * num_actions + action`.
 pub trait StepSize {
     /// Counts a visit to a weight, before its update.
@@ -33,7 +34,8 @@ pub trait StepSize {
     }
 }
 
-/// A constant step size.
+/// A constant step size, the same for each active row: unlike [`LearningRate`](super::LearningRate), it is not divided by
+/// their number.
 impl StepSize for f64 {
     #[inline]
     fn visit(&mut self, _weight: usize) {}
@@ -52,7 +54,8 @@ impl StepSize for f64 {
     fn end_episode(&mut self) {}
 }
 
-/// A scheduled step size for one active row, the same for every weight.
+/// A scheduled step size, the same for each active row: unlike [`LearningRate`](super::LearningRate), it is not divided by
+/// their number.
 impl StepSize for Schedule {
     #[inline]
     fn visit(&mut self, _weight: usize) {}

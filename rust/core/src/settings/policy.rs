@@ -7,6 +7,7 @@ use crate::policies::{AnyPolicy, TieBreaking, Ucb};
 
 /// A policy with its settings.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum PolicySpec {
     /// A random action with probability ε, otherwise a greedy one.
     EpsilonGreedy {

@@ -71,6 +71,21 @@ pub enum ScheduleKind {
 }
 
 impl ScheduleSpec {
+    /// The same rate in every episode.
+    pub const fn constant(value: f64) -> Self {
+        Self::Constant { value }
+    }
+
+    /// A rate that falls by equal amounts to `minimum`, over all episodes of the run.
+    pub const fn linear(value: f64, minimum: f64) -> Self {
+        Self::Linear { value, minimum, warm_up: 0 }
+    }
+
+    /// A rate that is multiplied by `decay` after each episode, down to `minimum`.
+    pub const fn exponential(value: f64, minimum: f64, decay: f64) -> Self {
+        Self::Exponential { value, minimum, decay, warm_up: 0 }
+    }
+
     /// The exploration rate ε of a run of `episodes` episodes.
     ///
     /// # Errors
@@ -112,7 +127,32 @@ impl ScheduleSpec {
     }
 }
 
+/// The same rate in every episode.
+impl From<f64> for ScheduleSpec {
+    fn from(value: f64) -> Self {
+        Self::constant(value)
+    }
+}
+
+/// The same learning rate in every episode.
+impl From<f64> for LearningRateSpec {
+    fn from(value: f64) -> Self {
+        Self::Schedule(value.into())
+    }
+}
+
+impl From<ScheduleSpec> for LearningRateSpec {
+    fn from(schedule: ScheduleSpec) -> Self {
+        Self::Schedule(schedule)
+    }
+}
+
 impl LearningRateSpec {
+    /// `initial` / n at the n-th visit of a state-action pair, but not below `minimum`.
+    pub const fn by_visit_count(initial: f64, minimum: f64) -> Self {
+        Self::Visits { value: initial, minimum }
+    }
+
     /// The learning rate of a run of `episodes` episodes, at most `most`.
     ///
     /// # Errors

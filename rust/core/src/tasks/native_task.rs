@@ -1,10 +1,10 @@
 //! Tasks that run without Python.
 
 use super::{NextKind, RngSnapshot, Task, Transition};
-use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist, RunIdentity};
 use crate::envs::{Env, Step};
 use crate::features::{Features, OutOfBounds};
-use crate::random::Pcg64;
+use crate::random::{Pcg64, Rng};
 
 /// An environment of this crate with its features, its time limit (Gymnasium's `TimeLimit`) and its random generator.
 #[derive(Clone, Debug)]
@@ -19,6 +19,21 @@ impl<E, F> NativeTask<E, F> {
     /// `rng` is the environment's generator, seeded as `env.reset(seed=…)` seeds it. `None` means no time limit.
     pub fn new(env: E, features: F, max_episode_steps: Option<u64>, rng: Pcg64) -> Self {
         Self { env, features, max_episode_steps: max_episode_steps.unwrap_or(u64::MAX), rng }
+    }
+
+    /// The environment.
+    pub fn env(&self) -> &E {
+        &self.env
+    }
+
+    /// The features.
+    pub fn features(&self) -> &F {
+        &self.features
+    }
+
+    /// The maximum number of steps of an episode; `None` if there is no limit.
+    pub fn max_episode_steps(&self) -> Option<u64> {
+        Some(self.max_episode_steps).filter(|&steps| steps < u64::MAX)
     }
 }
 
@@ -67,6 +82,17 @@ where
         *state = TimedState { state: step.state, elapsed: state.elapsed + 1 };
         self.features.write_active_rows(&self.env.observe(&step.state), active)?;
         Ok((step.reward, self.next_kind(&step, state.elapsed)))
+    }
+
+    fn shape(&self) -> Option<(usize, usize)> {
+        Some((self.features.len(), self.env.num_actions()))
+    }
+
+    fn identify(&self, identity: &mut RunIdentity) {
+        identity.add_type::<Self>("task");
+        identity.add("time limit", self.max_episode_steps);
+        let seed = self.rng.seed_fingerprint().unwrap_or_default();
+        identity.add("seed of the environment's generator, as a fingerprint", format_args!("{seed:016x}"));
     }
 
     fn active_rows(&self, state: &Self::State) -> Result<F::Active, OutOfBounds> {

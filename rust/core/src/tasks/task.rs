@@ -1,6 +1,6 @@
 //! The trait of all tasks.
 
-use crate::checkpoint::{Checkpoint, CheckpointError};
+use crate::checkpoint::{Checkpoint, CheckpointError, RunIdentity};
 use crate::features::ActiveRows;
 
 /// The next state, as an update needs it. `R` holds its active rows.
@@ -125,9 +125,19 @@ pub trait Task {
     /// An observation without a row.
     fn active_rows(&self, state: &Self::State) -> Result<Self::Active, Self::Error>;
 
+    /// The number of rows and of actions that a learner must have for this task; `None` if the task does not know it.
+    fn shape(&self) -> Option<(usize, usize)> {
+        None
+    }
+
     /// Whether an episode can be resumed in the middle.
     fn resumes_episodes(&self) -> bool {
         true
+    }
+
+    /// Adds what the task is made of, so that a checkpoint of another task is refused: by default its type.
+    fn identify(&self, identity: &mut RunIdentity) {
+        identity.add_type::<Self>("task");
     }
 
     /// Saves or restores the random generator and, during an episode, its state.

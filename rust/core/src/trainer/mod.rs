@@ -3,11 +3,18 @@
 mod advance_loop;
 mod checkpoint;
 mod episode_log;
+mod evaluate;
+mod load_error;
+mod save;
 #[cfg(test)]
 mod tests;
+mod train;
 
 use self::advance_loop::AdvanceLoop;
 pub use self::episode_log::EpisodeLog;
+pub use self::evaluate::{EvaluationError, evaluate};
+pub use self::load_error::LoadError;
+use crate::checkpoint::RunIdentity;
 use crate::learners::Learner;
 use crate::memory::{AllocationError, MemoryRoom, RunMemory};
 use crate::random::Rng;
@@ -25,6 +32,21 @@ pub struct Budget {
     /// The work, counted from the call. A step of a one-step learner on a grid counts as 1, and other steps count in
     /// proportion to their cost; see [`Learner::work`]. A call ends after the step that uses up its work.
     pub work: u64,
+}
+
+impl Budget {
+    /// No limit but this number of finished episodes, counted from the start of the run. Learners that store every step
+    /// reserve memory for all the work of a call: [`Trainer::train`] calls [`Trainer::advance`] with little work at a
+    /// time, and so does a loop around `advance` with [`with_work`](Self::with_work).
+    pub const fn episodes(episodes: usize) -> Self {
+        Self { episodes, work: u64::MAX }
+    }
+
+    /// The same number of episodes, and at most this much work in one call.
+    #[must_use]
+    pub const fn with_work(self, work: u64) -> Self {
+        Self { work, ..self }
+    }
 }
 
 /// An unfinished episode.
@@ -53,13 +75,17 @@ pub struct Trainer<T: Task, L, R> {
     pub(crate) abandoned: bool,
     /// The memory that the learner may still take while it trains.
     memory: RunMemory,
+    /// The settings that the types and shapes of the run do not show.
+    pub(crate) identity: RunIdentity,
 }
 
 impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> Trainer<T, L, R> {
-    /// A run that has not taken a step yet.
+    /// A run that has not taken a step yet. [`try_new`](Self::try_new) also checks that the learner fits the task, and
+    /// [`builder`](Trainer::builder) makes both.
     pub fn new(task: T, learner: L, rng: R) -> Self {
         let memory = RunMemory::new(MemoryRoom::unlimited());
-        Self { task, learner, rng, episodes: EpisodeLog::default(), episode: None, abandoned: false, memory }
+        let (episodes, identity) = (EpisodeLog::default(), RunIdentity::default());
+        Self { task, learner, rng, episodes, episode: None, abandoned: false, memory, identity }
     }
 
     /// Limits the memory that the learner takes from now on.

@@ -2,6 +2,7 @@
 //! 1983). Gymnasium's dynamics follow R. Florian, "Correct equations for the dynamics of the cart-pole system", 2005.
 
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
+use crate::envs::simd_env::sealed::Sealed;
 use crate::envs::{Env, Flag, Parameters, SimdEnv, Step};
 use crate::numeric::cos_sin;
 use crate::random::Rng;
@@ -205,6 +206,8 @@ impl Env for CartPole {
         [state.x as f32, state.x_dot as f32, state.theta as f32, state.theta_dot as f32]
     }
 }
+
+impl Sealed for CartPole {}
 
 impl SimdEnv<4> for CartPole {
     fn is_exact(&self) -> bool {

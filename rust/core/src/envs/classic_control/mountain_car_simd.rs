@@ -5,8 +5,11 @@
 use super::MountainCar;
 use super::mountain_car::{DIRECTIONS, REWARD};
 use crate::envs::SimdEnv;
+use crate::envs::simd_env::sealed::Sealed;
 use crate::numeric::cosine;
 use crate::simd::{F64s, Mask, Simd, U64s};
+
+impl Sealed for MountainCar {}
 
 impl SimdEnv<2> for MountainCar {
     /// The accelerations must be finite: infinite ones can cancel to NaN, and `map_cos` needs finite angles.

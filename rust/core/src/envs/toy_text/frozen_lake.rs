@@ -1,6 +1,8 @@
-//! The table of `FrozenLake-v1`.
+//! `FrozenLake-v1` and its table.
 
 use crate::envs::tabular::{InvalidMdp, Outcome, TabularMdp};
+use crate::envs::{Env, Step};
+use crate::random::Rng;
 
 /// The rows and the columns that an action moves by: left, down, right, up.
 const MOVES: [(isize, isize); 4] = [(0, -1), (1, 0), (0, 1), (-1, 0)];
@@ -14,6 +16,88 @@ pub struct LakeRewards {
     pub hole: f64,
     /// The reward for a step onto frozen ground, including the start.
     pub frozen: f64,
+}
+
+/// The rewards of Gymnasium: 1 for the goal, otherwise 0.
+impl Default for LakeRewards {
+    fn default() -> Self {
+        Self { goal: 1.0, hole: 0.0, frozen: 0.0 }
+    }
+}
+
+/// Gymnasium's `FrozenLake-v1`: the actions are left, down, right and up, and an observation is the number of the cell,
+/// row by row. The default is the slippery map of 4 by 4 cells, whose usual time limit is 100 steps.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrozenLake {
+    table: TabularMdp,
+}
+
+impl FrozenLake {
+    /// Gymnasium's map of 4 by 4 cells.
+    pub const MAP_4X4: [&'static str; 4] = ["SFFF", "FHFH", "FFFH", "HFFG"];
+    /// Gymnasium's map of 8 by 8 cells, whose usual time limit is 200 steps.
+    pub const MAP_8X8: [&'static str; 8] =
+        ["SFFFFFFF", "FFFFFFFF", "FFFHFFFF", "FFFFFHFF", "FFFHFFFF", "FHHFFFHF", "FHFFHFHF", "FFFHFFFG"];
+    /// Gymnasium's probability of moving in the direction of the action on slippery ice.
+    pub const SUCCESS_RATE: f64 = 1.0 / 3.0;
+
+    /// A lake with this map and these options, as for [`frozen_lake`].
+    ///
+    /// # Errors
+    /// As for [`frozen_lake`].
+    pub fn new<L: AsRef<[u8]>>(
+        lines: &[L],
+        success_rate: Option<f64>,
+        rewards: LakeRewards,
+    ) -> Result<Self, InvalidMdp> {
+        let lines: Vec<Vec<u8>> = lines.iter().map(|line| line.as_ref().to_vec()).collect();
+        Ok(Self { table: frozen_lake(&lines, success_rate, rewards)? })
+    }
+
+    /// The transition table, for [planning](crate::planning).
+    pub fn table(&self) -> &TabularMdp {
+        &self.table
+    }
+
+    /// The number of cells.
+    pub fn num_states(&self) -> usize {
+        self.table.num_states()
+    }
+}
+
+impl Default for FrozenLake {
+    fn default() -> Self {
+        match Self::new(&Self::MAP_4X4, Some(Self::SUCCESS_RATE), LakeRewards::default()) {
+            Ok(lake) => lake,
+            Err(_) => unreachable!("the map is valid"),
+        }
+    }
+}
+
+impl Env for FrozenLake {
+    type State = u32;
+    type Action = usize;
+    type Observation = u32;
+
+    #[inline]
+    fn num_actions(&self) -> usize {
+        self.table.num_actions()
+    }
+
+    #[inline]
+    fn reset(&self, rng: &mut impl Rng) -> u32 {
+        self.table.reset(rng)
+    }
+
+    #[inline]
+    fn step(&self, state: u32, action: usize, rng: &mut impl Rng) -> Step<u32> {
+        self.table.step(state, action, rng)
+    }
+
+    #[inline]
+    fn observe(&self, &state: &u32) -> u32 {
+        state
+    }
 }
 
 /// The table as Gymnasium's constructor builds it. In the lines of the map, `S` marks an initial state, `G` the goal
@@ -66,4 +150,32 @@ pub fn frozen_lake(
         .map(|(state, action)| outcomes(state, action))
         .collect();
     TabularMdp::new(MOVES.len(), &initial, &pairs)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::{Pcg64, SeedSequence};
+
+    #[test]
+    fn the_environment_steps_as_its_table() {
+        let lines = FrozenLake::MAP_4X4.map(|line| line.as_bytes().to_vec());
+        let table = frozen_lake(&lines, Some(1.0 / 3.0), LakeRewards::default()).expect("a valid map");
+        let lake = FrozenLake::default();
+        assert_eq!((lake.table(), lake.num_states(), lake.num_actions()), (&table, 16, 4));
+        let (mut rng, mut other) = (Pcg64::new(&SeedSequence::from(0)), Pcg64::new(&SeedSequence::from(0)));
+        let (mut state, mut of_table) = (lake.reset(&mut rng), table.reset(&mut other));
+        for action in [2, 2, 1, 1, 1, 2] {
+            let step = lake.step(state, action, &mut rng);
+            assert_eq!(step, table.step(of_table, action, &mut other));
+            (state, of_table) = (step.state, step.state);
+        }
+        assert_eq!(lake.observe(&state), state);
+    }
+
+    #[test]
+    fn a_map_that_is_not_a_rectangle_is_refused() {
+        let error = FrozenLake::new(&["SF", "G"], None, LakeRewards::default()).expect_err("lines of two lengths");
+        assert_eq!(error.to_string(), "the lines of the map must have the same length");
+    }
 }

@@ -10,7 +10,7 @@ mod taxi_table;
 
 pub use blackjack::{Blackjack, BlackjackState, DEALER_STICKS, DECK};
 pub use cliff_walking::cliff_walking;
-pub use frozen_lake::{LakeRewards, frozen_lake};
+pub use frozen_lake::{FrozenLake, LakeRewards, frozen_lake};
 pub use hand::Hand;
 pub use taxi::{Taxi, TaxiState};
 pub use taxi_table::{TaxiMap, taxi_table};

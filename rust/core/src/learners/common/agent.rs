@@ -27,7 +27,9 @@ pub struct Agent<const N: usize = 0, P = AnyPolicy, A = LearningRate> {
     pub table: QTable<N>,
     /// The behaviour policy.
     pub policy: P,
-    /// The learning rate α, divided by the number of active rows.
+    /// The learning rate α. A [`LearningRate`] divides itself by the number of active rows that it was made with. A plain
+    /// `f64` and a [`Schedule`](crate::schedules::Schedule) are the step size of each active row as they are: with tile
+    /// coding, divide them by the number of tilings, because larger step sizes diverge.
     pub learning_rate: A,
     /// The discount γ.
     pub discount: f64,
@@ -35,6 +37,14 @@ pub struct Agent<const N: usize = 0, P = AnyPolicy, A = LearningRate> {
     pub terminal_update: TerminalUpdate,
     /// The action masks; `None` if every action is available in every state. Ignored with `N` > 0.
     pub masks: Option<Box<ActionMasks>>,
+}
+
+/// Agents of any algorithm.
+impl Agent {
+    /// An agent with the discount γ, all actions in every state, and the value zero for terminal states.
+    pub fn new(table: QTable, policy: AnyPolicy, learning_rate: LearningRate, discount: f64) -> Self {
+        Self { table, policy, learning_rate, discount, terminal_update: TerminalUpdate::Target, masks: None }
+    }
 }
 
 impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {

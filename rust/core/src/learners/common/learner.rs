@@ -1,6 +1,6 @@
 //! The trait of all learners.
 
-use crate::checkpoint::{Checkpoint, CheckpointError};
+use crate::checkpoint::{Checkpoint, CheckpointError, RunIdentity};
 use crate::memory::{AllocationError, RunMemory};
 use crate::random::Rng;
 use crate::tasks::Next;
@@ -92,6 +92,11 @@ pub trait Learner<R> {
 
     /// Abandons an unfinished episode, so that another one can begin.
     fn abandon_episode(&mut self);
+
+    /// Adds what the learner is made of, so that a checkpoint of another learner is refused: by default its type.
+    fn identify(&self, identity: &mut RunIdentity) {
+        identity.add_type::<Self>("learner");
+    }
 
     /// Saves or restores everything that has changed since the start of the run, except for the tables and the
     /// schedules.

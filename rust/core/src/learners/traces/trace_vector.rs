@@ -38,6 +38,13 @@ pub struct TraceOptions {
     pub cutoff: f64,
 }
 
+/// Replacing traces with λ = 0.9, none of which is dropped.
+impl Default for TraceOptions {
+    fn default() -> Self {
+        Self { kind: TraceKind::Replacing, decay: 0.9, cutoff: 0.0 }
+    }
+}
+
 /// The trace vector z, with one trace per weight. A trace whose magnitude falls to the cutoff becomes 0.
 ///
 /// From [`begin_step`](Self::begin_step) until [`complete_table`](Self::complete_table), the values of the weights

@@ -1,0 +1,193 @@
+//! The checks of a run's settings, alone and together.
+
+use super::{InitialValues, TrainerBuilder};
+use crate::build_error::BuildError;
+use crate::learners::{AnyAlgorithm, TraceOptions};
+use crate::q_table::TerminalUpdate;
+use crate::settings::{LearningRateSpec, PolicySpec, ScheduleSpec};
+
+/// The numbers of rows, of actions, and of rows that are active at a time.
+#[derive(Clone, Copy)]
+pub(super) struct Shape {
+    pub(super) rows: usize,
+    pub(super) actions: usize,
+    pub(super) n_active: usize,
+}
+
+impl<E, F> TrainerBuilder<E, F> {
+    /// Checks everything but the environment and the features.
+    pub(super) fn check(&self, shape: Shape) -> Result<(), BuildError> {
+        BuildError::check_number("discount", 0.0, 1.0, self.discount)?;
+        if self.max_episode_steps == Some(0) {
+            return Err(BuildError::invalid("max_episode_steps", "at least 1", 0));
+        }
+        if self.terminal_update == TerminalUpdate::Assign && shape.n_active > 1 {
+            let got = format!("Assign with {} active rows", shape.n_active);
+            return Err(BuildError::invalid("terminal_update", "Target with several active rows", got));
+        }
+        self.check_initial_values(shape)?;
+        self.check_learning_rate(shape.n_active)?;
+        self.check_policy(shape.n_active)?;
+        self.check_algorithm(shape.n_active)
+    }
+
+    fn check_initial_values(&self, shape: Shape) -> Result<(), BuildError> {
+        match &self.initial_values {
+            InitialValues::Constant(value) if !value.is_finite() => {
+                Err(BuildError::invalid("initial_value", "a finite number", value))
+            }
+            &InitialValues::Uniform { low, high } if !(low.is_finite() && high.is_finite() && low <= high) => {
+                Err(BuildError::invalid("initial_uniform", "finite bounds in order", format!("{low} and {high}")))
+            }
+            InitialValues::Table(table) if table.shape() != (shape.rows, shape.actions) => {
+                let expected = format!(
+                    "one of {} rows and {} actions, as the features and the environment have",
+                    shape.rows, shape.actions
+                );
+                let (rows, actions) = table.shape();
+                Err(BuildError::invalid("initial_table", expected, format!("{rows} rows and {actions} actions")))
+            }
+            InitialValues::Table(table) if table.values().iter().any(|value| !value.is_finite()) => {
+                Err(BuildError::invalid("initial_table", "one of finite values", "others"))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn check_learning_rate(&self, n_active: usize) -> Result<(), BuildError> {
+        let most = match n_active {
+            _ if self.algorithm.learns_preferences() => f64::MAX,
+            1 => 1.0,
+            _ => 2.0,
+        };
+        match &self.learning_rate {
+            LearningRateSpec::Schedule(schedule) => self.check_schedule("learning_rate", schedule, most),
+            &LearningRateSpec::Visits { value, minimum } => {
+                BuildError::check_number("learning_rate", 0.0, most, value)?;
+                BuildError::check_number("the minimum of learning_rate", 0.0, value, minimum)
+            }
+        }
+    }
+
+    fn check_schedule(&self, setting: &'static str, schedule: &ScheduleSpec, most: f64) -> Result<(), BuildError> {
+        let check_minimum = |minimum, value| {
+            let expected = format!("a schedule whose minimum is in [0, {value}]");
+            if (0.0..=value).contains(&minimum) { Ok(()) } else { Err(BuildError::invalid(setting, expected, minimum)) }
+        };
+        match *schedule {
+            ScheduleSpec::Constant { value } => BuildError::check_number(setting, 0.0, most, value),
+            ScheduleSpec::Exponential { value, minimum, decay, .. } => {
+                BuildError::check_number(setting, 0.0, most, value)?;
+                check_minimum(minimum, value)?;
+                if (0.0..=1.0).contains(&decay) {
+                    Ok(())
+                } else {
+                    Err(BuildError::invalid(setting, "a schedule whose decay is in [0, 1]", decay))
+                }
+            }
+            ScheduleSpec::Linear { value, minimum, warm_up } => {
+                BuildError::check_number(setting, 0.0, most, value)?;
+                check_minimum(minimum, value)?;
+                match self.episodes {
+                    Some(episodes) if warm_up < episodes => Ok(()),
+                    Some(episodes) => Err(BuildError::invalid(
+                        setting,
+                        format!("a schedule whose warm-up is less than the {episodes} episodes"),
+                        warm_up,
+                    )),
+                    None => {
+                        Err(BuildError::invalid("episodes", format!("given, because {setting} falls linearly"), "none"))
+                    }
+                }
+            }
+        }
+    }
+
+    fn check_policy(&self, n_active: usize) -> Result<(), BuildError> {
+        let is_softmax = matches!(self.policy, PolicySpec::Softmax { .. });
+        if self.algorithm.learns_preferences() && !is_softmax {
+            return Err(BuildError::invalid(
+                "policy",
+                "Softmax for an algorithm that learns preferences",
+                name(&self.policy),
+            ));
+        }
+        match &self.policy {
+            PolicySpec::EpsilonGreedy { epsilon, .. } => self.check_schedule("epsilon", epsilon, 1.0),
+            PolicySpec::Softmax { temperature } if !(*temperature > 0.0 && temperature.is_finite()) => {
+                Err(BuildError::invalid("temperature", "a finite number above 0", temperature))
+            }
+            PolicySpec::Softmax { .. } => Ok(()),
+            PolicySpec::Ucb { .. } if n_active > 1 => {
+                Err(BuildError::invalid("policy", "one without counts for several active rows", "Ucb"))
+            }
+            PolicySpec::Ucb { .. } if self.algorithm.needs_probabilities() => {
+                Err(BuildError::invalid("policy", "one with probabilities for this algorithm", "Ucb"))
+            }
+            &PolicySpec::Ucb { confidence, .. } => BuildError::check_number("confidence", 0.0, f64::MAX, confidence),
+        }
+    }
+
+    fn check_algorithm(&self, n_active: usize) -> Result<(), BuildError> {
+        if self.algorithm.needs_single_rows() && n_active > 1 {
+            let got = format!("{n_active} for {:?}", self.algorithm);
+            return Err(BuildError::invalid(
+                "the number of active rows",
+                "1 for an algorithm that needs single rows",
+                got,
+            ));
+        }
+        let share = |setting, number| BuildError::check_number(setting, 0.0, 1.0, number);
+        let not_negative = |setting, number| BuildError::check_number(setting, 0.0, f64::MAX, number);
+        match self.algorithm {
+            AnyAlgorithm::NStepSarsa { n_steps: 0 }
+            | AnyAlgorithm::NStepTreeBackup { n_steps: 0, .. }
+            | AnyAlgorithm::NStepQSigma { n_steps: 0, .. } => Err(BuildError::invalid("n_steps", "at least 1", 0)),
+            AnyAlgorithm::NStepQSigma { sigma, .. } => share("sigma", sigma),
+            AnyAlgorithm::SarsaLambda(TraceOptions { decay, cutoff, .. })
+            | AnyAlgorithm::WatkinsQLambda(TraceOptions { decay, cutoff, .. })
+            | AnyAlgorithm::TrueOnlineSarsaLambda { trace_decay: decay, trace_cutoff: cutoff } => {
+                share("trace_decay", decay)?;
+                share("trace_cutoff", cutoff)
+            }
+            AnyAlgorithm::DynaQPlus { time_weight, .. } => not_negative("time_weight", time_weight),
+            AnyAlgorithm::PrioritizedSweeping { priority_threshold, .. } => {
+                not_negative("priority_threshold", priority_threshold)
+            }
+            AnyAlgorithm::DifferentialSarsa { reward_learning_rate }
+            | AnyAlgorithm::DifferentialQLearning { reward_learning_rate } => {
+                share("reward_learning_rate", reward_learning_rate)
+            }
+            AnyAlgorithm::ReinforceWithBaseline { value_learning_rate }
+            | AnyAlgorithm::ActorCritic { value_learning_rate } => {
+                BuildError::check_number("value_learning_rate", 0.0, 2.0, value_learning_rate)
+            }
+            AnyAlgorithm::ActorCriticLambda { value_learning_rate, trace_decay } => {
+                BuildError::check_number("value_learning_rate", 0.0, 2.0, value_learning_rate)?;
+                share("trace_decay", trace_decay)
+            }
+            AnyAlgorithm::MonteCarlo { .. } | AnyAlgorithm::MonteCarloEs { .. } => self.check_time_limit(),
+            AnyAlgorithm::OffPolicyMonteCarlo { learning_rate, min_learning_rate, .. } => {
+                share("learning_rate", learning_rate)?;
+                BuildError::check_number("min_learning_rate", 0.0, learning_rate, min_learning_rate)?;
+                self.check_time_limit()
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn check_time_limit(&self) -> Result<(), BuildError> {
+        match self.max_episode_steps {
+            Some(_) => Ok(()),
+            None => Err(BuildError::invalid("max_episode_steps", "given for a Monte Carlo method", "none")),
+        }
+    }
+}
+
+fn name(policy: &PolicySpec) -> &'static str {
+    match policy {
+        PolicySpec::EpsilonGreedy { .. } => "EpsilonGreedy",
+        PolicySpec::Softmax { .. } => "Softmax",
+        PolicySpec::Ucb { .. } => "Ucb",
+    }
+}

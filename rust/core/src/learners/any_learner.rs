@@ -1,0 +1,213 @@
+//! The learner of an algorithm chosen at run time.
+
+use super::{
+    ActorCritic, ActorCriticLambda, Agent, AnyAlgorithm, Critic, DifferentialQLearning, DifferentialSarsa,
+    DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, GradientBandit, Learner, Model, MonteCarloControl, NStepQSigma,
+    NStepSarsa, NStepTreeBackup, OffPolicyMonteCarlo, PrioritizedSweeping, QLearning, Reinforce, Sarsa, SarsaLambda,
+    StochasticModel, TdLearner, TraceOptions, Traces, TrueOnlineSarsaLambda, WatkinsQLambda,
+};
+use crate::checkpoint::RunIdentity;
+use crate::delegate_learner;
+use crate::features::ActiveRows;
+use crate::memory::AllocationError;
+use crate::{QTable, StopFlag};
+
+/// Receives the learner that [`AnyAlgorithm::learner`] creates, whatever its type.
+pub trait LearnerVisitor<R> {
+    /// The result.
+    type Output;
+
+    /// Receives the learner.
+    fn visit<L: Learner<R> + Send + 'static>(self, learner: L) -> Self::Output;
+}
+
+/// Whether active rows `R` are always a single row. This is known at compile time, so learners that need single rows are
+/// not compiled for several.
+const fn is_single<R>() -> bool {
+    size_of::<R>() == size_of::<u32>()
+}
+
+/// Defines the enum of all learners: those for any active rows, and those that need a single row.
+macro_rules! any_learner {
+    (several { $($several:ident $several_rule:ty,)+ } single { $($single:ident $single_rule:ty,)+ }) => {
+        /// The learner of any algorithm, for states with active rows `R`: what
+        /// [`TrainerBuilder`](crate::TrainerBuilder) trains. A [`TdLearner`] of a known rule, policy and number of
+        /// actions is faster.
+        #[derive(Clone, Debug, PartialEq)]
+        #[non_exhaustive]
+        pub enum AnyLearner<R: ActiveRows> {
+            $(#[doc = concat!("The learner with the rule `", stringify!($several_rule), "`.")]
+            $several(TdLearner<$several_rule>),)+
+            $(#[doc = concat!("The learner with the rule `", stringify!($single_rule), "`.")]
+            $single(TdLearner<$single_rule>),)+
+        }
+
+        impl<R: ActiveRows> Learner<R> for AnyLearner<R> {
+            delegate_learner!(all R, learner in $(Self::$several(learner),)+ $(Self::$single(learner)),+);
+
+            fn identify(&self, identity: &mut RunIdentity) {
+                match self {
+                    $(Self::$several(learner) => Learner::<R>::identify(learner, identity),)+
+                    $(Self::$single(learner) => Learner::<R>::identify(learner, identity),)+
+                }
+            }
+        }
+
+        impl<R: ActiveRows> AnyLearner<R> {
+            /// The agent of the learner: its table, its policy and the constants of its updates.
+            pub fn agent(&self) -> &Agent {
+                match self {
+                    $(Self::$several(learner) => &learner.agent,)+
+                    $(Self::$single(learner) => &learner.agent,)+
+                }
+            }
+        }
+
+        impl<R: ActiveRows + Send + 'static> AnyLearner<R> {
+            /// Passes the learner to `visitor`; `None` if it needs a single active row and `R` may hold several.
+            pub(super) fn visit<V: LearnerVisitor<R>>(self, visitor: V) -> Option<V::Output> {
+                match self {
+                    $(Self::$several(learner) => Some(visitor.visit(learner)),)+
+                    $(Self::$single(learner) if is_single::<R>() => Some(visitor.visit(learner)),)+
+                    $(Self::$single(_) => None,)+
+                }
+            }
+        }
+    };
+}
+
+any_learner! {
+    several {
+    QLearning QLearning,
+    Sarsa Sarsa,
+    ExpectedSarsa ExpectedSarsa,
+    DoubleQLearning DoubleQLearning,
+    NStepSarsa NStepSarsa<R>,
+    NStepTreeBackup NStepTreeBackup<R>,
+    NStepQSigma NStepQSigma<R>,
+    SarsaLambda SarsaLambda,
+    TrueOnlineSarsaLambda TrueOnlineSarsaLambda,
+    WatkinsQLambda WatkinsQLambda,
+    DifferentialSarsa DifferentialSarsa<R>,
+    DifferentialQLearning DifferentialQLearning<R>,
+    Reinforce Reinforce<R>,
+    ActorCritic ActorCritic,
+    ActorCriticLambda ActorCriticLambda,
+    }
+    single {
+    DynaQ DynaQ,
+    DynaQPlus DynaQPlus,
+    StochasticDynaQ DynaQ<StochasticModel>,
+    PrioritizedSweeping PrioritizedSweeping,
+    MonteCarloControl MonteCarloControl,
+    OffPolicyMonteCarlo OffPolicyMonteCarlo,
+    GradientBandit GradientBandit,
+    }
+}
+
+impl<R: ActiveRows> AnyLearner<R> {
+    /// The learner of an algorithm. `second_table` is the other table of Double Q-learning, or the state values of a
+    /// critic. The result is `None` if the algorithm needs single rows and `R` may hold several, or if it needs a second
+    /// table and there is none.
+    ///
+    /// # Errors
+    /// `OutOfMemory`; `Stopped` after `stop` was set.
+    ///
+    /// # Panics
+    /// If the algorithm has targets of 0 rewards.
+    pub fn new(
+        algorithm: AnyAlgorithm,
+        agent: Agent,
+        second_table: Option<QTable>,
+        stop: &StopFlag<'_>,
+    ) -> Result<Option<Self>, AllocationError> {
+        if algorithm.needs_single_rows() && !is_single::<R>() || algorithm.n_tables() == 2 && second_table.is_none() {
+            return Ok(None);
+        }
+        let (n_rows, num_actions) = agent.table.shape();
+        let weights = n_rows * num_actions;
+        let n_active = agent.learning_rate.n_active();
+        let new_model = || Model::new(n_rows, num_actions, stop);
+        let new_traces = |cutoff: f64| Traces::new(weights, cutoff, stop);
+        let new_critic = |table, learning_rate: f64| Critic { table, step_size: learning_rate / n_active };
+        Ok(Some(match algorithm {
+            AnyAlgorithm::QLearning => Self::QLearning(TdLearner { agent, rule: QLearning }),
+            AnyAlgorithm::Sarsa => Self::Sarsa(TdLearner { agent, rule: Sarsa }),
+            AnyAlgorithm::ExpectedSarsa => Self::ExpectedSarsa(TdLearner { agent, rule: ExpectedSarsa }),
+            AnyAlgorithm::DoubleQLearning => {
+                let Some(second_table) = second_table else { return Ok(None) };
+                let rule = DoubleQLearning::new(agent.learning_rate.clone(), second_table);
+                Self::DoubleQLearning(TdLearner { agent, rule })
+            }
+            AnyAlgorithm::NStepSarsa { n_steps } => {
+                Self::NStepSarsa(TdLearner { agent, rule: NStepSarsa::new(n_steps) })
+            }
+            AnyAlgorithm::SarsaLambda(TraceOptions { kind, decay, cutoff }) => {
+                let rule = SarsaLambda { traces: new_traces(cutoff)?, kind, trace_decay: decay };
+                Self::SarsaLambda(TdLearner { agent, rule })
+            }
+            AnyAlgorithm::TrueOnlineSarsaLambda { trace_decay, trace_cutoff } => {
+                let rule = TrueOnlineSarsaLambda::new(new_traces(trace_cutoff)?, trace_decay);
+                Self::TrueOnlineSarsaLambda(TdLearner { agent, rule })
+            }
+            AnyAlgorithm::WatkinsQLambda(TraceOptions { kind, decay, cutoff }) => {
+                let rule = WatkinsQLambda { traces: new_traces(cutoff)?, kind, trace_decay: decay };
+                Self::WatkinsQLambda(TdLearner { agent, rule })
+            }
+            AnyAlgorithm::DynaQ { planning_steps } => {
+                Self::DynaQ(TdLearner { agent, rule: DynaQ::new(new_model()?, planning_steps) })
+            }
+            AnyAlgorithm::DynaQPlus { planning_steps, time_weight } => {
+                let rule = DynaQPlus::new(new_model()?, planning_steps, time_weight, stop)?;
+                Self::DynaQPlus(TdLearner { agent, rule })
+            }
+            AnyAlgorithm::StochasticDynaQ { planning_steps } => {
+                let rule = DynaQ::new(StochasticModel::new(n_rows, num_actions, stop)?, planning_steps);
+                Self::StochasticDynaQ(TdLearner { agent, rule })
+            }
+            AnyAlgorithm::MonteCarlo { max_episode_steps } | AnyAlgorithm::MonteCarloEs { max_episode_steps } => {
+                let exploring_starts = matches!(algorithm, AnyAlgorithm::MonteCarloEs { .. });
+                let rule = MonteCarloControl::new(weights, max_episode_steps, exploring_starts, stop)?;
+                Self::MonteCarloControl(TdLearner { agent, rule })
+            }
+            AnyAlgorithm::OffPolicyMonteCarlo { max_episode_steps, learning_rate, min_learning_rate } => {
+                let rates = (learning_rate, min_learning_rate);
+                let rule = OffPolicyMonteCarlo::new(weights, max_episode_steps, rates, stop)?;
+                Self::OffPolicyMonteCarlo(TdLearner { agent, rule })
+            }
+            AnyAlgorithm::NStepTreeBackup { n_steps, target_policy } => {
+                Self::NStepTreeBackup(TdLearner { agent, rule: NStepTreeBackup::new(n_steps, target_policy) })
+            }
+            AnyAlgorithm::NStepQSigma { n_steps, sigma, target_policy } => {
+                Self::NStepQSigma(TdLearner { agent, rule: NStepQSigma::new(n_steps, sigma, target_policy) })
+            }
+            AnyAlgorithm::PrioritizedSweeping { planning_steps, priority_threshold } => {
+                let rule = PrioritizedSweeping::new(new_model()?, planning_steps, priority_threshold, stop)?;
+                Self::PrioritizedSweeping(TdLearner { agent, rule })
+            }
+            AnyAlgorithm::DifferentialSarsa { reward_learning_rate } => {
+                Self::DifferentialSarsa(TdLearner { agent, rule: DifferentialSarsa::new(reward_learning_rate) })
+            }
+            AnyAlgorithm::DifferentialQLearning { reward_learning_rate } => {
+                Self::DifferentialQLearning(TdLearner { agent, rule: DifferentialQLearning::new(reward_learning_rate) })
+            }
+            AnyAlgorithm::GradientBandit { baseline } => {
+                Self::GradientBandit(TdLearner { agent, rule: GradientBandit::new(baseline, n_rows, stop)? })
+            }
+            AnyAlgorithm::Reinforce => Self::Reinforce(TdLearner { agent, rule: Reinforce::new(None) }),
+            AnyAlgorithm::ReinforceWithBaseline { value_learning_rate } => {
+                let critic = second_table.map(|table| new_critic(table, value_learning_rate));
+                Self::Reinforce(TdLearner { agent, rule: Reinforce::new(critic) })
+            }
+            AnyAlgorithm::ActorCritic { value_learning_rate } => {
+                let Some(table) = second_table else { return Ok(None) };
+                Self::ActorCritic(TdLearner { agent, rule: ActorCritic::new(new_critic(table, value_learning_rate)) })
+            }
+            AnyAlgorithm::ActorCriticLambda { value_learning_rate, trace_decay } => {
+                let Some(table) = second_table else { return Ok(None) };
+                let rule = ActorCriticLambda::new(new_critic(table, value_learning_rate), trace_decay, stop)?;
+                Self::ActorCriticLambda(TdLearner { agent, rule })
+            }
+        }))
+    }
+}

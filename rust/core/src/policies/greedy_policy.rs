@@ -1,0 +1,101 @@
+//! The greedy policy of learned tables.
+
+use crate::numeric::argmax;
+
+/// The greedy policy: the action with the largest value, and the first one of several. It is a copy of the learned
+/// values, so training can continue beside it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GreedyPolicy {
+    values: Vec<f64>,
+    num_actions: usize,
+}
+
+impl GreedyPolicy {
+    /// The policy that maximizes the sum of some tables, given row by row, over the available actions. `masks` holds
+    /// whether each action is available in each row; masks of another size, as learners have with several active rows,
+    /// are ignored.
+    ///
+    /// # Panics
+    /// If there is no table, if the tables differ in size, or if they have no rows of `num_actions` values.
+    pub fn new(tables: &[&[f64]], num_actions: usize, masks: Option<&[bool]>) -> Self {
+        let [first, others @ ..] = tables else { panic_without_tables() };
+        assert!(num_actions > 0 && first.len().is_multiple_of(num_actions), "a row must have {num_actions} values");
+        let mut values = first.to_vec();
+        for table in others {
+            assert!(table.len() == values.len(), "the tables must have the same size");
+            values.iter_mut().zip(*table).for_each(|(sum, value)| *sum += value);
+        }
+        if let Some(masks) = masks.filter(|masks| masks.len() == values.len()) {
+            for (value, available) in values.iter_mut().zip(masks) {
+                *value = if *available { *value } else { f64::NEG_INFINITY };
+            }
+        }
+        Self { values, num_actions }
+    }
+
+    /// The number of rows and of actions.
+    pub fn shape(&self) -> (usize, usize) {
+        (self.values.len() / self.num_actions, self.num_actions)
+    }
+
+    /// The greedy action of the state with these active rows, which
+    /// [`Features::active_rows`](crate::Features::active_rows) returns.
+    ///
+    /// # Panics
+    /// If a row is not in the table.
+    pub fn action(&self, rows: impl AsRef<[u32]>) -> usize {
+        argmax(&self.action_values(rows))
+    }
+
+    /// The greedy action among the available ones, given whether each action is available.
+    ///
+    /// # Panics
+    /// As for `action`.
+    pub fn action_among(&self, rows: impl AsRef<[u32]>, available: &[bool]) -> usize {
+        let mut values = self.action_values(rows);
+        for (value, available) in values.iter_mut().zip(available) {
+            *value = if *available { *value } else { f64::NEG_INFINITY };
+        }
+        argmax(&values)
+    }
+
+    /// The action values of the state with these active rows, each the sum over the rows.
+    ///
+    /// # Panics
+    /// As for `action`.
+    pub fn action_values(&self, rows: impl AsRef<[u32]>) -> Vec<f64> {
+        let mut sums = vec![0.0; self.num_actions];
+        for (index, &row) in rows.as_ref().iter().enumerate() {
+            let row = &self.values[row as usize * self.num_actions..][..self.num_actions];
+            // A sum that begins with a value keeps the sign of its zero.
+            sums.iter_mut().zip(row).for_each(|(sum, value)| *sum = if index == 0 { *value } else { *sum + value });
+        }
+        sums
+    }
+}
+
+#[expect(clippy::panic, reason = "documented")]
+fn panic_without_tables() -> ! {
+    panic!("a greedy policy needs a table")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_of_the_largest_sums_is_greedy() {
+        let policy = GreedyPolicy::new(&[&[1.0, 2.0, 0.0, 0.0], &[1.0, 0.0, 0.5, 1.0]], 2, None);
+        assert_eq!(policy.shape(), (2, 2));
+        assert_eq!([policy.action([0]), policy.action([1]), policy.action([0, 1])], [0, 1, 1]);
+        assert_eq!(policy.action_values([0, 1]), [2.5, 3.0]);
+    }
+
+    #[test]
+    fn an_unavailable_action_is_not_greedy() {
+        let policy = GreedyPolicy::new(&[&[1.0, 2.0]], 2, Some(&[true, false]));
+        assert_eq!(policy.action([0]), 0);
+        let policy = GreedyPolicy::new(&[&[1.0, 2.0]], 2, None);
+        assert_eq!(policy.action_among([0], &[true, false]), 0);
+    }
+}
