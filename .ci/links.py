@@ -1,4 +1,5 @@
-"""Makes the links of the README absolute, so that pictures show on PyPI and pages are found from there.
+"""Makes the links of the README absolute, so that pictures show on PyPI and pages are found from there, and writes the
+repository into the manifest of the crate.
 
     python .ci/links.py https://github.com/OWNER/NAME v1.2.3
 
@@ -10,11 +11,12 @@ import sys
 from pathlib import Path
 
 README = Path(__file__).parents[1] / "README.md"
+MANIFEST = Path(__file__).parents[1] / "rust" / "core" / "Cargo.toml"
 LINK = re.compile(r"(!?)\[([^\]]*)\]\((?!https?:|#)([^)\s]+)\)")
 
 
 def main(repository: str, tag: str) -> None:
-    """Rewrites the README."""
+    """Rewrites the README and the manifest."""
     if not re.fullmatch(r"https://[\w.-]+/[\w.-]+/[\w.-]+", repository):
         sys.exit(f"the repository must be like https://github.com/OWNER/NAME, got {repository!r}")
 
@@ -25,6 +27,10 @@ def main(repository: str, tag: str) -> None:
     text, count = LINK.subn(absolute, README.read_text(encoding="utf-8"))
     README.write_text(text, encoding="utf-8", newline="\n")
     print(f"{count} links of README.md lead to {repository}")
+    manifest = MANIFEST.read_text(encoding="utf-8")
+    if "\nrepository = " not in manifest:
+        manifest = manifest.replace("\ndocumentation = ", f'\nrepository = "{repository}"\ndocumentation = ', 1)
+        MANIFEST.write_text(manifest, encoding="utf-8", newline="\n")
 
 
 if __name__ == "__main__":

@@ -112,10 +112,13 @@ def test_a_tag_without_a_version_or_without_a_section_of_the_changelog_is_refuse
     assert (tmp_path / "Cargo.lock").read_bytes() == (ROOT / "Cargo.lock").read_bytes()
 
 
-def test_the_links_of_the_readme_become_absolute_for_pypi(tmp_path: Path) -> None:
+def test_the_links_of_the_readme_become_absolute_and_the_crate_knows_its_repository(tmp_path: Path) -> None:
     (tmp_path / ".ci").mkdir()
     (tmp_path / ".ci" / "links.py").write_bytes((ROOT / ".ci" / "links.py").read_bytes())
     (tmp_path / "README.md").write_bytes((ROOT / "README.md").read_bytes())
+    manifest = tmp_path / "rust" / "core" / "Cargo.toml"
+    manifest.parent.mkdir(parents=True)
+    manifest.write_bytes((ROOT / "rust" / "core" / "Cargo.toml").read_bytes())
     address = "https://example.org/someone/qtab"
     command = [sys.executable, ".ci/links.py", address, "v3.4.5"]
     assert subprocess.run(command, cwd=tmp_path, capture_output=True, check=False).returncode == 0
@@ -123,6 +126,7 @@ def test_the_links_of_the_readme_become_absolute_for_pypi(tmp_path: Path) -> Non
     assert f"]({address}/raw/v3.4.5/docs/pictures/first_picture.png)" in text
     assert f"]({address}/blob/v3.4.5/docs/tutorial/index.md)" in text
     assert re.findall(r"\]\((?!https://)[^)]*\)", text) == []
+    assert manifest.read_text(encoding="utf-8").count(f'\nrepository = "{address}"\n') == 1
     refused = subprocess.run(
         [*command[:2], "x; y", "v3.4.5"], cwd=tmp_path, capture_output=True, text=True, check=False
     )
@@ -139,6 +143,7 @@ def test_the_scripts_find_programs_where_windows_has_them_too() -> None:
 def test_the_scripts_name_no_version_of_rust_of_their_own() -> None:
     manifest = (ROOT / "Cargo.toml").read_text(encoding="utf-8")
     (lowest,) = re.findall(r'^rust-version = "(.+)"', manifest, re.MULTILINE)
+    assert f"The minimum supported version is {lowest}." in (ROOT / "rust/core/README.md").read_text(encoding="utf-8")
     texts = [path.read_text(encoding="utf-8") for path in (ROOT / ".ci").iterdir() if path.is_file()]
     assert not [text for text in texts if re.search(r"\b1\.(8[89]|9\d)\b", text)]
     workflow = (ROOT / ".github" / "workflows" / "ci.yml").read_text(encoding="utf-8")
