@@ -33,6 +33,7 @@ FLOATS = {"TYPE": "QTAB_FLOAT64", "NUMBER": "double"}
         ({"BAD_OBSERVATION": 6}, "got 6 as observation[1], which has the bounds 3 and 5"),
         ({"BAD_OBSERVATION": "NAN", **FLOATS}, "got NaN as observation[1], which has the bounds 3 and 5"),
         ({"BAD_OBSERVATION": "-INFINITY", "UNBOUNDED": True, **FLOATS}, "got -inf as observation[1]"),
+        ({"CRASHES": True}, "it crashed in a trial of 100 steps (SIG"),
         ({"BEYOND": True}, "a function wrote beyond the end of observation"),
         ({"NO_ACTION": 2}, "step must write an action mask of 0 and 1 with at least one 1, got [0, 0, 0]"),
     ],

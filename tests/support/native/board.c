@@ -73,6 +73,9 @@ static int32_t step(const void *parameters, const qtab_bitgen *rng, const void *
         return QTAB_FAILED;
     }
     observe(parameters, next_state, observation, action_mask);
+#ifdef CRASHES
+    *(volatile int *)NULL = 0;
+#endif
 #ifdef NAN_REWARD
     *reward = NAN;
 #endif

@@ -11,12 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from qtab import _core
-
-SYMBOL = "qtab_env_1"
-_NAME = b"qtab.env.1"
-"""The name of the capsules, which refer to these bytes."""
-_TRIAL_STEPS = 100
-_TRIAL_SEED = 0
+from qtab.envs.external.trial import capsule_in, check_for_crash, try_out
 
 _lock = threading.Lock()
 _loaded: dict[str, "Library"] = {}
@@ -47,8 +42,8 @@ def load(path: "str | os.PathLike[str]") -> Library:
     Raises:
         FileNotFoundError: if there is no such file.
         OSError: if it cannot be read.
-        ValueError: if it is not a library for this machine, exports no environment, or one that breaks a rule of
-            ``qtab_env.h`` in some random steps.
+        ValueError: if it is not a library for this machine, exports no environment, or one that crashes or breaks a
+            rule of ``qtab_env.h`` in some random steps.
     """
     file = Path(path)
     if not file.is_file():
@@ -61,24 +56,12 @@ def load(path: "str | os.PathLike[str]") -> Library:
 
 
 def _load(file: Path, digest: str) -> Library:
-    library = _load_copy(file)
     try:
-        function = getattr(library, SYMBOL)
-    except AttributeError:
-        raise ValueError(f"{file} must export the function {SYMBOL}() of qtab_env.h, but has none") from None
-    function.argtypes, function.restype = [], ctypes.c_void_p
-    address = function()
-    if not address:
-        raise ValueError(f"{file} cannot be used: {SYMBOL}() returned NULL")
-    new_capsule = ctypes.pythonapi.PyCapsule_New
-    new_capsule.argtypes, new_capsule.restype = [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_void_p], ctypes.py_object
-    capsule = new_capsule(address, _NAME, None)
-    try:
-        external = _core.ExternalEnv(capsule)
-        external.try_out(_TRIAL_STEPS, _TRIAL_SEED)
+        check_for_crash(_core.__file__, file.resolve())
+        capsule = capsule_in(_load_copy(file))
+        return Library(digest, capsule, try_out(_core, capsule))
     except ValueError as error:
         raise ValueError(f"{file} cannot be used: {error}") from None
-    return Library(digest, capsule, external)
 
 
 def _load_copy(file: Path) -> ctypes.CDLL:
@@ -93,4 +76,4 @@ def _load_copy(file: Path) -> ctypes.CDLL:
     try:
         return ctypes.CDLL(str(file.resolve()))
     except OSError as error:
-        raise ValueError(f"{file} must be a shared library that this machine can load: {error}") from None
+        raise ValueError(f"it must be a shared library that this machine can load: {error}") from None

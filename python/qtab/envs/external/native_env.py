@@ -24,9 +24,10 @@ class NativeEnv(gym.Env[Any, Any]):
     or float64 are a Box. If the environment has action masks, they are in ``info["action_mask"]``, an int8 array with
     an item for each action, and training uses them with ``action_mask=True``.
 
-    When a library is loaded, its sizes are checked, and some random steps are taken, after each of which the numbers
-    and the memory beyond their ends are checked. A library that crashes ends the process, as any native code does. The
-    file may be compiled again while it is in use: a ``NativeEnv`` made afterwards has the new functions.
+    When a library is loaded, its sizes are checked, and some random steps are taken, first in a separate process. After
+    each of them the numbers are checked, and the memory beyond them. A library that crashes later ends the process, as
+    any native code does. The file may be compiled again while it is in use: a ``NativeEnv`` made afterwards has the new
+    functions.
 
     Args:
         path: The path of the shared library, such as ``"./libmy_env.so"``.
@@ -34,7 +35,7 @@ class NativeEnv(gym.Env[Any, Any]):
     Raises:
         FileNotFoundError: if there is no such file.
         ValueError: if it is not a library for this machine, exports no function ``qtab_env_1``, was made for another
-            version of the interface, or breaks one of its rules, such as an observation that is not a number.
+            version of the interface, crashes, or breaks a rule, such as an observation that is not a number.
     """
 
     metadata: dict[str, Any] = {"render_modes": []}  # noqa: RUF012 - Gymnasium's attribute
