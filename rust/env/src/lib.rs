@@ -59,3 +59,8 @@ pub use table::{
     ALIGNMENT, Bitgen, CONTINUES, ENV_VERSION, FAILED, FLOAT32, FLOAT64, INT64, ObserveFunction, ResetFunction,
     StepFunction, TERMINATED, TRUNCATED, Table,
 };
+
+/// The code of the README compiles.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
