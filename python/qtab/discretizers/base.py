@@ -35,6 +35,8 @@ class Discretizer(ABC):
 
     reads_space: ClassVar[bool] = False
     """Whether :meth:`observe` must convert the observations of the environment for the extension."""
+    reads_numbers: ClassVar[bool] = False
+    """Whether the extension can also read the numbers of an observation, by :meth:`spec_of_numbers`."""
     has_cells: ClassVar[bool] = True
     """Whether exactly one row, the cell of an observation, is active, so that the table has an axis per component."""
     has_component_axes: ClassVar[bool] = True

@@ -34,6 +34,7 @@ class Composite(Discretizer):
     """
 
     reads_space = True
+    reads_numbers = True
 
     layout: Layout
     groups: tuple[Group, ...]
@@ -157,10 +158,20 @@ class Composite(Discretizer):
 
     def spec(self) -> DiscretizerSpec:
         """Returns the discretizer as the extension takes it, for the flat arrays of :meth:`observe`."""
+        return self._spec([0] * self.layout.size)
+
+    def spec_of_numbers(self) -> DiscretizerSpec:
+        """Returns the discretizer as the extension takes it, for the numbers of observations as they are."""
+        first: list[int] = []
+        for part, offset in zip(self.layout.parts, self._first, strict=True):
+            first += [0] * part.size if offset is None else offset.tolist()
+        return self._spec(first)
+
+    def _spec(self, first: list[int]) -> DiscretizerSpec:
         if self._is_whole:
             return self.groups[0].discretizer.spec()
         if not self.groups:
-            return {"type": "identity", "first": [0] * self.layout.size, "counts": self.counts, "scalar": False}
+            return {"type": "identity", "first": first, "counts": self.counts, "scalar": False}
         owners = {component: group for group in self.groups for component in group.components}
         factors: list[FactorSpec] = []
         stride = 1
@@ -172,7 +183,7 @@ class Composite(Discretizer):
             count = self.counts[component]
             if not count:
                 continue
-            index: IdentitySpec = {"type": "identity", "first": [0], "counts": [count], "scalar": True}
+            index: IdentitySpec = {"type": "identity", "first": [first[component]], "counts": [count], "scalar": True}
             spec = owners[component].spec_of(component) if component in owners else index
             factors.append({"components": [component], "stride": stride, "discretizer": spec})
             stride *= count

@@ -211,13 +211,14 @@ def _fill_defaults(request: _Request, owns_env: bool) -> ResolvedRun:
     with naming_preset(config.preset, of_preset, request.asked):
         discretizer = discretizers.build(env.observation_space, config, len(actions))
     masks = None if asks_for_masks(config.action_mask) else NO_MASKS
-    in_rust = isinstance(environment, NativeEnvironment)
+    in_rust, is_external = isinstance(environment, NativeEnvironment), isinstance(request.entry, _core.ExternalEnv)
     if in_rust and masks is None and config.action_mask is True and isinstance(request.entry, _core.ExternalEnv):
         masks = WRITTEN_MASKS if request.entry.has_action_mask else None
     elif in_rust and masks is None and not discretizer.reads_space:
         masks = known_masks(config.action_mask, env, discretizer, len(actions))
-    if in_rust and (masks is None or discretizer.reads_space):
-        in_rust, python_reason = False, READ_IN_PYTHON if discretizer.reads_space else MASKS_BY_STEP
+    read_in_python = discretizer.reads_space and not (is_external and discretizer.reads_numbers)
+    if in_rust and (masks is None or read_in_python):
+        in_rust, python_reason = False, READ_IN_PYTHON if read_in_python else MASKS_BY_STEP
         if config.backend in INSISTING:
             raise rust_unavailable(python_reason, config.backend)
     if masks is None:
