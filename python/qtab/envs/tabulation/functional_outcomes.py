@@ -2,7 +2,7 @@
 
 import copy
 import math
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
@@ -34,6 +34,8 @@ class FunctionalOutcomes:
     Args:
         env: The environment. It is copied, and not stepped.
     """
+
+    name_of_state = "state"
 
     def __init__(self, env: FunctionalEnv) -> None:
         self._branches = Branches()
@@ -100,6 +102,10 @@ class FunctionalOutcomes:
                 f"numbers returned another result, {where}"
             )
         return [replace(one, probability=chance) for chance, one in found]
+
+    def plain_states(self, states: Sequence[Any]) -> list[Any]:
+        """Returns the states."""
+        return list(states)
 
     def check_unchanged(self) -> None:
         """Checks that the methods did not change attributes of the environment.

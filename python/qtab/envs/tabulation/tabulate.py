@@ -11,6 +11,7 @@ from qtab._utils import checks
 from qtab._utils.shown import shown
 from qtab.envs.functional import FunctionalEnv
 from qtab.envs.matching import layers, time_limit, unknown_wrapper
+from qtab.envs.tabulation.copied_outcomes import CopiedOutcomes
 from qtab.envs.tabulation.functional_outcomes import FunctionalOutcomes
 from qtab.envs.tabulation.known_table import has_known_table, tabulate_known
 from qtab.envs.tabulation.state_keys import state_text
@@ -34,6 +35,8 @@ def tabulate(env: gym.Env[Any, Any], *, max_states: int = 100_000) -> TabulatedE
       ``permutation``, ``shuffle`` and ``binomial`` with few values, and for ``random()`` and ``uniform(low, high)`` if
       they are only compared with numbers, as in ``rng.random() < 0.1``. Any other draw needs the environment's methods
       ``outcomes`` and ``initial_outcomes``.
+    - Any other environment is copied with ``copy.deepcopy``, and each copy is stepped once, with the same draws. Its
+      state is all of its attributes, which must be numbers, texts, arrays, or collections and objects of these.
 
     States are numbered in the order in which they are found. The outcomes of an action are in the order of the drawn
     values, or in that of ``outcomes``. Equal outcomes are joined into one. A probability is computed as a fraction and
@@ -55,8 +58,8 @@ def tabulate(env: gym.Env[Any, Any], *, max_states: int = 100_000) -> TabulatedE
     Raises:
         TypeError: if an argument has the wrong type, or a method of the environment returns one.
         ValueError: for more than ``max_states`` states, outcomes that cannot be listed, states that cannot be compared,
-            other action spaces, or wrappers that may change a number. The message names the state, the action and the
-            draw.
+            an environment that truncates episodes itself, other action spaces, or wrappers that may change a number.
+            The message names the state, the action and the draw.
     """
     if not isinstance(env, gym.Env):
         raise TypeError(f"env must be an environment, got {shown(env)}")
@@ -71,12 +74,8 @@ def tabulate(env: gym.Env[Any, Any], *, max_states: int = 100_000) -> TabulatedE
     limit = time_limit(inner)
     if has_known_table(unwrapped):
         return tabulate_known(unwrapped, limit, max_states)
-    if not isinstance(unwrapped, FunctionalEnv):
-        raise ValueError(
-            "env must be a qtab.FunctionalEnv, or have a transition table P and an initial_state_distrib, got "
-            f"{type(unwrapped).__name__}"
-        )
-    return _tabulated(FunctionalOutcomes(unwrapped), unwrapped, limit, max_states)
+    outcomes = FunctionalOutcomes(unwrapped) if isinstance(unwrapped, FunctionalEnv) else CopiedOutcomes(unwrapped)
+    return _tabulated(outcomes, unwrapped, limit, max_states)
 
 
 def _without_watching(env: gym.Env) -> gym.Env:
@@ -90,10 +89,10 @@ def _without_watching(env: gym.Env) -> gym.Env:
 def _tabulated(outcomes: Outcomes, env: Any, limit: int | None, max_states: int) -> TabulatedEnv:
     space = env.action_space
     walk = Walk(outcomes, int(space.n), int(space.start), max_states)
-    before = np.random.get_state(), random.getstate()  # noqa: NPY002 - the state that a wrong environment changes
+    before = _other_generators(env)
     distribution = walk.run()
-    _check_unchanged(type(env).__name__, *before)
-    states = [visit.state for visit in walk.visits]
+    _check_unchanged(env, before)
+    states = outcomes.plain_states([visit.state for visit in walk.visits])
     names = [state_text(state) for state in states] if len(states) <= MOST_NAMES else []
     table = TabulatedEnv(
         walk.table(limit),
@@ -107,13 +106,24 @@ def _tabulated(outcomes: Outcomes, env: Any, limit: int | None, max_states: int)
     return table
 
 
-def _check_unchanged(name: str, of_numpy: Any, of_python: Any) -> None:
-    now: Any = np.random.get_state()  # noqa: NPY002 - see above
-    used = "random" if random.getstate() != of_python else ""
-    if now[2:] != of_numpy[2:] or not np.array_equal(now[1], of_numpy[1]):
-        used = "np.random"
+def _other_generators(env: Any) -> dict[str, Any]:
+    """Returns the states of the random generators that an environment must not use, by their names."""
+    of_numpy: Any = np.random.get_state()  # noqa: NPY002 - the state that a wrong environment changes
+    states: dict[str, Any] = {
+        "the module np.random": (of_numpy[1].tobytes(), *of_numpy[2:]),
+        "the module random": random.getstate(),
+    }
+    for name in ("action_space", "observation_space"):
+        space: Any = getattr(env, name)
+        states[f"its {name}"] = None if space._np_random is None else space._np_random.bit_generator.state
+    return states
+
+
+def _check_unchanged(env: Any, before: dict[str, Any]) -> None:
+    now = _other_generators(env)
+    used = [name for name, state in before.items() if now[name] != state]
     if used:
         raise ValueError(
-            f"env must draw its random numbers from the generator that it is given, but {name} or another thread drew "
-            f"from the module {used}"
+            "env must draw its random numbers from the generator that it is given, but "
+            f"{type(env).__name__} or another thread drew from {used[0]}"
         )

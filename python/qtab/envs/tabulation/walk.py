@@ -1,7 +1,7 @@
 """A walk over all reachable states of an environment, breadth first."""
 
 from collections import deque
-from collections.abc import Callable, Hashable
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any, Protocol
@@ -44,11 +44,17 @@ class Outcome:
 class Outcomes(Protocol):
     """The outcomes of an environment, listed."""
 
+    name_of_state: str
+    """The name of a state in messages."""
+
     def initial(self) -> list[tuple[Fraction, Visit]]:
         """Returns the first states of an episode with their probabilities."""
 
     def step(self, state: Any, action: int) -> list[Outcome]:
         """Returns the outcomes of an action."""
+
+    def plain_states(self, states: Sequence[Any]) -> list[Any]:
+        """Returns the states as a table keeps them."""
 
     def check_unchanged(self) -> None:
         """Checks, after the walk, that the environment itself was not changed."""
@@ -63,14 +69,12 @@ class Walk:
         n_actions: The number of actions.
         first_action: The first action.
         max_states: The most states.
-        describe: Returns the part of a state to look for growing numbers in.
     """
 
     outcomes: Outcomes
     n_actions: int
     first_action: int
     max_states: int
-    describe: Callable[[Any], Any] = lambda state: state
     visits: list[Visit] = field(default_factory=list)
     """The states in the order in which they were found."""
     transitions: dict[int, list[list[Transition] | None]] = field(default_factory=dict)
@@ -163,7 +167,7 @@ class Walk:
         return len(self.visits) - 1
 
     def _too_many(self) -> ValueError:
-        growing = growing_numbers([self.describe(visit.state) for visit in self.visits])
+        growing = growing_numbers([visit.state for visit in self.visits], self.outcomes.name_of_state)
         hint = f". These numbers keep growing: {growing}" if growing else ""
         waiting = len(self.visits) - len(self.transitions)
         return ValueError(
