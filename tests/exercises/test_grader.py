@@ -64,7 +64,7 @@ def test_two_mistakes_at_once_are_recognised() -> None:
     report = check("sarsa", book_sarsa)
     assert not report.passed
     assert set(report.mistakes) == {MISTAKES["truncation"], MISTAKES["draws_at_end"]}
-    assert not report.alternatives
+    assert not report.recognition.alternatives
     assert "these 2 mistakes" in str(report)
 
 
@@ -116,8 +116,39 @@ def test_rounding_counts_unless_it_is_allowed() -> None:
     report = check("sample_average", average)
     assert not report.passed
     assert "except for rounding" in str(report)
+    assert report.mistakes == ()
     assert check("sample_average", average, exact=False).passed
     assert not check("sample_average", lambda *_: None, exact=False).passed
+
+
+def test_a_mistake_is_recognised_behind_another_rounding() -> None:
+    def rounded(env, q, episodes, learning_rate, discount, epsilon, rng):
+        for _ in range(episodes):
+            state, _ = env.reset()
+            over = False
+            while not over:
+                action = epsilon_greedy(q[state], epsilon, rng)
+                next_state, reward, terminated, truncated, _ = env.step(action)
+                over = terminated or truncated
+                target = reward + (0 if over else discount * q[next_state].max())
+                q[state, action] += learning_rate * target - learning_rate * q[state, action]
+                state = next_state
+
+    report = check("q_learning", rounded)
+    assert report.mistakes == (MISTAKES["truncation"],)
+    assert not report.recognition.exact
+    assert "gives the same numbers as your function in all checks, except for rounding:" in str(report)
+
+
+def test_only_finished_checks_are_compared_with_mistakes() -> None:
+    def stops(env, q, episodes, learning_rate, discount, epsilon, rng):
+        if episodes > 3:
+            raise RuntimeError("enough")
+        find("sarsa").model(env, q, episodes, discount, learning_rate, epsilon, rng)
+
+    report = check("sarsa", stops)
+    assert report.mistakes == (MISTAKES["swapped_rates"],)
+    assert "in the checks that it finished:" in str(report)
 
 
 def broken(function: Callable[..., Any], message: str, name: str = "sarsa", seconds: float = 10.0) -> None:

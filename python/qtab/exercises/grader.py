@@ -1,23 +1,18 @@
 """``qtab.exercises.check``: a student's function against the reference, to the last bit."""
 
 from collections.abc import Callable, Iterator, Sequence
-from functools import partial
-from itertools import combinations
+from dataclasses import replace
 from typing import Any
-
-import numpy as np
 
 from qtab._utils import checks
 from qtab._utils.shown import shown
 from qtab.exercises.collection import find
-from qtab.exercises.exercise import Check, Exercise
-from qtab.exercises.mistakes import MISTAKES
-from qtab.exercises.record import Event, Misuse, Record, equal, first_difference
+from qtab.exercises.exercise import Check
+from qtab.exercises.recognition import MODEL_SECONDS, recognised
+from qtab.exercises.record import Misuse, Record, equal, first_difference
 from qtab.exercises.recording_env import RANDOM_NUMBERS
 from qtab.exercises.report import CheckResult, Report
 
-MODEL_SECONDS = 60.0
-"""The time limit of the reference, which never needs it."""
 NEVER_CHANGED = (
     "{table} never changes: change the array that you are given, as in {table}[...] += ..., and not a copy of it. "
     "Nothing needs to be returned"
@@ -65,11 +60,10 @@ def check(exercise: str | int, solution: Callable[..., Any], *, exact: bool = Tr
         if mine.faults and difference is not None and difference.entries == (ONLY_REFERENCE,):
             difference = None  # everything is equal until the function was stopped
         results.append(CheckResult(one.title, tuple(mine.faults), difference, exact))
-    report = Report(found, tuple(results), ())
+    report = Report(found, tuple(results))
     if report.passed:
         return report
-    mistakes, alternatives = recognised(found, records)
-    return Report(found, tuple(results), mistakes, tuple(_advice(records, references)), alternatives)
+    return replace(report, recognition=recognised(found, records), advice=tuple(_advice(records, references)))
 
 
 ONLY_REFERENCE = "only the reference goes that far"
@@ -83,65 +77,6 @@ def _record(one: Check, function: Callable[..., Any], seconds: float) -> Record:
     except Misuse as misuse:
         record.faults.insert(0, str(misuse))
     return record
-
-
-def recognised(exercise: Exercise, records: Sequence[Record]) -> tuple[tuple[str, ...], bool]:
-    """Returns the explanations of the mistakes with which the reference gives the same records.
-
-    Args:
-        exercise: The exercise.
-        records: The records of a solution in all of its checks. Those of calls that were stopped are left out.
-
-    Returns:
-        The explanations, and whether each of them alone is enough: one mistake, several of which each one is enough, or
-        two that are made together.
-    """
-    finished = [
-        (one, record)
-        for one, record in zip(exercise.checks, records, strict=True)
-        if record.events and not any(record.faults)
-    ]
-    if not finished:
-        return (), False
-    for exact in (True, False):
-        single = [key for key in exercise.mistakes if _explains(exercise, {key}, finished, exact)]
-        if single:
-            return tuple(MISTAKES[key] for key in single), len(single) > 1
-        for pair in combinations(exercise.mistakes, 2):
-            if _explains(exercise, set(pair), finished, exact):
-                return tuple(MISTAKES[key] for key in pair), False
-    return (), False
-
-
-def _explains(exercise: Exercise, keys: set[str], finished: Sequence[tuple[Check, Record]], exact: bool) -> bool:
-    """Returns whether the reference with these mistakes built in gives the same records."""
-    model = partial(exercise.model, wrong=frozenset(keys))
-    for one, record in finished:
-        theirs = Record(_Same(record.events, exact))
-        try:
-            with np.errstate(all="ignore"):  # values may diverge
-                one.run(model, theirs, MODEL_SECONDS)
-        except Misuse:
-            return False
-        if len(theirs.events) != len(record.events):
-            return False
-    return True
-
-
-class _Same(list[Event]):
-    """Events that must be the same as others: the first one that differs ends the call, which saves time."""
-
-    def __init__(self, others: Sequence[Event], exact: bool) -> None:
-        super().__init__()
-        self._others, self._exact = others, exact
-
-    def append(self, event: Event) -> None:
-        other = self._others[len(self)] if len(self) < len(self._others) else None
-        if other is None or (event.place, event.quantity) != (other.place, other.quantity):
-            raise Misuse("another order of events")
-        if not equal(other.value, event.value, self._exact):
-            raise Misuse("another value")
-        super().append(event)
 
 
 def _advice(records: Sequence[Record], references: Sequence[Record]) -> Iterator[str]:

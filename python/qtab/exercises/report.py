@@ -1,11 +1,11 @@
 """The result of checking a solution."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from qtab._utils import html
 from qtab._utils.fields import with_fields
 from qtab.exercises.exercise import Exercise
+from qtab.exercises.recognition import Recognition
 from qtab.exercises.record import Difference
 
 
@@ -49,13 +49,15 @@ class Report:
     exercise: Exercise
     results: tuple[CheckResult, ...]
     """The result of each check, in order."""
-    mistakes: tuple[str, ...]
-    """An explanation of each recognised mistake: with them built in, the reference gives the solution's numbers in
-    every check. Empty if none was recognised."""
+    recognition: Recognition = field(default_factory=Recognition)
+    """The recognised mistakes."""
     advice: tuple[str, ...] = ()
-    """Other remarks on how to go on."""
-    alternatives: bool = False
-    """Whether each of ``mistakes`` alone explains the numbers, because the checks cannot distinguish them."""
+    """Other remarks, such as on an array that never changes."""
+
+    @property
+    def mistakes(self) -> tuple[str, ...]:
+        """An explanation of each recognised mistake: with them, the reference gives the numbers of the solution."""
+        return self.recognition.mistakes
 
     @property
     def passed(self) -> bool:
@@ -95,19 +97,8 @@ class Report:
         return f"exercise {self.exercise.number}, {self.exercise.name}: {found}"
 
     def _notes(self) -> list[str]:
-        return [*_recognised(self.mistakes, self.alternatives), *self.advice]
+        return [*self.recognition.lines, *self.advice]
 
 
 def _word(result: CheckResult) -> str:
     return "passed" if result.passed else "FAILED"
-
-
-def _recognised(mistakes: Sequence[str], alternatives: bool) -> list[str]:
-    if not mistakes:
-        return []
-    if len(mistakes) == 1:
-        count = "this mistake"
-    else:
-        count = "any one of these mistakes" if alternatives else f"these {len(mistakes)} mistakes"
-    lead = f"The reference with {count} built in gives the same numbers as your function in all checks:"
-    return [lead, *(f"- {mistake}" for mistake in mistakes)]

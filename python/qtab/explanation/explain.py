@@ -3,7 +3,7 @@
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 import gymnasium as gym
 import numpy as np
@@ -17,6 +17,7 @@ from qtab.explanation.explanation import Explanation
 from qtab.explanation.fast_forward import Start, start_of
 from qtab.explanation.records import ExplainedStep, Trace, Update
 from qtab.explanation.watcher import SeenStep, Watcher
+from qtab.plots.arrangements.grid_map import Layout, checked_layout
 from qtab.reference import LEARNERS
 from qtab.reference.parts.observer import observed_by
 from qtab.reference.parts.schedules import LearningRate
@@ -25,9 +26,6 @@ from qtab.results.run import Run
 from qtab.results.time_steps import rows_of
 from qtab.results.words import Names, checked_action_names, numbered_states
 from qtab.training.setup.run_env import check_same, make_run_env
-
-if TYPE_CHECKING:
-    from qtab.plots.arrangements.grid_map import Layout
 
 Record = TypeVar("Record", Update, Trace)
 
@@ -42,7 +40,7 @@ def explain(
     start: int = 0,
     env: gym.Env | None = None,
     *,
-    layout: "Layout | None" = None,
+    layout: Layout | None = None,
     action_names: Sequence[str] | None = None,
     progress: bool | None = None,
 ) -> Explanation:
@@ -89,11 +87,7 @@ def explain(
         raise TypeError(f"env must be an environment, got {env!r}")
     if env is not None:
         check_same(run, env)
-    columns = None
-    if layout is not None:
-        from qtab.plots.arrangements.grid_map import checked_layout
-
-        columns = len(checked_layout(layout, numbered_states(run))[0])
+    columns = None if layout is None else len(checked_layout(layout, numbered_states(run))[0])
     checked_action_names(run.action_names, action_names)
     began = time.perf_counter()
     config = run.config
