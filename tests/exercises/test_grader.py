@@ -196,6 +196,7 @@ def test_a_loop_without_an_end_is_stopped(in_thread: bool) -> None:
 
     def checked() -> None:
         broken(returns_late, "it was stopped after 0.2 seconds", seconds=0.2)
+        assert check("sarsa", returns_late, seconds=0.2).advice == ()
         assert check("sarsa", SARSA).passed
         done.append(True)
 

@@ -32,7 +32,8 @@ def guarded(function: Callable[..., Any], arguments: Sequence[Any], record: Reco
     except Misuse:
         raise
     except TimeIsUp:
-        raise Misuse(f"it was stopped after {seconds:g} seconds: is there a loop that never ends?") from None
+        limit = f"{seconds:g} second{'' if seconds == 1 else 's'}"
+        raise Misuse(f"it was stopped after {limit}: is there a loop that never ends?") from None
     except (Exception, SystemExit) as error:
         raise Misuse(f"it raised {_named(error)}{_line(function, error)}") from None
     finally:
