@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils.shown import shown
-from qtab.config.action_mask import checked_mask
+from qtab.config.functions import checked_mask
 from qtab.envs.tabulation.branches import Branches, CannotListError
 from qtab.envs.tabulation.generator import ListingGenerator
 from qtab.envs.tabulation.state_keys import NotComparableError, attributes_key, state_text
