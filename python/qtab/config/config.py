@@ -67,8 +67,7 @@ class Config(WithOrigin):
     the table has cells for each step before the time limit, and can learn the policy that is optimal under it. Only for
     discretizers with cells."""
     backend: Backend = "auto"
-    """Where to step the environment: in Rust (rust), in Rust after Numba has compiled it (numba), in Python (gymnasium
-    or python), or in Rust if possible (auto)."""
+    """Where to step it: in Rust (rust), in Rust compiled by Numba (numba), in Python (gymnasium, python), or auto."""
 
     # The run
 

@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -61,11 +61,8 @@ class Composite(Discretizer):
         composite = cls(low, high, layout, groups, chosen if isinstance(chosen, Mapping) else None)
         if n_actions:
             with np.errstate(over="ignore"):
-                counts = [
-                    *composite.counts,
-                    *(group.discretizer.n_rows for group in groups if not group.discretizer.has_cells),
-                ]
-                values = math.prod(float(count or 1) for count in counts) * n_actions
+                tiled = (group.discretizer.n_rows for group in groups if not group.discretizer.has_cells)
+                values = math.prod(float(count or 1) for count in (*composite.counts, *tiled)) * n_actions
             names = composite.component_names
             given = f"{len(names)} components ({', '.join(names[:4])}{', ...' if len(names) > 4 else ''})"
             check_table_size("the observation space", given, values, too_large(layout.parts))
@@ -156,25 +153,15 @@ class Composite(Discretizer):
         """Whether one group has all the components."""
         return len(self.groups) == 1 and self.groups[0].components == tuple(range(self.layout.size))
 
-    def spec(self) -> DiscretizerSpec:
+    def spec(self, first: Sequence[int] | None = None) -> DiscretizerSpec:
         """Returns the discretizer as the extension takes it, for the flat arrays of :meth:`observe`."""
-        return self._spec([0] * self.layout.size)
-
-    def spec_of_numbers(self) -> DiscretizerSpec:
-        """Returns the discretizer as the extension takes it, for the numbers of observations as they are."""
-        first: list[int] = []
-        for part, offset in zip(self.layout.parts, self._first, strict=True):
-            first += [0] * part.size if offset is None else offset.tolist()
-        return self._spec(first)
-
-    def _spec(self, first: list[int]) -> DiscretizerSpec:
         if self._is_whole:
             return self.groups[0].discretizer.spec()
+        first = first or [0] * self.layout.size
         if not self.groups:
-            return {"type": "identity", "first": first, "counts": self.counts, "scalar": False}
+            return {"type": "identity", "first": list(first), "counts": self.counts, "scalar": False}
         owners = {component: group for group in self.groups for component in group.components}
-        factors: list[FactorSpec] = []
-        stride = 1
+        factors, stride = list[FactorSpec](), 1
         if self._tiles is not None:
             of_tiles = self._tiles.discretizer
             factors.append({"components": self._tiles.components, "stride": 1, "discretizer": of_tiles.spec()})
@@ -188,6 +175,11 @@ class Composite(Discretizer):
             factors.append({"components": [component], "stride": stride, "discretizer": spec})
             stride *= count
         return {"type": "product", "dimensions": self.layout.size, "factors": factors}
+
+    def spec_of_numbers(self) -> DiscretizerSpec:
+        """Returns the discretizer as the extension takes it, for the numbers of observations as they are."""
+        parts = zip(self.layout.parts, self._first, strict=True)
+        return self.spec([low for part, first in parts for low in ([0] * part.size if first is None else first)])
 
     @cached_property
     def _first(self) -> list[NDArray[np.int64] | None]:

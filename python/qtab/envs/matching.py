@@ -39,8 +39,10 @@ class NotInRustError(ValueError):
         self.remedy = remedy
 
 
-def rust_unavailable(reason: str, backend: str = "rust") -> ValueError:
+def rust_unavailable(reason: str | NotInRustError, backend: str = "rust") -> ValueError:
     """Returns the error for a backend that insists on Rust, or on Numba, if Rust cannot step the environment."""
+    if backend == "numba" and isinstance(reason, NotInRustError) and reason.remedy:
+        reason = f"{reason}; {reason.remedy}"
     return ValueError(f"backend must be 'auto' or 'gymnasium' for this environment, got {backend!r}: {reason}")
 
 

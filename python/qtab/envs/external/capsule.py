@@ -7,12 +7,23 @@ import gymnasium as gym
 import numpy as np
 
 from qtab import _core
+from qtab.envs.functional import FunctionalEnv
 from qtab.envs.matching import NotInRustError, layers, unknown_wrapper
 
 
 def has_capsule(env: gym.Env) -> bool:
     """Returns whether the class of an environment, without its wrappers, has the method ``__qtab_env__``."""
     return getattr(type(env.unwrapped), "__qtab_env__", None) is not None
+
+
+def check_backend(env: gym.Env, backend: str) -> None:
+    """Checks that Numba can compile an environment, if the backend is Numba.
+
+    Raises:
+        NotInRustError: if the environment is of another class.
+    """
+    if backend == "numba" and not isinstance(env.unwrapped, FunctionalEnv):
+        raise NotInRustError("Numba compiles environments of the class qtab.FunctionalEnv", "derive from it")
 
 
 def external_env(env: gym.Env) -> _core.ExternalEnv | None:

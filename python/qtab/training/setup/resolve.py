@@ -23,8 +23,7 @@ from qtab.config.validation import defaults
 from qtab.discretizers import AssignedRows, Discretizer
 from qtab.envs.actions import Actions, choose_actions
 from qtab.envs.class_code import LIBRARY, is_of_library
-from qtab.envs.external.capsule import external_env
-from qtab.envs.functional import FunctionalEnv
+from qtab.envs.external.capsule import check_backend, external_env
 from qtab.envs.goals import UNLIMITED_MAX_EPISODE_STEPS
 from qtab.envs.matching import NotInRustError, changed_entry_code, entry_for_env, rust_unavailable, time_limit
 from qtab.envs.native import KnownTable, check_not_shown, known_table, native_env
@@ -120,12 +119,9 @@ def _from_spec(env: str | EnvSpec, layers: tuple[Mapping[str, Any], ...]) -> _Re
     asked = merge_layers({"env_kwargs": dict(spec.kwargs)}, *layers)
     config = config_of(name, asked)
     entry: InRust | None = entry_for_spec(spec, config.env_kwargs)
-    python_reason = None
-    if entry is not None and changed_entry_code(spec) is not None:
+    if entry is not None and (config.backend == "numba" or changed_entry_code(spec) is not None):
         entry = None
-    known = None
-    if entry is not None and config.backend == "numba":
-        raise rust_unavailable("Rust implements it, without Numba", "numba")
+    known, python_reason = None, None
     if entry is not None and config.backend not in IN_PYTHON and not asks_for_masks(config.action_mask):
         known = known_table(spec, config.env_kwargs)
     made = _make(spec, config) if known is None else known
@@ -162,16 +158,13 @@ def _match(env: gym.Env, config: Config, *, is_made: bool) -> tuple[InRust | Non
     if config.backend in IN_PYTHON:
         return None, None
     try:
-        if config.backend == "numba" and not isinstance(env.unwrapped, FunctionalEnv):
-            raise NotInRustError("Numba compiles environments of the class qtab.FunctionalEnv", "derive from it")
+        check_backend(env, config.backend)
         entry = external_env(env) or entry_for_env(env)
         if is_made or config.backend == "auto":
             check_not_shown(env)
     except NotInRustError as error:
-        if config.backend == "numba":
-            raise rust_unavailable(f"{error}; {error.remedy}" if error.remedy else str(error), "numba") from None
-        if config.backend == "rust":
-            raise rust_unavailable(str(error)) from None
+        if config.backend in INSISTING:
+            raise rust_unavailable(error, config.backend) from None
         return None, f"{error}; {error.remedy}" if error.remedy else str(error)
     return entry, None
 
@@ -211,12 +204,13 @@ def _fill_defaults(request: _Request, owns_env: bool) -> ResolvedRun:
     with naming_preset(config.preset, of_preset, request.asked):
         discretizer = discretizers.build(env.observation_space, config, len(actions))
     masks = None if asks_for_masks(config.action_mask) else NO_MASKS
-    in_rust, is_external = isinstance(environment, NativeEnvironment), isinstance(request.entry, _core.ExternalEnv)
-    if in_rust and masks is None and config.action_mask is True and isinstance(request.entry, _core.ExternalEnv):
-        masks = WRITTEN_MASKS if request.entry.has_action_mask else None
+    in_rust = isinstance(environment, NativeEnvironment)
+    external = request.entry if isinstance(request.entry, _core.ExternalEnv) else None
+    if in_rust and masks is None and config.action_mask is True and external is not None:
+        masks = WRITTEN_MASKS if external.has_action_mask else None
     elif in_rust and masks is None and not discretizer.reads_space:
         masks = known_masks(config.action_mask, env, discretizer, len(actions))
-    read_in_python = discretizer.reads_space and not (is_external and discretizer.reads_numbers)
+    read_in_python = discretizer.reads_space and (external is None or not discretizer.reads_numbers)
     if in_rust and (masks is None or read_in_python):
         in_rust, python_reason = False, READ_IN_PYTHON if read_in_python else MASKS_BY_STEP
         if config.backend in INSISTING:
