@@ -170,6 +170,13 @@ def test_masks_that_depend_on_local_variables_are_refused_by_name() -> None:
     assert "write a method action_masks(self)" in rewritten.mask_refusal
 
 
+@pytest.mark.parametrize("env", [grids.MaskedGridEnv(), games.TicTacToeEnv()], ids=lambda env: type(env).__name__)
+def test_masks_of_the_info_dict_and_of_the_method_are_found(env: gym.Env) -> None:
+    rewritten = rewrite(env)
+    assert rewritten.action_mask is not None
+    assert rewritten.mask_refusal == ""
+
+
 def test_attributes_that_are_never_read_are_left_out() -> None:
     rewritten = rewrite(control.PendulumEnv())
     assert set(rewritten.dtype.names or ()) == {"state.0", "state.1"}
@@ -188,3 +195,18 @@ def test_spaces_are_read_as_constants() -> None:
     rewritten = rewrite(env)
     env.observation_space = spaces.Box(env.low, env.high + 1, dtype=np.float64)
     assert rewritten.changed() == "self.observation_space"
+
+
+@pytest.mark.parametrize(
+    ("env", "kept"),
+    [
+        (control.ThermostatEnv(), ()),
+        (control.LanderEnv(), ("state",)),
+        (games.GamblerEnv(), ("episodes", "flips")),
+        (grids.MazeEnv(), ()),
+        (grids.GridWorldEnv(), ()),
+    ],
+    ids=lambda value: type(value).__name__,
+)
+def test_attributes_that_outlive_an_episode_are_named(env: gym.Env, kept: tuple[str, ...]) -> None:
+    assert rewrite(env).kept_between_episodes == kept

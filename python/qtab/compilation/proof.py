@@ -184,6 +184,6 @@ def _refusal(difference: Difference, functions: list[FunctionType]) -> NotCompil
         return NotCompilable(
             f"{difference}, probably by {likely.text}", likely.file, likely.line, likely.advice + others
         )
-    file, line = place_of(next(one for one in functions if one.__name__ == "transition"))
+    file, line = place_of(next(one for one in functions if one.__name__ in ("transition", "step")))
     advice = "integers beyond 64 bits, float32 and the order of sums can differ"
     return NotCompilable(str(difference), file, line, advice)

@@ -162,7 +162,10 @@ class Expressions(Scope):
         is_and = isinstance(node.op, ast.And)
         parts: list[Value] = []
         for i, one in enumerate(node.values):
+            assigned = set(self.flow.assigned)
             value = self.expression(one)
+            if i:  # it may be left out
+                self.flow.assigned = assigned
             if value.is_fixed and not specials.is_special(value.fixed):
                 holds = self.test(one).fixed
                 if holds != is_and or i == len(node.values) - 1:
@@ -173,7 +176,10 @@ class Expressions(Scope):
                         parts.append(value)
                     break
                 continue
+            assigned = set(self.flow.assigned)
             parts.append(self.test(one))
+            if i:
+                self.flow.assigned = assigned
         if is_test:
             parts = [part if part.kind == BOOL else Value(BOOL, f"({part.code} != 0)") for part in parts]
         if len(parts) == 1:
@@ -236,7 +242,9 @@ class Expressions(Scope):
         test = self.test(node.test)
         if test.is_fixed:
             return self.expression(node.body if test.fixed else node.orelse)
+        assigned = set(self.flow.assigned)
         one, other = self.lifted(node.body), self.lifted(node.orelse)
+        self.flow.assigned = assigned
         kind = join(one.kind, other.kind)
         if kind is None:
             reason = f"{in_words(one.kind)} in one case, {in_words(other.kind)} in the other"
@@ -247,9 +255,11 @@ class Expressions(Scope):
     def _call(self, node: ast.Call) -> Value:
         return calls.call(self, node)
 
-    def load_state(self, name: str, node: ast.AST) -> Value:
-        """Returns an attribute that is in the record."""
+    def load_state(self, name: str, node: ast.AST, is_read: bool = True) -> Value:
+        """Returns an attribute that is in the record; ``is_read`` is False if all of it is assigned."""
         self.program.attributes.note_read(name)
+        if is_read:
+            self.flow.note_read(name)
         kind = self.program.attributes.kind(name, lambda reason, advice: self.refuse(node, reason, advice))
         return self._loaded(name, kind)
 

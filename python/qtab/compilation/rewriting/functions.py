@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from qtab.compilation.rewriting import specials
-from qtab.compilation.rewriting.program import Compiled, Program
+from qtab.compilation.rewriting.program import Compiled, Flow, Program
 from qtab.compilation.rewriting.scope import Scope
 from qtab.compilation.rewriting.sources import Source
 from qtab.compilation.rewriting.statements import Statements
@@ -31,6 +31,7 @@ def called(
     scope.compiled.uses.add(compiled.name)
     scope.compiled.draws |= compiled.draws
     scope.compiled.changes |= compiled.changes
+    scope.flow.follow(compiled.flow)
     result = compiled.result
     if compiled.trivial and result.is_fixed:
         return constant(result.fixed)
@@ -97,6 +98,7 @@ def _rewrite(rewriter: Statements, parameters: dict[str, Value]) -> None:
     rewriter.unstable = False
     rewriter.lines, rewriter.indent, rewriter.depth, rewriter.temporaries = [], 1, 0, 0
     rewriter.returns = []
+    rewriter.flow, rewriter.flows_at_return = Flow(), []
     if rewriter.role:
         rewriter.program.infos.pop(rewriter.role, None)
     rewriter.actions = {name for name, value in parameters.items() if value.action}
@@ -119,6 +121,7 @@ def _rewrite(rewriter: Statements, parameters: dict[str, Value]) -> None:
     ended = rewriter.block(rewriter.source.node.body)
     if not ended:
         rewriter.returns.append((constant(None), rewriter.source.node.body[-1], 0))
+        rewriter.flows_at_return.append(set(rewriter.flow.assigned))
 
 
 def _reader(function: Any) -> Any:
@@ -136,6 +139,7 @@ def _finish(rewriter: Statements, parameters: dict[str, Value]) -> None:
             node, "the function returns None here, and a value elsewhere", "return a value everywhere"
         )
     compiled.result = rewriter.result()
+    compiled.flow = Flow(set.intersection(*rewriter.flows_at_return), rewriter.flow.read)
     body = rewriter.lines
     compiled.trivial = [line.strip() for line, _ in body] == ["return"]
     if not body:

@@ -27,7 +27,9 @@ def while_loop(scope: "Statements", node: ast.While) -> bool:
     if test.is_fixed and not test.fixed:
         return False
     scope.emit(f"while {'True' if test.is_fixed else test.code}:", node)
+    before = set(scope.flow.assigned)
     scope.indented(node.body)
+    scope.flow.assigned = before
     return test.is_fixed and not leaves_loop(node.body)
 
 
@@ -71,7 +73,9 @@ def _head(scope: "Statements", node: ast.For, iterable: str, item: Value, before
             scope.unstable = True
     value = Value(item.kind, before.format(i=name) if before else name)
     assignments.assign_value(scope, node, node.target, value)
+    before_loop = set(scope.flow.assigned)
     scope.block(node.body)
+    scope.flow.assigned = before_loop
     scope.indent -= 1
     scope.depth -= 1
     scope.program.depth -= 1

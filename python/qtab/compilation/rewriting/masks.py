@@ -69,6 +69,20 @@ def _add(program: Program, code: str, result: Value, uses: set[str], compiled: C
     )
 
 
+def _assigned(node: ast.AST, name: str) -> ast.expr | None:
+    """Returns the info dict that a statement assigns to a variable; a dict with the mask for ``info[KEY] = mask``."""
+    if not isinstance(node, ast.Assign) or len(node.targets) != 1:
+        return None
+    target = node.targets[0]
+    if isinstance(target, ast.Name) and target.id == name:
+        return None if isinstance(node.value, ast.Dict) and not node.value.keys else node.value
+    is_element = isinstance(target, ast.Subscript) and isinstance(target.value, ast.Name) and target.value.id == name
+    key = target.slice if is_element else None  # type: ignore[attr-defined]
+    if isinstance(key, ast.Constant) and key.value == KEY:
+        return ast.copy_location(ast.Dict([key], [node.value]), node)
+    return None
+
+
 def _mask_of(scope: Any, node: ast.expr, depth: int = 0) -> Any:
     """Returns the expression of the action mask in an info dict, with its scope; None if there is none."""
     if isinstance(node, ast.Dict):
@@ -76,7 +90,12 @@ def _mask_of(scope: Any, node: ast.expr, depth: int = 0) -> Any:
             if isinstance(key, ast.Constant) and key.value == KEY:
                 return scope, value
         return None
-    if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and depth < 3:
+    if isinstance(node, ast.Name) and depth < 3:
+        found = [_assigned(one, node.id) for one in ast.walk(scope.source.node)]
+        made = [one for one in found if one is not None]
+        if len(made) == 1:
+            return _mask_of(scope, made[0], depth + 1)
+    elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and depth < 3:
         member, owner = scope.program.attributes.find(node.func.attr)
         if isinstance(member, FunctionType) and isinstance(node.func.value, ast.Name):
             source = source_of(member)

@@ -34,6 +34,29 @@ class Compiled:
     """Whether it changes the state."""
     trivial: bool = False
     """Whether it only returns."""
+    flow: "Flow" = field(default_factory=lambda: Flow())
+    """The attributes that it assigns and reads."""
+
+
+@dataclass
+class Flow:
+    """The attributes that a function assigns and reads, in the order of its statements."""
+
+    assigned: set[str] = field(default_factory=set)
+    """Those that it assigns whatever happens."""
+    read: set[str] = field(default_factory=set)
+    """Those that it may read before it assigns them."""
+
+    def note_read(self, name: str) -> None:
+        """Notes that an attribute is read."""
+        if name not in self.assigned:
+            self.read.add(name)
+
+    def follow(self, other: "Flow") -> None:
+        """Notes what a called function does."""
+        for name in other.read:
+            self.note_read(name)
+        self.assigned |= other.assigned
 
 
 class Program:
@@ -52,6 +75,8 @@ class Program:
         """Whether ``reset`` has called that of ``gymnasium.Env``."""
         self.depth = 0
         """How many branches and loops that are decided at run time are around the code."""
+        self.stored: set[str] = set()
+        """The attributes that functions assign."""
         self.compile_call: Callable[..., Value]
         """Compiles a user's function and returns the value of a call."""
         self.infos: dict[str, list[Any]] = {}

@@ -93,8 +93,20 @@ def _attempt(env: gym.Env, attributes: Attributes) -> Rewritten:
     namespace: dict[str, Any] = {"__name__": "qtab_rewritten", "np": np, **runtime.HELPERS}
     exec(compile(source, f"<{type(env).__name__}>", "exec"), namespace)  # noqa: S102
     mask = namespace.get("action_mask")
+    changing = program.stored & attributes.kinds.keys()
+    kept = sorted(changing & reset.flow.read | changing - reset.flow.assigned)
     return Rewritten(
-        namespace["reset"], namespace["step"], mask, refusal, dtype, initial, lines, source, namespace, program.reads
+        namespace["reset"],
+        namespace["step"],
+        mask,
+        refusal,
+        dtype,
+        initial,
+        tuple(kept),
+        lines,
+        source,
+        namespace,
+        program.reads,
     )
 
 

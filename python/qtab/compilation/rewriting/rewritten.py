@@ -35,6 +35,9 @@ class Rewritten:
     """The record: the attributes that steps and resets use and change."""
     initial: NDArray[Any]
     """(1,): the record before the first reset."""
+    kept_between_episodes: tuple[str, ...]
+    """The attributes that change, and that ``reset`` does not assign before it reads them: the first state of an
+    episode depends on the episodes before."""
     lines: dict[int, tuple[str, int]]
     """For each line of ``source`` the file and the line of the class."""
     source: str
@@ -62,6 +65,7 @@ class Rewritten:
             self.mask_refusal,
             self.dtype,
             self.initial,
+            self.kept_between_episodes,
             self.lines,
             self.source,
             namespace,

@@ -4,7 +4,7 @@ import ast
 from types import FunctionType
 
 from qtab.compilation.not_compilable import NotCompilable
-from qtab.compilation.rewriting.program import Compiled, Program
+from qtab.compilation.rewriting.program import Compiled, Flow, Program
 from qtab.compilation.rewriting.scan import Names
 from qtab.compilation.rewriting.sources import Source
 from qtab.compilation.rewriting.values import INFO, Array, Kind, Value, in_words, join
@@ -48,6 +48,9 @@ class Scope:
         """The names that hold the action that ``step`` was given."""
         self.lines: list[tuple[str, int]] = []
         self.indent = 1
+        self.flow = Flow()
+        self.flows_at_return: list[set[str]] = []
+        """The attributes that are assigned where the function returns."""
         self.depth = 0
         """How many branches and loops that are decided at run time are around the statement."""
         self.temporaries = 0

@@ -140,11 +140,18 @@ class Statements(Displays):
         if test.is_fixed:
             return self.block(node.body if test.fixed else node.orelse)
         self.emit(f"if {test.code}:", node)
+        before = set(self.flow.assigned)
         ended = self.indented(node.body)
-        if not node.orelse:
-            return False
-        self.emit("else:", node)
-        return self.indented(node.orelse) and ended
+        after_body = before | self.flow.assigned
+        self.flow.assigned = set(before)
+        other_ended = False
+        if node.orelse:
+            self.emit("else:", node)
+            other_ended = self.indented(node.orelse)
+        if ended:
+            return other_ended
+        self.flow.assigned = after_body if other_ended else after_body & self.flow.assigned
+        return False
 
     def _do_match(self, node: ast.Match) -> bool:
         rest: list[ast.stmt] = []
@@ -197,6 +204,7 @@ class Statements(Displays):
         if specials.is_special(value.fixed):
             raise specials.refused_special(self, node, value)
         self.returns.append((value, node, self.depth))
+        self.flows_at_return.append(set(self.flow.assigned))
         alone = self.depth == 0 and len(self.returns) == 1
         if value.is_fixed and (alone or value.fixed is None):
             self.emit("return", node)

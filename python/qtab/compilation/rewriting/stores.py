@@ -44,6 +44,8 @@ def store(scope: "Statements", node: ast.stmt, name: str, value: Value) -> None:
     value = scope.lift(value, node)
     known.widen(name, value.kind, refuse)
     scope.compiled.changes = True
+    scope.flow.assigned.add(name)
+    scope.program.stored.add(name)
     can_change = isinstance(kind, Array) or isinstance(getattr(known.twin, name), list)
     if can_change and not value.fresh and (value.parts is None or scope.is_shared):
         reason, advice = f"self.{name} shares memory that is changed in place", "write .copy() where it is assigned"
@@ -111,7 +113,11 @@ def changeable(scope: "Statements", node: ast.stmt, target: ast.Subscript) -> Va
             known = scope.program.attributes
             known.note_assigned(base.attr)
             copies, scope.copies_state = scope.copies_state, False
-            value = scope.load_state(base.attr, base)
+            whole = isinstance(target.slice, ast.Slice) and ast.unparse(target.slice) == ":"
+            value = scope.load_state(base.attr, base, not whole)
+            scope.program.stored.add(base.attr)
+            if whole:
+                scope.flow.assigned.add(base.attr)
             scope.copies_state = copies
             known.changed_in_place.add(base.attr)
             scope.compiled.changes = True

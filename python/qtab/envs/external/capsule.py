@@ -7,7 +7,6 @@ import gymnasium as gym
 import numpy as np
 
 from qtab import _core
-from qtab.envs.functional import FunctionalEnv
 from qtab.envs.matching import NotInRustError, layers, unknown_wrapper
 
 
@@ -16,18 +15,10 @@ def has_capsule(env: gym.Env) -> bool:
     return getattr(type(env.unwrapped), "__qtab_env__", None) is not None
 
 
-def check_backend(env: gym.Env, backend: str) -> None:
-    """Checks that Numba can compile an environment, if the backend is Numba.
-
-    Raises:
-        NotInRustError: if the environment is of another class.
-    """
-    if backend == "numba" and not isinstance(env.unwrapped, FunctionalEnv):
-        raise NotInRustError("Numba compiles environments of the class qtab.FunctionalEnv", "derive from it")
-
-
-def external_env(env: gym.Env) -> _core.ExternalEnv | None:
+def external_env(env: gym.Env, backend: str) -> _core.ExternalEnv | None:
     """Returns an environment as Rust steps it by its capsule; None if its class has no method ``__qtab_env__``.
+
+    With the backend Numba, such a class is compiled from its source code.
 
     The method returns the capsule ``qtab.env.1``, or raises :class:`NotInRustError` with the reason why there is none.
     If a function of the environment fails in a run, its method ``__qtab_env_failed__(state, action, rng)`` is called,
@@ -37,6 +28,7 @@ def external_env(env: gym.Env) -> _core.ExternalEnv | None:
 
     Args:
         env: The environment, perhaps in the wrappers of ``gymnasium.make``.
+        backend: The backend.
 
     Raises:
         NotInRustError: if Rust cannot step the environment.
@@ -44,16 +36,42 @@ def external_env(env: gym.Env) -> _core.ExternalEnv | None:
         ValueError: if the capsule does not hold an environment of this version, or its sizes are wrong.
     """
     if not has_capsule(env):
-        return None
+        return _compiled_class(env) if backend == "numba" else None
+    unwrapped = _unwrapped(env)
+    cls = type(unwrapped)
+    for base in cls.__mro__[: next(i for i, base in enumerate(cls.__mro__) if "__qtab_env__" in vars(base))]:
+        if (name := next((name for name in ("reset", "step") if name in vars(base)), None)) is not None:
+            raise NotInRustError(f"its class {base.__name__} overrides {name}", "leave reset and step as they are")
+    failed = getattr(unwrapped, "__qtab_env_failed__", None)
+    return _core.ExternalEnv(unwrapped.__qtab_env__(), None if failed is None else _failure_handler(failed))
+
+
+def _compiled_class(env: gym.Env) -> _core.ExternalEnv:
+    """Returns an ordinary Gymnasium class as Rust steps it: compiled by Numba from its source code.
+
+    Args:
+        env: The environment, perhaps in the wrappers of ``gymnasium.make``.
+
+    Raises:
+        NotInRustError: if it cannot be compiled; it gives the file, the line and what to write instead.
+    """
+    from qtab.compilation import NotCompilable
+    from qtab.compilation.ordinary import OrdinaryEnv
+
+    try:
+        compiled = OrdinaryEnv(_unwrapped(env))
+    except NotCompilable as refusal:
+        raise NotInRustError(refusal.place_and_reason, refusal.advice) from None
+    return _core.ExternalEnv(compiled.capsule(), _failure_handler(compiled.failed))
+
+
+def _unwrapped(env: gym.Env) -> Any:
+    """Returns the environment without its wrappers, which must not change it."""
     unwrapped: Any = env.unwrapped
     if (wrapper := unknown_wrapper(env)) is not None:
         raise NotInRustError(
             f"Rust does not implement its wrapper {wrapper}", "pass the environment without this wrapper"
         )
-    cls = type(unwrapped)
-    for base in cls.__mro__[: next(i for i, base in enumerate(cls.__mro__) if "__qtab_env__" in vars(base))]:
-        if (name := next((name for name in ("reset", "step") if name in vars(base)), None)) is not None:
-            raise NotInRustError(f"its class {base.__name__} overrides {name}", "leave reset and step as they are")
     for layer in layers(env):
         for name in vars(layer):
             if callable(getattr(type(layer), name, None)):
@@ -61,8 +79,7 @@ def external_env(env: gym.Env) -> _core.ExternalEnv | None:
     for name in ("observation_space", "action_space"):
         if getattr(env, name) != getattr(unwrapped, name):
             raise NotInRustError(f"its {name} was changed in a wrapper", "pass the environment without the change")
-    failed = getattr(unwrapped, "__qtab_env_failed__", None)
-    return _core.ExternalEnv(unwrapped.__qtab_env__(), None if failed is None else _failure_handler(failed))
+    return unwrapped
 
 
 def _failure_handler(failed: Callable[..., Any]) -> Callable[[bytes | None, int, int | None, int | None, int], None]:

@@ -23,7 +23,7 @@ from qtab.config.validation import defaults
 from qtab.discretizers import AssignedRows, Discretizer
 from qtab.envs.actions import Actions, choose_actions
 from qtab.envs.class_code import LIBRARY, is_of_library
-from qtab.envs.external.capsule import check_backend, external_env
+from qtab.envs.external.capsule import external_env
 from qtab.envs.goals import UNLIMITED_MAX_EPISODE_STEPS
 from qtab.envs.matching import NotInRustError, changed_entry_code, entry_for_env, rust_unavailable, time_limit
 from qtab.envs.native import KnownTable, check_not_shown, known_table, native_env
@@ -158,8 +158,7 @@ def _match(env: gym.Env, config: Config, *, is_made: bool) -> tuple[InRust | Non
     if config.backend in IN_PYTHON:
         return None, None
     try:
-        check_backend(env, config.backend)
-        entry = external_env(env) or entry_for_env(env)
+        entry = external_env(env, config.backend) or entry_for_env(env)
         if is_made or config.backend == "auto":
             check_not_shown(env)
     except NotInRustError as error:

@@ -1,0 +1,114 @@
+"""Ordinary Gymnasium classes in compiled code: training equals Python's to the bit, and errors are the user's."""
+
+import copy
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import pytest
+
+import qtab
+from qtab.compilation.compiled_env import Stepper
+from qtab.compilation.ordinary import OrdinaryEnv
+from support.gym_classes import control, failing, games, grids, operations
+
+pytest.importorskip("numba")
+
+TRAINED: dict[str, tuple[Callable[[], gym.Env], dict[str, Any]]] = {
+    "cliff": (grids.CliffEnv, {}),
+    "masks": (grids.MaskedGridEnv, {"action_mask": True}),
+    "key and door": (grids.KeyDoorEnv, {}),
+    "thermostat": (control.ThermostatEnv, {"discretizer": "bins", "bins": 8}),
+    "pendulum": (control.PendulumEnv, {"discretizer": "bins", "bins": 6}),
+    "inventory": (operations.InventoryEnv, {}),
+    "machine": (operations.MachineEnv, {}),
+    "tic-tac-toe": (games.TicTacToeEnv, {"action_mask": True}),
+}
+
+
+@pytest.fixture(autouse=True)
+def _files_of_code(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[] if name == "cliff" else pytest.mark.slow) for name in TRAINED]
+)
+def test_training_in_compiled_code_equals_training_in_python(name: str) -> None:
+    make, settings = TRAINED[name]
+    shared: dict[str, Any] = {"episodes": 60, "max_episode_steps": 100, "seed": 5, **settings}
+    compiled = qtab.train(make(), backend="numba", **shared)
+    python = qtab.train(make(), backend="gymnasium", **shared)
+    assert compiled.episode_returns.tobytes() == python.episode_returns.tobytes()
+    assert compiled.episode_lengths.tobytes() == python.episode_lengths.tobytes()
+    assert compiled.tables.tobytes() == python.tables.tobytes()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("make", [grids.GridWorldEnv, operations.ElevatorEnv, games.RunningGame])
+def test_observations_in_parts_are_proven_equal(make: Callable[[], gym.Env]) -> None:
+    env = make()
+    compiled = OrdinaryEnv(env).compiled
+    stepper = Stepper(compiled, OrdinaryEnv(env).parameters, np.random.PCG64(9))
+    stepper.reset()
+    twin = copy.deepcopy(env)
+    observation, _ = twin.reset(seed=9)
+    assert stepper.observation.tobytes() == compiled.observation.numbers(observation).tobytes()
+
+
+def test_many_seeds_share_one_compilation() -> None:
+    shared: dict[str, Any] = {"episodes": 20, "max_episode_steps": 50}
+    many = qtab.train_many(grids.CliffEnv, seeds=[1, 2, 3], backend="numba", **shared)
+    for i, seed in enumerate((1, 2, 3)):
+        single = qtab.train(grids.CliffEnv(), seed=seed, backend="gymnasium", **shared)
+        assert many.episode_returns[i].tobytes() == single.episode_returns.tobytes()
+
+
+def test_the_environment_object_is_not_stepped() -> None:
+    env = grids.CliffEnv()
+    before = copy.deepcopy(vars(env))
+    qtab.train(env, episodes=3, max_episode_steps=20, backend="numba")
+    assert {name: str(value) for name, value in before.items()} == {
+        name: str(value) for name, value in vars(env).items()
+    }
+
+
+def test_a_failing_step_raises_the_users_error() -> None:
+    with pytest.raises(ValueError, match=r"cell 3[12] does not exist") as caught:
+        qtab.train(failing.Breaks(), episodes=200, backend="numba", max_episode_steps=100, seed=1)
+    files = [entry.path.name for entry in caught.traceback]  # type: ignore[union-attr]
+    assert "failing.py" in files
+
+
+def test_an_index_out_of_bounds_raises_pythons_error() -> None:
+    with pytest.raises(IndexError, match=r"index 1[2-9] is out of bounds"):
+        qtab.train(failing.LeavesArray(), episodes=200, backend="numba", max_episode_steps=100, seed=1)
+
+
+def test_different_numbers_are_found_before_training() -> None:
+    with pytest.raises(ValueError, match=r"failing\.py.*self\.cell is .* in compiled code and .* in Python"):
+        qtab.train(failing.BigIntegers(), episodes=10, backend="numba")
+
+
+def test_attributes_that_outlive_episodes_are_refused() -> None:
+    with pytest.raises(ValueError, match=r"games\.py:\d+: self.episodes keeps its value.*assign self.episodes"):
+        qtab.train(games.GamblerEnv(), episodes=10, backend="numba")
+
+
+def test_a_refusal_names_the_users_line() -> None:
+    from support.gym_classes import refused
+
+    with pytest.raises(ValueError, match=r"refused\.py:\d+: np\.exp rounds differently.*write math\.exp for np\.exp"):
+        qtab.train(refused.NumpyExp(), episodes=10, backend="numba")
+
+
+def test_a_changed_attribute_changes_the_compiled_code() -> None:
+    env = grids.CliffEnv(wind=0.0)
+    shared: dict[str, Any] = {"episodes": 20, "max_episode_steps": 50, "seed": 2}
+    calm = qtab.train(env, backend="numba", **shared)
+    env.wind = 0.5
+    windy = qtab.train(env, backend="numba", **shared)
+    assert windy.tables.tobytes() == qtab.train(env, backend="gymnasium", **shared).tables.tobytes()
+    assert not np.array_equal(calm.tables, windy.tables)
