@@ -11,7 +11,7 @@ import pytest
 
 import qtab
 from qtab.compilation.compiled_env import Stepper
-from qtab.compilation.ordinary import OrdinaryEnv
+from qtab.compilation.ordinary import ClassTwin, OrdinaryEnv
 from support.gym_classes import control, failing, games, grids, operations
 
 pytest.importorskip("numba")
@@ -50,12 +50,13 @@ def test_training_in_compiled_code_equals_training_in_python(name: str) -> None:
 @pytest.mark.parametrize("make", [grids.GridWorldEnv, operations.ElevatorEnv, games.RunningGame])
 def test_observations_in_parts_are_proven_equal(make: Callable[[], gym.Env]) -> None:
     env = make()
-    compiled = OrdinaryEnv(env).compiled
-    stepper = Stepper(compiled, OrdinaryEnv(env).parameters, np.random.PCG64(9))
-    stepper.reset()
-    twin = copy.deepcopy(env)
-    observation, _ = twin.reset(seed=9)
-    assert stepper.observation.tobytes() == compiled.observation.numbers(observation).tobytes()
+    ordinary = OrdinaryEnv(env)
+    stepper = Stepper(ordinary.compiled, ordinary.parameters, np.random.PCG64(9))
+    assert stepper.reset() == 0
+    twin = ClassTwin(env, ordinary.record, ordinary.compiled.observation)
+    numbers = twin.reset(np.random.Generator(np.random.PCG64(9)))
+    assert stepper.observation.tobytes() == numbers["observation"].tobytes()
+    assert stepper.state.tobytes() == numbers["state"].tobytes()
 
 
 def test_many_seeds_share_one_compilation() -> None:
