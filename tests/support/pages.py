@@ -2,6 +2,7 @@
 
 import contextlib
 import io
+import linecache
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -51,12 +52,14 @@ def run(page: Path, *, fewer: dict[str, str] | None = None) -> dict[str, Any]:
         The namespace after the last block.
     """
     namespace: dict[str, Any] = {"__name__": "page"}
-    for block in blocks(page.read_text(encoding="utf-8")):
+    for number, block in enumerate(blocks(page.read_text(encoding="utf-8")), 1):
         code = block.code
         for pattern, replacement in (fewer or {}).items():
             code = re.sub(pattern, replacement, code)
         with contextlib.redirect_stdout(io.StringIO()) as printed:
-            exec(compile(code, page_id(page), "exec"), namespace)  # noqa: S102 - our own page
+            name = f"<{page_id(page)}, block {number}>"
+            linecache.cache[name] = (len(code), None, code.splitlines(keepends=True), name)  # as IPython does for cells
+            exec(compile(code, name, "exec"), namespace)  # noqa: S102 - our own page
         if block.printed is not None:
             assert matches(block.printed, printed.getvalue()), f"{code}\nprints\n{printed.getvalue()}"
     return namespace

@@ -169,6 +169,8 @@ def _cast(name: str) -> Handler:
         if len(values) != 1 or named:
             raise scope.refuse(node, f"np.{name} with these arguments", "give one number")
         value = values[0]
+        if isinstance(value.kind, TupleKind | Array) or isinstance(value.fixed, list | tuple | np.ndarray):
+            return arrays.make(scope, node, value, "bool" if name == "bool_" else name)
         if value.is_fixed:
             return scope.folded(node, getattr(np, name), value.fixed)
         if not isinstance(value.kind, Scalar) or (not name.startswith("float") and value.kind not in (INT, BOOL)):
