@@ -6,6 +6,8 @@ import gymnasium as gym
 import numpy as np
 import pytest
 from gymnasium.wrappers import RecordEpisodeStatistics, TimeLimit
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 import qtab
 from support.own_environments.key_and_door import KeyAndDoor
@@ -215,6 +217,49 @@ def test_listed_outcomes_are_used_as_they_are():
     assert np.array_equal(table.initial_state_distrib, [0.5, 0.5, 0, 0, 0])
     assert table.P[0][1] == [(0.25, 0, -1.0, False), (0.5, 1, -1.0, False), (0.25, 3, -1.0, False)]
     assert table.P[4][0] == [(1.0, 4, 0.0, True)]
+
+
+class TableEnv(qtab.FunctionalEnv):
+    """An environment that draws its transitions from a table: (states, actions, states) integers of 64ths."""
+
+    def __init__(self, weights: Any) -> None:
+        self.weights = weights
+        self.observation_space = gym.spaces.Discrete(len(weights))
+        self.action_space = gym.spaces.Discrete(weights.shape[1])
+
+    def initial_state(self, rng: np.random.Generator) -> Any:
+        return 0
+
+    def transition(self, state: Any, action: int, rng: np.random.Generator) -> Any:
+        following = int(rng.choice(len(self.weights), p=self.weights[state, action] / 64))
+        return following, float(10 * state + action), following == len(self.weights) - 1
+
+    def observe(self, state: Any) -> Any:
+        return state
+
+
+@given(st.integers(2, 5), st.integers(1, 3), st.integers(0, 2**32 - 1))
+@settings(max_examples=40, deadline=None)
+def test_the_table_of_an_environment_that_draws_from_a_table_is_this_table(n_states, n_actions, seed):
+    rng = np.random.default_rng(seed)
+    weights = rng.multinomial(64, rng.dirichlet(np.full(n_states, 0.5), (n_states, n_actions)))
+    table, last = qtab.tabulate(TableEnv(weights)), n_states - 1
+    for number, state in enumerate(table.states):
+        for action in range(n_actions):
+            found = {
+                (table.states[following], reward, terminated): probability
+                for probability, following, reward, terminated in table.P[number][action]
+            }
+            reached = {int(following): weights[state, action, following] / 64 for following in range(n_states)}
+            expected = {(to, 10.0 * state + action, to == last): chance for to, chance in reached.items() if chance}
+            assert found == ({(last, 0.0, True): 1.0} if state == last else expected)
+
+
+def test_the_walk_reports_its_progress(monkeypatch):
+    seen: list[int] = []
+    monkeypatch.setattr("qtab._utils.progress.ProgressBar.move_to", lambda bar, done: seen.append(done))
+    qtab.tabulate(WindyGrid())
+    assert seen == list(range(1, 12))  # the goal has no actions
 
 
 def test_names_reach_runs_and_their_files(tmp_path):

@@ -78,7 +78,7 @@ class ProgressBar:
     Without a bar, it does nothing.
 
     Args:
-        total: The number of units to do.
+        total: The number of units to do; None if it is not known.
         unit: The name of a unit, in the singular.
         progress: True shows the bar at once, False never. None shows it after a second, if standard error is a terminal
             or a notebook's, and tqdm is installed.
@@ -89,7 +89,7 @@ class ProgressBar:
         TypeError: if ``progress`` is neither a boolean nor None.
     """
 
-    def __init__(self, total: int, unit: str, progress: bool | None, description: str | None = None) -> None:
+    def __init__(self, total: int | None, unit: str, progress: bool | None, description: str | None = None) -> None:
         self._bar = _tqdm(total, unit, progress, description)
         self._stride = 1
 
@@ -145,7 +145,7 @@ def check_progress(progress: Any) -> None:
         raise TypeError(f"progress must be True, False or None, got {progress!r}")
 
 
-def _tqdm(total: int, unit: str, progress: bool | None, description: str | None) -> Any:
+def _tqdm(total: int | None, unit: str, progress: bool | None, description: str | None) -> Any:
     check_progress(progress)
     if progress is False or (progress is None and not is_terminal(sys.stderr) and not in_notebook()):
         return None

@@ -1,6 +1,7 @@
 """A uniform random number of which only comparisons are known."""
 
 from fractions import Fraction
+from functools import lru_cache
 from typing import Any, NoReturn
 
 import numpy as np
@@ -27,7 +28,7 @@ class Uniform:
 
     def __init__(self, branches: Branches, call: str, low: float = 0.0, high: float = 1.0) -> None:
         self._branches, self._call = branches, call
-        self._low, self._high = Fraction(low), Fraction(high)
+        self._low, self._high = low, high
 
     def __repr__(self) -> str:
         return self._call
@@ -69,12 +70,11 @@ class Uniform:
         number = float(other)
         if not self._low < number < self._high:  # NaN is neither above nor below
             return number >= self._high
-        bound = Fraction(number)
-        below = (bound - self._low) / (self._high - self._low)
-        if self._branches.draw(f"{self._call} < {number!r}", (below, 1 - below)) == 0:
-            self._high = bound
+        sides = _sides(self._low, number, self._high)
+        if self._branches.draw(f"{self._call} < {number!r}", sides) == 0:
+            self._high = number
             return True
-        self._low = bound
+        self._low = number
         return False
 
     def refuse(self, use: str) -> NoReturn:
@@ -86,6 +86,13 @@ class Uniform:
         raise self._branches.refused(
             f"{self._call}, a continuous number that is {use}; only comparisons with < and > can be listed"
         )
+
+
+@lru_cache(maxsize=4096)
+def _sides(low: float, number: float, high: float) -> tuple[Fraction, Fraction]:
+    """Returns the probabilities that a uniform number in [low, high) is below another one, and that it is not."""
+    below = (Fraction(number) - Fraction(low)) / (Fraction(high) - Fraction(low))
+    return below, 1 - below
 
 
 def _refusing(use: str) -> Any:

@@ -94,7 +94,7 @@ class Walk:
             first[number] = first.get(number, Fraction(0)) + probability
         pending.extend(first)
         queued = set(first)
-        with ProgressBar(self.max_states, "state", None, "tabulate") as bar:
+        with ProgressBar(None, "state", None, "tabulate") as bar:
             while pending:
                 number = pending.popleft()
                 rows: list[list[Transition] | None] = []
