@@ -265,7 +265,7 @@ def test_the_walk_reports_its_progress(monkeypatch):
 def test_names_reach_runs_and_their_files(tmp_path):
     env = WindyGrid()
     env.action_names = ("up", "right", "down", "left")  # type: ignore[attr-defined]
-    table = qtab.tabulate(RecordEpisodeStatistics(TimeLimit(env, 50)))
+    table = qtab.tabulate(RecordEpisodeStatistics(TimeLimit(RecordEpisodeStatistics(env), 50)))
     run = qtab.train(table, episodes=10, seed=0)
     run.save(tmp_path / "run.npz")
     for known in (run, qtab.load(tmp_path / "run.npz")):

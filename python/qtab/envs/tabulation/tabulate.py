@@ -5,21 +5,18 @@ from typing import Any
 
 import gymnasium as gym
 import numpy as np
-from gymnasium.wrappers import HumanRendering, RecordEpisodeStatistics, RecordVideo, RenderCollection
 
 from qtab._utils import checks
 from qtab._utils.shown import shown
 from qtab.envs.functional import FunctionalEnv
-from qtab.envs.matching import layers, time_limit, unknown_wrapper
+from qtab.envs.matching import layers, time_limit
+from qtab.envs.origin.describe import NEUTRAL
 from qtab.envs.tabulation.copied_outcomes import CopiedOutcomes
 from qtab.envs.tabulation.functional_outcomes import FunctionalOutcomes
 from qtab.envs.tabulation.known_table import has_known_table, tabulate_known
 from qtab.envs.tabulation.state_keys import state_text
 from qtab.envs.tabulation.tabulated_env import MOST_NAMES, TabulatedEnv
 from qtab.envs.tabulation.walk import Outcomes, Walk
-
-_WATCHING = (HumanRendering, RecordEpisodeStatistics, RecordVideo, RenderCollection)
-"""Wrappers that change no number; they are left out."""
 
 
 def tabulate(env: gym.Env[Any, Any], *, max_states: int = 100_000) -> TabulatedEnv:
@@ -45,7 +42,7 @@ def tabulate(env: gym.Env[Any, Any], *, max_states: int = 100_000) -> TabulatedE
     The observation of the table is the number of the state, also where the environment's observation hides part of the
     state. Actions are counted from 0. The table has the time limit of the environment. With an action mask,
     ``action_mask=True`` trains with it; an unavailable action ends the episode with a reward below every possible
-    return within the time limit (10,000 steps without one), so that no best policy takes it.
+    return within the time limit and within 10,000 steps, so that no best policy takes it.
 
     Args:
         env: The environment. It is copied, and neither stepped nor closed. Wrappers of ``gymnasium.make`` and those
@@ -64,26 +61,18 @@ def tabulate(env: gym.Env[Any, Any], *, max_states: int = 100_000) -> TabulatedE
     if not isinstance(env, gym.Env):
         raise TypeError(f"env must be an environment, got {shown(env)}")
     max_states = checks.count("max_states", max_states, least=1)
-    inner = _without_watching(env)
-    wrapper = unknown_wrapper(inner)
-    if wrapper is not None:
-        raise ValueError(f"env must have no wrapper that may change observations, actions or rewards, got {wrapper}")
-    unwrapped: Any = inner.unwrapped
+    for layer in layers(env):
+        if isinstance(layer, gym.Wrapper) and type(layer) not in NEUTRAL:
+            name = type(layer).__name__
+            raise ValueError(f"env must have no wrapper that may change observations, actions or rewards, got {name}")
+    unwrapped: Any = env.unwrapped
     if not isinstance(unwrapped.action_space, gym.spaces.Discrete):
         raise ValueError(f"env must have a Discrete action space, got {unwrapped.action_space}")
-    limit = time_limit(inner)
+    limit = time_limit(env)
     if has_known_table(unwrapped):
         return tabulate_known(unwrapped, limit, max_states)
     outcomes = FunctionalOutcomes(unwrapped) if isinstance(unwrapped, FunctionalEnv) else CopiedOutcomes(unwrapped)
     return _tabulated(outcomes, unwrapped, limit, max_states)
-
-
-def _without_watching(env: gym.Env) -> gym.Env:
-    """Returns the environment without the outermost wrappers that change no number."""
-    for layer in layers(env):
-        if type(layer) not in _WATCHING:
-            return layer
-    return env
 
 
 def _tabulated(outcomes: Outcomes, env: Any, limit: int | None, max_states: int) -> TabulatedEnv:

@@ -14,8 +14,9 @@ from qtab._utils.shown import counted
 from qtab.envs.tabular import Transition
 from qtab.envs.tabulation.state_keys import growing_numbers
 
-UNLIMITED = 10_000
-"""The time limit in steps that stands for none, as in training."""
+FEWEST_STEPS = 10_000
+"""The shortest episodes whose returns lie above the reward of an unavailable action; without a limit, training ends
+episodes there."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,13 +122,13 @@ class Walk:
         """Returns the transitions of all states and actions.
 
         A terminal state stays as it is. An unavailable action ends the episode with a reward below every return within
-        the time limit, so that no best policy takes it.
+        the time limit and within 10,000 steps, so that no best policy takes it.
 
         Args:
-            max_episode_steps: The time limit in steps; None counts as 10,000.
+            max_episode_steps: The time limit in steps; None without one.
         """
         rewards = (one[2] for rows in self.transitions.values() for row in rows for one in row or ())
-        lowest = (max_episode_steps or UNLIMITED) * min(min(rewards, default=0.0), 0.0) - 1.0
+        lowest = max(max_episode_steps or 0, FEWEST_STEPS) * min(min(rewards, default=0.0), 0.0) - 1.0
         return [
             [
                 [(1.0, number, 0.0, True)] if rows is None else [(1.0, number, lowest, True)] if row is None else row
