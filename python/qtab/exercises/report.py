@@ -1,12 +1,17 @@
 """The result of checking a solution."""
 
+import textwrap
 from dataclasses import dataclass, field
+from typing import Any
 
 from qtab._utils import html
 from qtab._utils.fields import with_fields
 from qtab.exercises.exercise import Exercise
 from qtab.exercises.recognition import Recognition
 from qtab.exercises.record import Difference
+
+WIDTH = 86
+"""The maximum number of characters in a line of a report as text."""
 
 
 @with_fields
@@ -82,8 +87,8 @@ class Report:
         lines = [self._heading]
         for result in self.results:
             lines.append(f"  {_word(result)}  {result.title}")
-            lines += [f"          {line}" for line in result.lines]
-        return "\n".join([*lines, *self._notes()])
+            lines += [wrapped for line in result.lines for wrapped in _wrapped(line, " " * 10)]
+        return "\n".join([*lines, *(wrapped for note in self._notes() for wrapped in _wrapped(note))])
 
     def _repr_html_(self) -> str:
         """Returns the report as a table, for notebooks."""
@@ -98,6 +103,13 @@ class Report:
 
     def _notes(self) -> list[str]:
         return [*self.recognition.lines, *self.advice]
+
+
+def _wrapped(line: str, indent: str = "") -> list[str]:
+    """Returns a line of text as several ones that are not too long; all but the first are indented."""
+    spaces = indent + " " * (len(line) - len(line.lstrip()))
+    options: Any = {"break_long_words": False, "break_on_hyphens": False}
+    return textwrap.wrap(line.strip(), WIDTH, initial_indent=spaces, subsequent_indent=f"{spaces}  ", **options)
 
 
 def _word(result: CheckResult) -> str:

@@ -15,12 +15,13 @@ import numpy as np
 def dyna_q(env, q, episodes, planning_steps, learning_rate, discount, epsilon, rng):
     """Learn by Dyna-Q: change q in place.
 
-    After each step: the update of Q-learning; then store the reward and the next state for this
-    state and action, or that nothing follows if it is terminal (terminated); then planning_steps
-    updates of Q-learning with stored outcomes. For each draw a state among the m visited ones, in
-    the order of their first visits, with rng.integers(m), and then one of the k actions tried
-    there, in the order of their first tries, with rng.integers(k). (A dict of dicts keeps these
-    orders.) Only the last outcome of a state and action is stored.
+    After each step: the update of Q-learning; then store the reward and the next
+    state for this state and action, or that nothing follows if it is terminal
+    (terminated); then planning_steps updates of Q-learning with stored outcomes. For
+    each draw a state among the m visited ones, in the order of their first visits,
+    with rng.integers(m), and then one of the k actions tried there, in the order of
+    their first tries, with rng.integers(k). (A dict of dicts keeps these orders.)
+    Only the last outcome of a state and action is stored.
 
     env: call env.reset() and env.step(action).
     q: the action values, of shape (states, actions).

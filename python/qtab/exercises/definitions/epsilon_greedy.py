@@ -17,9 +17,9 @@ import numpy as np
 def epsilon_greedy(values, epsilon, rng):
     """Return the number of an action.
 
-    Draw one number with rng.random(). If it is less than 1 - epsilon, return the action with the
-    largest value, the first one of several. Otherwise draw an action with rng.integers(n), where n
-    is the number of actions.
+    Draw one number with rng.random(). If it is less than 1 - epsilon, return the
+    action with the largest value, the first one of several. Otherwise draw an action
+    with rng.integers(n), where n is the number of actions.
 
     values: the value of each action, an array of shape (n,). Do not change it.
     epsilon: the probability of a random action.

@@ -15,11 +15,12 @@ import numpy as np
 def expected_sarsa(env, q, episodes, learning_rate, discount, epsilon, rng):
     """Learn by Expected Sarsa: change q in place after each step.
 
-    As Q-learning, but with the expected value of the next state under the epsilon-greedy policy:
+    As Q-learning, but with the expected value of the next state under the
+    epsilon-greedy policy:
     target = reward + discount * np.sum(p * q[next_state]),
-    where p is epsilon / n for each of the n actions, and 1 - epsilon is added to that of the first
-    action with the largest value. If the next state is terminal (terminated), the target is the
-    reward.
+    where p is epsilon / n for each of the n actions, and 1 - epsilon is added to that
+    of the first action with the largest value. If the next state is terminal
+    (terminated), the target is the reward.
 
     env: call env.reset() and env.step(action).
     q: the action values, of shape (states, actions).

@@ -13,12 +13,13 @@ STARTER = '''\
 import numpy as np
 
 def monte_carlo(env, q, episodes, discount, epsilon, rng):
-    """Learn by first-visit Monte Carlo control with an epsilon-greedy policy: change q in place.
+    """Learn by first-visit Monte Carlo control: change q in place after each episode.
 
-    Choose the actions of an episode with q as it is before the episode. After it, go through its
-    steps from last to first: G = reward + discount * G, where G is 0.0 after the last step.
-    If it is the first visit of this state and action in the episode, and the n-th one in all
-    episodes: q[state, action] += 1 / n * (G - q[state, action]).
+    Choose the actions of an episode with q as it is before the episode. After it, go
+    through its steps from last to first: G = reward + discount * G, where G is 0.0
+    after the last step. If it is the first visit of this state and action in the
+    episode, and their n-th first visit in all episodes:
+    q[state, action] += 1 / n * (G - q[state, action]).
 
     env: call env.reset() and env.step(action); all episodes end in a terminal state.
     q: the action values, of shape (states, actions).

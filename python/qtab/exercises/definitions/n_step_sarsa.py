@@ -15,12 +15,14 @@ import numpy as np
 def n_step_sarsa(env, q, episodes, n, learning_rate, discount, epsilon, rng):
     """Learn by n-step Sarsa: change q in place.
 
-    A step waits until n rewards are known, its own included, or the episode has ended. After each
-    step of the environment choose the next action in the next state (unless it is terminal), and
-    then update the step that has waited for n rewards. After the end update all waiting steps, from
-    first to last. The target of a step is R1 + discount * R2 + discount**2 * R3 + ..., added in this
-    order from 0.0 with a factor that starts at 1.0 and is multiplied by discount after each reward;
-    then factor * q[last state, last action], unless the last state is terminal (terminated).
+    A step waits until n rewards are known, its own included, or the episode has
+    ended. After each step of the environment choose the next action in the next state
+    (unless it is terminal), and then update the step that has waited for n rewards.
+    After the end update all waiting steps, from first to last. The target of a step
+    is R1 + discount * R2 + discount**2 * R3 + ..., added in this order from 0.0 with
+    a factor that starts at 1.0 and is multiplied by discount after each reward; then
+    factor * q[last state, last action], unless the last state is terminal
+    (terminated). The update itself is that of Sarsa, exercise 7.
 
     env: call env.reset() and env.step(action).
     q: the action values, of shape (states, actions).

@@ -15,12 +15,12 @@ STARTER = '''\
 import numpy as np
 
 def policy_evaluation(P, policy, values, discount):
-    """Make one sweep of policy evaluation, and return the new values, an array like values.
+    """Make one sweep of policy evaluation; return the new values, of shape (states,).
 
     v(s) = sum over actions a of policy[s, a] * q(s, a), where
     q(s, a) = sum over the outcomes of p * (reward + discount * v(next state)).
-    All states use the old values. After a terminated outcome the next value is 0. Start each sum
-    at 0.0 and add its terms in order.
+    All states use the old values. After a terminated outcome the next value is 0.
+    Start each sum at 0.0 and add its terms in order.
 
     P: P[state][action] is a list of outcomes (p, next_state, reward, terminated).
     policy: the probability of each action in each state, of shape (states, actions).

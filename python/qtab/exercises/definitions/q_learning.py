@@ -18,8 +18,8 @@ def q_learning(env, q, episodes, learning_rate, discount, epsilon, rng):
     Choose an action, take it, and update:
     target = reward + discount * the largest value of the next state,
     q[state, action] += learning_rate * (target - q[state, action]).
-    If the next state is terminal (terminated), the target is the reward; at a time-out (truncated)
-    it is the same as after any other step.
+    If the next state is terminal (terminated), the target is the reward; at a
+    time-out (truncated) it is the same as after any other step.
 
     env: call env.reset() and env.step(action).
     q: the action values, of shape (states, actions).

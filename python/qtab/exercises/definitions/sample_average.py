@@ -14,10 +14,11 @@ STARTER = '''\
 import numpy as np
 
 def sample_average(estimates, counts, action, reward):
-    """Learn from one reward of a bandit: change estimates and counts in place, return nothing.
+    """Learn from one reward of a bandit: change estimates and counts in place.
 
-    The estimate of an action is the average of its rewards so far. With the n-th reward of an action
-    it moves by 1 / n times the error: estimate += 1 / n * (reward - estimate).
+    The estimate of an action is the average of its rewards so far. With the n-th
+    reward of an action, n counting this one:
+    estimate += 1 / n * (reward - estimate).
 
     estimates: the estimate of each action, float64, of shape (actions,).
     counts: the number of rewards of each action so far, int64, of shape (actions,).

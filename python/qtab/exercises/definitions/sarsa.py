@@ -15,12 +15,13 @@ import numpy as np
 def sarsa(env, q, episodes, learning_rate, discount, epsilon, rng):
     """Learn by Sarsa: change q in place after each step.
 
-    Choose the first action of an episode after env.reset(). After each step choose the next action
-    in the next state, and then update:
+    Choose the first action of an episode after env.reset(). After each step choose
+    the next action in the next state, and then update:
     target = reward + discount * q[next_state, next_action],
     q[state, action] += learning_rate * (target - q[state, action]).
-    If the next state is terminal (terminated), the target is the reward, and no action is chosen.
-    At a time-out (truncated) the next action is chosen for the target, though not taken.
+    If the next state is terminal (terminated), the target is the reward, and no
+    action is chosen. At a time-out (truncated) the next action is chosen for the
+    target, though not taken.
 
     env: call env.reset() and env.step(action).
     q: the action values, of shape (states, actions).

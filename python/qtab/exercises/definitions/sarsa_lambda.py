@@ -13,20 +13,23 @@ from qtab.exercises.parts import NONE, POLICY, UPDATE, Mistakes, epsilon_greedy,
 STARTER = '''\
 import numpy as np
 
-def sarsa_lambda(env, features, w, episodes, learning_rate, discount, trace_decay, epsilon, rng):
-    """Learn by Sarsa(lambda) with accumulating traces on tile coding: change w in place.
+def sarsa_lambda(
+    env, features, w, episodes, learning_rate, discount, trace_decay, epsilon, rng
+):
+    """Learn by Sarsa(lambda) with accumulating traces: change w in place.
 
     The values of an observation are w[rows].sum(axis=0), of shape (actions,), where
-    rows = features(observation). The traces z have the shape of w and are 0 at the start of an
-    episode. After each step:
-    add 1 to z[rows, action] of the old observation; choose the next action in the next one;
+    rows = features(observation). The traces z have the shape of w and are 0 at the
+    start of an episode. After each step: add 1 to z[rows, action] of the old
+    observation, choose the next action in the next one, and then update:
     error = reward + discount * next value of the next action - value of the action,
     w += learning_rate / len(rows) * error * z (from left to right),
     z *= discount * trace_decay.
-    If the next state is terminal (terminated), no action is chosen, and the next value is left out.
+    If the next state is terminal (terminated), no action is chosen, and the next
+    value is left out.
 
     env: call env.reset() and env.step(action).
-    features: a function from an observation to its active rows, an integer array, no row twice.
+    features: a function from an observation to its active rows, an array of integers.
     w: the weights, of shape (rows, actions).
     rng: the generator for your epsilon_greedy(values, epsilon, rng) of exercise 1.
     """

@@ -13,11 +13,13 @@ STARTER = '''\
 import numpy as np
 
 def td_prediction(env, values, policy, episodes, learning_rate, discount):
-    """Estimate the values of a policy by TD(0): change values in place after each step.
+    """Estimate the values of a policy by TD(0): change values in place.
 
-    target = reward + discount * values[next_state]; if the next state is terminal (terminated),
-    the target is the reward. values[state] += learning_rate * (target - values[state]).
-    An episode ends if it is terminated or truncated.
+    After each step:
+    target = reward + discount * values[next_state],
+    values[state] += learning_rate * (target - values[state]).
+    If the next state is terminal (terminated), the target is the reward. An episode
+    ends if it is terminated or truncated.
 
     env: call env.reset() and env.step(action).
     values: the estimate of each state, of shape (states,).

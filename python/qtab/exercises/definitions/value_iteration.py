@@ -17,11 +17,13 @@ import numpy as np
 def value_iteration(P, discount, tolerance):
     """Find the optimal values, and return (values, policy).
 
-    Start with zeros, float64. Sweep over the states in order: v(s) = the largest q(s, a), where
-    q(s, a) = sum over the outcomes of p * (reward + discount * v(next state)), added in order from
-    0.0. A state uses the new values of earlier states; after a terminated outcome the next value
-    is 0. Stop after the first sweep in which no value changes by more than tolerance.
-    The policy is the first action with the largest q(s, a), int64, of shape (states,).
+    Start with zeros, float64. Sweep over the states in order:
+    v(s) = the largest q(s, a), where
+    q(s, a) = sum over the outcomes of p * (reward + discount * v(next state)).
+    Start each sum at 0.0 and add its terms in order. A state uses the new values of
+    earlier states; after a terminated outcome the next value is 0. Stop after the
+    first sweep in which no value changes by more than tolerance. The policy is the
+    first action with the largest q(s, a), int64, of shape (states,).
 
     P: P[state][action] is a list of outcomes (p, next_state, reward, terminated).
     discount: the factor of the next value.
