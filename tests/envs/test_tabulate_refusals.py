@@ -59,6 +59,9 @@ REFUSED_DRAWS = [
     (lambda rng: rng.uniform(0, 2) + 1, r"rng.uniform\(0, 2\), a continuous number that is computed with"),
     (lambda rng: rng.integers(0, 100_000), r"rng.integers\(0, 100000\), which has 10,001 values"),
     (lambda rng: [rng.integers(0, 100) for _ in range(4)], r"rng.integers\(0, 100\) and more, .* 100,000 outcomes"),
+    (lambda rng: rng.permutation(1000), "rng.permutation of 1000 items, which has more than 100,000 outcomes"),
+    (lambda rng: rng.integers(0, 6, size=100), r"rng.integers\(0, 6, size=\(100,\)\), which has more than 100,000 out"),
+    (lambda rng: rng.choice(6, 100), "rng.choice of 6 items, which has more than 100,000 outcomes"),
     (lambda rng: rng.integers([1, 2]), "with an array of bounds"),
 ]
 

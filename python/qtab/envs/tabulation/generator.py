@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from qtab.envs.tabulation.branches import MOST_VALUES, Branches, uniformly
+from qtab.envs.tabulation.branches import MOST_OUTCOMES, MOST_VALUES, Branches, uniformly
 from qtab.envs.tabulation.uniform import Uniform
 
 _COMPARED = "only comparisons of random() with < and > can be listed"
@@ -91,6 +91,7 @@ class ListingGenerator(np.random.Generator):
             return chosen if isinstance(like, np.ndarray) else type(like)(chosen)
         if replace:
             probabilities = uniformly(count) if p is None else _shares(p)
+            self._check_few(call, len(probabilities) ** int(np.prod(size)))
             indices = [self._branches.draw(call, probabilities) for _ in range(int(np.prod(size)))]
         else:
             if p is not None or not shuffle:
@@ -110,8 +111,14 @@ class ListingGenerator(np.random.Generator):
         order = self._order(f"rng.shuffle of {count} items", count, count)
         x[:] = np.take(x, order, axis) if isinstance(x, np.ndarray) else [x[index] for index in order]
 
+    def _check_few(self, call: str, outcomes: int) -> None:
+        """Refuses a call with too many outcomes at once, rather than after the most that are allowed."""
+        if outcomes > MOST_OUTCOMES:
+            raise self._branches.refused(f"{call}, which has more than {MOST_OUTCOMES:,} outcomes")
+
     def _order(self, call: str, count: int, chosen: int) -> list[int]:
         """Returns indices without repetition, of which each order is equally likely."""
+        self._check_few(call, math.perm(count, chosen))
         left = list(range(count))
         return [left.pop(self._branches.draw(call, uniformly(len(left)))) for _ in range(chosen)]
 
@@ -119,6 +126,7 @@ class ListingGenerator(np.random.Generator):
         """Returns a drawn integer, or an array of drawn integers, of the type of ``like``."""
         if not isinstance(like, np.ndarray):
             return type(like)(first + self._branches.draw(call, probabilities))
+        self._check_few(f"{call[:-1]}, size={like.shape})", len(probabilities) ** like.size)
         numbers = [first + self._branches.draw(call, probabilities) for _ in range(like.size)]
         return np.array(numbers, like.dtype).reshape(like.shape)
 
