@@ -3,14 +3,14 @@
 use crate::LoadError;
 use crate::checkpoint::{CheckpointError, EpisodeProgress};
 use crate::envs::toy_text::FrozenLake;
-use crate::features::Identity;
+use crate::features::{Identity, OutOfBounds};
 use crate::learners::{Agent, AnyAlgorithm, QLearning, Sarsa, TdLearner, UpdateRule};
 use crate::policies::{AnyPolicy, TieBreaking};
 use crate::random::{AgentRng, Pcg64, SeedSequence};
 use crate::schedules::{LearningRate, Schedule};
 use crate::settings::ScheduleSpec;
-use crate::tasks::NativeTask;
-use crate::{Budget, QTable, Trainer, TrainerBuilder};
+use crate::tasks::{BoxedTask, NativeTask, Task, TimeAware, VisitCounter};
+use crate::{Budget, QTable, StopFlag, Trainer, TrainerBuilder};
 
 const EPISODES: usize = 50;
 
@@ -97,6 +97,24 @@ fn a_run_made_by_hand_knows_its_learner_and_its_seeds() {
     assert!(rule.contains("learner is TdLearner<QLearning>, but this run's is TdLearner<Sarsa>"), "{rule}");
     let seed = by_hand(QLearning, 1).load(&bytes).expect_err("another seed").to_string();
     assert!(seed.contains("seed of the environment's generator"), "{seed}");
+}
+
+#[test]
+fn a_wrapped_task_is_identified_by_what_it_wraps() {
+    let run = |seed: u64| {
+        let Trainer { task, learner, rng, .. } = by_hand(QLearning, seed);
+        let task = BoxedTask::<_, OutOfBounds>::new(TimeAware::new(task, 16, 5).expect("a small table"));
+        assert_eq!(task.shape(), Some((80, 4)));
+        assert!(Trainer::try_new(task, learner.clone(), rng.clone()).is_err());
+        let task = VisitCounter::new(by_hand(QLearning, seed).task, 16, 4, &StopFlag::new()).expect("a few counts");
+        Trainer::try_new(BoxedTask::<_, OutOfBounds>::new(task), learner, rng).expect("the table fits the task")
+    };
+    let mut saved = run(3);
+    saved.train(10).expect("every state has a row");
+    let bytes = saved.save().expect("memory suffices");
+    assert_eq!(run(3).load(&bytes), Ok(EpisodeProgress::Between));
+    let error = run(4).load(&bytes).expect_err("another seed").to_string();
+    assert!(error.contains("seed of the environment's generator"), "{error}");
 }
 
 #[test]

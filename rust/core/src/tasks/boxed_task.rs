@@ -3,7 +3,7 @@
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
 use super::{NextKind, Task, Transition};
-use crate::checkpoint::{Checkpoint, CheckpointError};
+use crate::checkpoint::{Checkpoint, CheckpointError, RunIdentity};
 use crate::features::ActiveRows;
 use crate::simd::{Simd, SimdCode, SimdLevel};
 
@@ -30,6 +30,8 @@ trait DynTask<R, X> {
     fn action_mask(&self) -> Option<&[bool]>;
     fn visits(&self) -> Option<&[i64]>;
     fn active_rows(&self) -> Result<R, X>;
+    fn shape(&self) -> Option<(usize, usize)>;
+    fn identify(&self, identity: &mut RunIdentity);
     fn resumes_episodes(&self) -> bool;
     fn persist(&mut self, in_episode: bool, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError>;
 }
@@ -89,6 +91,14 @@ impl<T: Task, X: From<T::Error>> DynTask<T::Active, X> for StatefulTask<T, X> {
             unreachable!("a trainer only asks for the rows of an unfinished episode")
         };
         Ok(self.task.active_rows(state)?)
+    }
+
+    fn shape(&self) -> Option<(usize, usize)> {
+        self.task.shape()
+    }
+
+    fn identify(&self, identity: &mut RunIdentity) {
+        self.task.identify(identity);
     }
 
     fn resumes_episodes(&self) -> bool {
@@ -169,6 +179,14 @@ impl<R: ActiveRows, X> Task for BoxedTask<R, X> {
 
     fn active_rows(&self, (): &()) -> Result<R, X> {
         self.task.active_rows()
+    }
+
+    fn shape(&self) -> Option<(usize, usize)> {
+        self.task.shape()
+    }
+
+    fn identify(&self, identity: &mut RunIdentity) {
+        self.task.identify(identity);
     }
 
     fn resumes_episodes(&self) -> bool {

@@ -1,11 +1,11 @@
 //! A task whose environment changes after a number of steps (Sutton & Barto, section 8.3).
 
 use super::{Next, RngSnapshot, Task, TimedState, Transition};
-use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist, RunIdentity};
 use crate::envs::Env;
 use crate::envs::tabular::TabularMdp;
 use crate::features::OutOfBounds;
-use crate::random::Pcg64;
+use crate::random::{Pcg64, Rng};
 
 /// Two transition tables with the same states: one for the first steps of a run, counted over all episodes, the other
 /// for all later ones. Each state has its own row.
@@ -63,6 +63,18 @@ impl Task for ChangingTask {
 
     fn active_rows(&self, state: &Self::State) -> Result<[u32; 1], OutOfBounds> {
         Ok([state.state])
+    }
+
+    fn shape(&self) -> Option<(usize, usize)> {
+        Some((self.tables[0].num_states(), self.tables[0].num_actions()))
+    }
+
+    fn identify(&self, identity: &mut RunIdentity) {
+        identity.add_type::<Self>("task");
+        identity.add("time limit", self.max_episode_steps);
+        identity.add("steps before the change", self.change_after);
+        let seed = self.rng.seed_fingerprint().unwrap_or_default();
+        identity.add("seed of the environment's generator, as a fingerprint", format_args!("{seed:016x}"));
     }
 
     fn persist(

@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::{Next, RngSnapshot, Task, Transition};
 use crate::TrainingError;
-use crate::checkpoint::{Checkpoint, CheckpointError};
+use crate::checkpoint::{Checkpoint, CheckpointError, RunIdentity};
 use crate::memory::{AllocationError, Growing, MemoryRoom, out_of_memory, reserve};
 
 /// A finished episode that can be replayed.
@@ -101,6 +101,15 @@ impl<T: RngSnapshot> Task for EpisodeRecorder<T> {
 
     fn active_rows(&self, state: &T::State) -> Result<T::Active, Self::Error> {
         self.task.active_rows(state).map_err(TrainingError::Task)
+    }
+
+    fn shape(&self) -> Option<(usize, usize)> {
+        self.task.shape()
+    }
+
+    fn identify(&self, identity: &mut RunIdentity) {
+        identity.add_type::<Self>("task");
+        self.task.identify(identity);
     }
 
     fn resumes_episodes(&self) -> bool {

@@ -2,7 +2,7 @@
 //! limits in reinforcement learning", 2018).
 
 use super::{Next, Task, TimedState, Transition};
-use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist, RunIdentity};
 
 /// A wrapper around a task with one active row, with separate rows for each step before the time limit: the table has
 /// `max_episode_steps` times as many rows, beginning with those of an episode's first step.
@@ -75,6 +75,15 @@ impl<T: Task> Task for TimeAware<T> {
 
     fn active_rows(&self, timed: &Self::State) -> Result<[u32; 1], T::Error> {
         Ok(self.at(self.task.active_rows(&timed.state)?, timed.elapsed))
+    }
+
+    fn shape(&self) -> Option<(usize, usize)> {
+        self.task.shape().map(|(_, num_actions)| (self.n_rows(), num_actions))
+    }
+
+    fn identify(&self, identity: &mut RunIdentity) {
+        identity.add_type::<Self>("task");
+        self.task.identify(identity);
     }
 
     fn resumes_episodes(&self) -> bool {

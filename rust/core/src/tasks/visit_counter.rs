@@ -2,7 +2,7 @@
 
 use super::{Next, Task, Transition};
 use crate::StopFlag;
-use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist, RunIdentity};
 use crate::memory::{AllocationError, filled};
 
 /// A wrapper around a task that counts how often each action was taken in each row of the table.
@@ -72,6 +72,15 @@ impl<T: Task> Task for VisitCounter<T> {
 
     fn active_rows(&self, counted: &Self::State) -> Result<T::Active, T::Error> {
         self.task.active_rows(&counted.state)
+    }
+
+    fn shape(&self) -> Option<(usize, usize)> {
+        self.task.shape()
+    }
+
+    fn identify(&self, identity: &mut RunIdentity) {
+        identity.add_type::<Self>("task");
+        self.task.identify(identity);
     }
 
     fn resumes_episodes(&self) -> bool {
