@@ -7,9 +7,9 @@ import gymnasium as gym
 import numpy as np
 from gymnasium import spaces
 
-from support.libraries import compile_c
+from support.libraries import SOURCES, compile_c
 
-SOURCE = Path(__file__).parent / "native" / "board.c"
+SOURCE = SOURCES / "board.c"
 SETTINGS: dict[str, Any] = {"episodes": 80, "max_episode_steps": 40, "action_mask": True}
 
 

@@ -6,23 +6,26 @@ use qtab_core::random::{Pcg64, SeedSequence};
 use qtab_env::host::{BitGenerator, Environment, Episode, RandomBits};
 use qtab_env::{Env, Exported, Generator, Step};
 
-/// The integers and the floats of a round of draws.
-type Draws = ([i64; 7], [f64; 2]);
+/// The integers, the floats and the last integer of a round of draws.
+type Draws = ([i64; 6], [f64; 2], i64);
 
 /// Three rounds of `rng = np.random.default_rng(5)`: `integers` of (-3, 4), (0, 2**32), (0, 2**32 + 5), (-2**63, 2**63 - 1),
 /// (7, 8), (0, 3 * 2**61), then `random()` and `uniform(-2, 3)`, then `integers(0, 6)`.
 const NUMPY: [Draws; 3] = [
     (
-        [1, 3_457_461_230, 3_470_079_273, 282_706_702_330_408_383, 7, 1_977_039_342_899_601_836, 3],
+        [1, 3_457_461_230, 3_470_079_273, 282_706_702_330_408_383, 7, 1_977_039_342_899_601_836],
         [0.053_930_702_381_656_426, -0.083_155_596_072_408_85],
+        3,
     ),
     (
-        [-1, 562_902_478, 209_412_773, 9_208_174_042_313_963_663, 7, 4_512_782_266_146_329_695, 0],
+        [-1, 562_902_478, 209_412_773, 9_208_174_042_313_963_663, 7, 4_512_782_266_146_329_695],
         [0.234_510_201_669_823_95, 0.174_737_761_125_710_38],
+        0,
     ),
     (
-        [-2, 4_184_097_840, 3_855_495_973, 6_349_941_852_995_933_656, 7, 2_714_470_656_117_583_781, 3],
+        [-2, 4_184_097_840, 3_855_495_973, 6_349_941_852_995_933_656, 7, 2_714_470_656_117_583_781],
         [0.493_023_018_731_742_6, 1.383_446_759_155_330_3],
+        3,
     ),
 ];
 
@@ -67,8 +70,8 @@ impl Env for Drawing {
             rng.integers(0, 3 << 61),
         ];
         let floats = [rng.random(), rng.uniform(-2.0, 3.0)];
-        let [a, b, c, d, e, f] = first;
-        DRAWN.with_borrow_mut(|drawn| drawn.push(([a, b, c, d, e, f, rng.integers(0, 6)], floats)));
+        let last = rng.integers(0, 6);
+        DRAWN.with_borrow_mut(|drawn| drawn.push((first, floats, last)));
     }
 
     fn step(&self, (): &(), _: usize, _: &mut Generator<'_>) -> Step<()> {

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import qtab
-from support.libraries import example_class, needs_compiler
+from support.libraries import SOURCES, compile_c, example_class, needs_compiler
 
 pytestmark = needs_compiler
 BINS: dict[str, Any] = {"discretizer": "bins", "bins": [12, 10], "episodes": 60}
@@ -49,3 +49,22 @@ def test_the_numbers_are_those_of_python(lander: Path, settings: dict[str, Any])
     theirs = qtab.train(in_python(), seed=3, **settings)
     assert_equal(ours, theirs)
     assert np.any(ours.tables)
+
+
+def test_mountain_car_in_c_equals_that_of_the_core(tmp_path: Path) -> None:
+    core = qtab.train("MountainCar-v0", episodes=50, seed=1)
+    library = compile_c(SOURCES / "mountain_car.c", tmp_path, "mountain_car")
+    names = (
+        "algorithm",
+        "discretizer",
+        "scale",
+        "initial_q",
+        "terminal_update",
+        "learning_rate",
+        "discount",
+        "epsilon",
+    )
+    settings = {name: getattr(core.config, name) for name in (*names, "min_epsilon", "epsilon_schedule")}
+    ours = qtab.train(qtab.NativeEnv(library), episodes=50, seed=1, **settings)
+    for name in ("episode_returns", "episode_lengths", "terminated", "tables"):
+        assert getattr(ours, name).tobytes() == getattr(core, name).tobytes(), name
