@@ -11,6 +11,7 @@ import environment_presets
 import idle_env
 import mountain_car
 import numba_loops
+import own
 import vector_envs
 from qtab._utils.versions import versions
 from tables import Table
@@ -20,6 +21,7 @@ PARTS: Mapping[str, Sequence[Callable[[], Table]]] = {
     "environments": [environment_presets.training],
     "learners": [algorithms.learners],
     "book": [algorithms.book],
+    "own": [own.training],
     "stepping": [mountain_car.stepping, idle_env.learning],
     "vectors": [vector_envs.stepping],
 }

@@ -13,6 +13,7 @@ import c_loop
 import environment_presets
 import idle_env
 import numba_loops
+import own
 import plain_loop
 import qtab
 import table_loop
@@ -28,6 +29,12 @@ def test_the_numba_loop_equals_the_articles_loop_to_the_bit() -> None:
     assert table.tobytes() == run.q_table.tobytes()
     assert returns.tobytes() == run.episode_returns.tobytes()
     assert steps == run.episode_lengths.sum()
+
+
+def test_the_own_environment_equals_the_packages() -> None:
+    run, same = own.train(4, "python", 10), qtab.train("MountainCar-v0", seed=4, episodes=10, backend="rust")
+    assert run.q_table.tobytes() == same.q_table.tobytes()
+    assert run.episode_returns.tobytes() == same.episode_returns.tobytes()
 
 
 def test_many_runs_under_numba_are_runs_with_different_seeds(monkeypatch: pytest.MonkeyPatch) -> None:

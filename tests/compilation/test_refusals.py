@@ -183,6 +183,12 @@ def test_a_refusal_is_remembered(caplog: pytest.LogCaptureFixture) -> None:
             capsule_of(Exponentials())
 
 
+def test_numba_can_be_disabled(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("NUMBA_DISABLE_JIT", "1")
+    with pytest.raises(NotCompilable, match=r"^NUMBA_DISABLE_JIT is set$"):
+        capsule_of(Base())
+
+
 def test_without_numba_the_refusal_names_the_installation(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("qtab.compilation.functional.is_installed", lambda: False)
     with pytest.raises(NotCompilable, match=r"^Numba is not installed; pip install numba$"):

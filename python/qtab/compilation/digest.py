@@ -38,16 +38,16 @@ def digest_of(functions: dict[str, FunctionType], others: Any) -> str:
     return hashlib.sha256(repr(parts).encode()).hexdigest()[:32]
 
 
-def _environment() -> list[str]:
+@functools.cache
+def _environment() -> tuple[str, ...]:
     import llvmlite
     import llvmlite.binding as llvm
 
     versions = [distribution_version(), np.__version__, llvmlite.__version__, _numba_version()]
     machine = [llvm.get_process_triple(), llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()]
-    return [sys.version, platform.machine(), _own_code(), *versions, *machine]
+    return sys.version, platform.machine(), _own_code(), *versions, *machine
 
 
-@functools.cache
 def _own_code() -> str:
     """Returns a digest of this package, which may change without a new version while it is developed."""
     files = sorted(Path(__file__).parent.rglob("*.py"))

@@ -2,6 +2,7 @@
 
 import contextlib
 import logging
+import os
 import threading
 import time
 import warnings
@@ -51,6 +52,8 @@ def compiled_env(env: Any) -> tuple[CompiledEnv, Parameters]:
     """Returns the compiled environment, and its parameters; see :func:`capsule_of`."""
     if not is_installed():
         raise NotCompilable("Numba is not installed", advice="pip install numba")
+    if os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
+        raise NotCompilable("NUMBA_DISABLE_JIT is set")
     if not isinstance(env.action_space, spaces.Discrete):
         raise NotCompilable("the action space is not Discrete", advice="number the actions, with spaces.Discrete(n)")
     observation = ObservationLayout.of(env.observation_space)
