@@ -12,7 +12,7 @@ from gymnasium import spaces
 
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting import rewrite
-from support.gym_classes import control, games, grids, refused
+from support.gym_classes import control, games, grids, refused, shared, walk
 from support.lockstep_rewriting import assert_equal_steps
 
 REFUSALS = {
@@ -69,6 +69,37 @@ def test_the_refusal_names_the_line_and_what_to_write_instead(cls: Any) -> None:
     assert str(caught.value).startswith(f"{caught.value.file}:{marked}: ")
 
 
+SHARED = [
+    shared.FollowsAttribute,
+    shared.FollowsPart,
+    shared.FollowsInAnotherAttribute,
+    shared.FollowsThroughHelper,
+    shared.FollowsInParameter,
+    shared.FollowsList,
+    shared.FollowsInLoop,
+]
+
+
+@pytest.mark.parametrize("cls", SHARED, ids=lambda cls: cls.__name__)
+def test_names_of_memory_that_is_changed_in_place_are_refused(cls: Any) -> None:
+    lines, first = inspect.getsourcelines(cls)
+    (marked,) = [number for number, line in enumerate(lines, first) if "# here" in line]
+    with pytest.raises(NotCompilable, match=r"shares? .*memory.*changed in place.*\.copy\(\)") as caught:
+        rewrite(cls())
+    assert caught.value.line == marked
+
+
+def test_attributes_that_share_memory_from_the_beginning_are_refused() -> None:
+    with pytest.raises(NotCompilable, match=r"self\.counts is changed in place, and shares memory with self\.shown"):
+        rewrite(shared.SharesInInit())
+
+
+@pytest.mark.parametrize("cls", [shared.ReadsOnly, shared.CopiesFirst], ids=lambda cls: cls.__name__)
+def test_other_names_of_memory_are_compiled(cls: Any) -> None:
+    env = cls()
+    assert_equal_steps(env, rewrite(env), 500)
+
+
 def test_the_code_is_shown() -> None:
     with pytest.raises(NotCompilable, match=r"in `np\.exp\(-self\.x \* self\.x\)`"):
         rewrite(refused.NumpyExp())
@@ -109,7 +140,7 @@ def test_a_replaced_method_is_refused() -> None:
 
 
 def test_a_class_without_source_is_refused() -> None:
-    scope: dict[str, Any] = {"Base": refused.Base}
+    scope: dict[str, Any] = {"Base": walk.Base}
     exec("class Typed(Base):\n    def change(self, action):\n        return 1.0\n", scope)  # noqa: S102
     with pytest.raises(NotCompilable, match=r"the source code of .*change is not available.*define the class"):
         rewrite(scope["Typed"]())
@@ -160,7 +191,7 @@ def test_lines_lead_to_the_users_file() -> None:
 
 
 def test_masks_that_depend_on_local_variables_are_refused_by_name() -> None:
-    class Masked(refused.Base):
+    class Masked(walk.Base):
         def step(self, action):
             mask = np.ones(3, dtype=np.int8)
             return self.observe(), 0.0, True, False, {"action_mask": mask}

@@ -123,6 +123,9 @@ def _bind_name(scope: "Statements", node: ast.stmt, name: str, value: Value) -> 
     scope.new_version(name, value.kind)
     scope.note_kind(name, value.kind, node)
     scope.mark_array(name, value)
+    version = scope.version(name)
+    scope.views[version] = scope.views.get(version, frozenset()) | value.views
+    scope.note_alias(value, node)
     scope.emit(f"{scope.version(name)} = {value.code}", node)
 
 

@@ -40,8 +40,8 @@ class Attributes:
         self.assigned: set[str] = set()
         self.read: set[str] = set()
         self.changed_in_place: set[str] = set()
-        self.shared: dict[str, Callable[[], NotCompilable]] = {}
-        """For each attribute that was assigned an array that another name refers to: the error if it is a fault."""
+        self.shared: list[tuple[set[str], Callable[[], NotCompilable]]] = []
+        """The attributes that share memory after an assignment, and the error if one of them is changed in place."""
         self._scan()
 
     def classes(self) -> Iterator[type]:
@@ -128,8 +128,25 @@ class Attributes:
 
     def check_sharing(self) -> None:
         """Refuses arrays that are changed in place while another name may refer to them."""
-        for name in sorted(self.changed_in_place & self.shared.keys()):
-            raise self.shared[name]()
+        for names, error in self.shared:
+            if names & self.changed_in_place:
+                raise error()
+        for name in sorted(self.changed_in_place):
+            for other in self._same_memory(name):
+                advice = f"copy it where it is assigned: self.{name} = self.{other}.copy()"
+                raise NotCompilable(
+                    f"self.{name} is changed in place, and shares memory with self.{other}", advice=advice
+                )
+
+    def _same_memory(self, name: str) -> Iterator[str]:
+        """Yields the other attributes that share memory with one, before or after the reset of the copy."""
+        for env in (self.env, self.twin):
+            value = getattr(env, name, None)
+            for other, one in getattr(env, "__dict__", {}).items():
+                both = isinstance(one, np.ndarray) and isinstance(value, np.ndarray)
+                same = np.shares_memory(one, value) if both else one is value and isinstance(value, list)
+                if other != name and same:
+                    yield other
 
     def record(self) -> tuple[np.dtype[Any], NDArray[Any]]:
         """Returns the type of the record, and the record before the first reset."""

@@ -79,7 +79,7 @@ def element(scope: "Expressions", node: ast.Subscript, base: Value) -> Value:
         return Value(scalar_of(dtype), converted(f"{source}[{code}]", scalar_of(dtype)), effects=base.effects)
     part = f"{source}[{code}]"
     kind = Array(dtype, left, shape)
-    return Value(kind, f"({part} != 0)", fresh=True) if base.raw else Value(kind, part)
+    return Value(kind, f"({part} != 0)" if base.raw else part, views=base.views)
 
 
 def array_index(scope: "Expressions", node: ast.Subscript, kind: Array) -> tuple[str, int, tuple[int, ...] | None]:

@@ -4,6 +4,7 @@ import ast
 import builtins
 import enum
 import operator
+from dataclasses import replace
 from typing import Any
 
 from qtab.compilation.rewriting import calls, containers, members, membership, specials
@@ -250,7 +251,8 @@ class Expressions(Scope):
             reason = f"{in_words(one.kind)} in one case, {in_words(other.kind)} in the other"
             raise self.refuse(node, reason, "use the same type in both")
         effects = test.effects or one.effects or other.effects
-        return Value(kind, f"({one.code} if {test.code} else {other.code})", effects=effects)
+        code = f"({one.code} if {test.code} else {other.code})"
+        return Value(kind, code, effects=effects, views=one.views | other.views)
 
     def _call(self, node: ast.Call) -> Value:
         return calls.call(self, node)
@@ -261,7 +263,9 @@ class Expressions(Scope):
         if is_read:
             self.flow.note_read(name)
         kind = self.program.attributes.kind(name, lambda reason, advice: self.refuse(node, reason, advice))
-        return self._loaded(name, kind)
+        value = self._loaded(name, kind)
+        shared = isinstance(kind, Array) or isinstance(getattr(self.program.attributes.twin, name), list)
+        return replace(value, views=frozenset([name])) if shared else value
 
     def _loaded(self, field: str, kind: Any) -> Value:
         if isinstance(kind, TupleKind):
@@ -269,8 +273,8 @@ class Expressions(Scope):
         code = f"record[{field!r}]"
         if isinstance(kind, Array):
             if kind.dtype == "bool":
-                return Value(kind, f"({code} != 0)", fresh=True, raw=code)
-            return Value(kind, f"{code}.copy()", fresh=True) if self.copies_state else Value(kind, code)
+                return Value(kind, f"({code} != 0)", raw=code)
+            return Value(kind, f"{code}.copy()") if self.copies_state else Value(kind, code)
         return Value(kind, converted(code, kind))
 
     def tuple_of(self, parts: list[Value], node: ast.AST, made: Any = tuple) -> Value:

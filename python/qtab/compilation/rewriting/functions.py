@@ -26,6 +26,8 @@ def called(
     program = scope.program
     given = {name: _argument(scope, node, value) for name, value in parameters.items()}
     compiled = compiled_function(program, source, owner, given, scope, node)
+    for value in given.values():
+        scope.note_alias(value, node, compiled)
     if compiled.draws and program.phase == "mask":
         raise scope.refuse(node, "an action mask draws random numbers", "draw in step, and keep the result in self")
     scope.compiled.uses.add(compiled.name)
@@ -40,7 +42,8 @@ def called(
     code = f"{compiled.name}({', '.join(first + codes)})"
     effects = compiled.draws or compiled.changes
     if not result.is_fixed:
-        return Value(result.kind, code, fresh=isinstance(result.kind, Array), effects=effects)
+        fresh = isinstance(result.kind, Array) and not result.views
+        return Value(result.kind, code, fresh=fresh, effects=effects, views=result.views)
     if result.fixed is None:
         return Value(None, code, fixed=None, effects=True)
     lifted = scope.lift(constant(result.fixed), node)

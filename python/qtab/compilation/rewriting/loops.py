@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from qtab.compilation.rewriting import assignments, containers, membership, specials
 from qtab.compilation.rewriting.program import converted
-from qtab.compilation.rewriting.scan import calls_own_functions, leaves_loop
+from qtab.compilation.rewriting.scan import calls_own_functions, changed_attributes, leaves_loop
 from qtab.compilation.rewriting.values import INT, Array, TupleKind, Value, constant, in_words, scalar_of
 from qtab.compilation.rewriting.variables import in_variables
 
@@ -21,7 +21,7 @@ def while_loop(scope: "Statements", node: ast.While) -> bool:
     if node.orelse:
         raise scope.refuse(node, "while with else", "use a boolean variable")
     scope.depth += 1
-    scope.copies_state = calls_own_functions(node.test)
+    scope.copies_state = scope.may_change_state(node.test)
     test = scope.test(node.test)
     scope.depth -= 1
     if test.is_fixed and not test.fixed:
@@ -47,7 +47,7 @@ def for_loop(scope: "Statements", node: ast.For) -> bool:
 
 
 def _range(scope: "Statements", node: ast.For, call: ast.Call) -> bool:
-    scope.copies_state = calls_own_functions(call)
+    scope.copies_state = scope.may_change_state(call)
     values = [scope.lifted(one) for one in call.args]
     if call.keywords or not 1 <= len(values) <= 3 or any(value.kind != INT for value in values):
         raise scope.refuse(call, "range with something other than integers", "write int(...)")
@@ -125,6 +125,8 @@ def _indexed(scope: "Statements", node: ast.For, items: list[Value], counted: bo
 def _array(scope: "Statements", node: ast.For, iterable: Value, counted: bool) -> bool:
     if iterable.kind.ndim != 1:
         raise scope.refuse(node.iter, f"a loop over {in_words(iterable.kind)}", "loop over the indices with range")
+    if calls_own_functions(ast.Module(node.body, [])) or iterable.views & changed_attributes(node.body):
+        scope.note_alias(iterable, node.iter)
     array = in_variables(scope, node, iterable)
     scalar = scalar_of(iterable.kind.dtype)
     element = converted(f"{array.code}[{{i}}]", scalar)

@@ -8,6 +8,7 @@ import numpy as np
 from qtab.compilation.rewriting import specials
 from qtab.compilation.rewriting.containers import MAX_CASES, elements
 from qtab.compilation.rewriting.operators import comparison
+from qtab.compilation.rewriting.scan import calls_own_functions
 from qtab.compilation.rewriting.values import BOOL, Scalar, TupleKind, Value, constant, in_words
 
 if TYPE_CHECKING:
@@ -67,6 +68,8 @@ def comprehension(scope: "Expressions", node: ast.ListComp | ast.GeneratorExp) -
         raise scope.refuse(node, "a comprehension with several loops", "write the loops as statements")
     generator = node.generators[0]
     items = elements(scope, node, scope.expression(generator.iter))
+    if calls_own_functions(node.elt) and not all(item.is_fixed for item in items):
+        raise scope.refuse(node, "a comprehension that calls functions with values that change", "write a loop")
     if len(items) > MAX_UNROLLED:
         raise scope.refuse(node, f"a comprehension over {len(items)} elements", "write a loop, or use NumPy")
     found: list[Value] = []

@@ -75,6 +75,8 @@ class Program:
         """Whether ``reset`` has called that of ``gymnasium.Env``."""
         self.depth = 0
         """How many branches and loops that are decided at run time are around the code."""
+        self.aliases: list[tuple[Compiled, frozenset[str], Callable[[], Exception]]] = []
+        """The variables that share memory with attributes, with their functions, and the errors if it matters."""
         self.stored: set[str] = set()
         """The attributes that functions assign."""
         self.compile_call: Callable[..., Value]
@@ -151,6 +153,12 @@ class Program:
         kind_name = type(fixed).__name__
         raise refuse(f"an object of type {kind_name} is used as a value", "use numbers, tuples and NumPy arrays")
 
+    def check_aliases(self) -> None:
+        """Refuses variables that would show changes of an attribute in Python, and do not in compiled code."""
+        for compiled, names, error in self.aliases:
+            if compiled.changes and names & self.attributes.changed_in_place:
+                raise error()
+
     def source(self, tops: list[str]) -> tuple[str, dict[int, tuple[str, int]]]:
         """Returns the program that the named functions need, and the user's lines of its lines."""
         needed: list[str] = []
@@ -211,4 +219,5 @@ def tuple_value(parts: tuple[Value, ...]) -> Value:
         f"({code},)" if code else "()",
         parts=parts,
         effects=any(part.effects for part in parts),
+        views=frozenset().union(*(part.views for part in parts)),
     )

@@ -88,6 +88,7 @@ def _attempt(env: gym.Env, attributes: Attributes) -> Rewritten:
     except NotCompilable as error:
         refusal = str(error)
     attributes.check_sharing()
+    program.check_aliases()
     source, lines = program.source(tops)
     dtype, initial = attributes.record()
     namespace: dict[str, Any] = {"__name__": "qtab_rewritten", "np": np, **runtime.HELPERS}
@@ -126,8 +127,8 @@ def _method(program: Program, name: str) -> Compiled:
     for one in names[1:]:
         if name == "step" and one == names[1]:
             values[one] = Value(INT, f"v_{one}", action=True)
-        elif name == "reset" and one in ("seed", "options"):
-            values[one] = constant(specials.SEED if one == "seed" else None)
+        elif name == "reset" and one == "seed":
+            values[one] = constant(specials.SEED)
         else:
             values[one] = _default(source, one, name)
     if arguments.vararg:
@@ -142,6 +143,8 @@ def _default(source: Any, parameter: str, method: str) -> Value:
     import inspect
 
     default = inspect.signature(source.function).parameters[parameter].default
+    if default is inspect.Parameter.empty and parameter == "options":
+        return constant(None)
     if default is inspect.Parameter.empty:
         advice = f"give {parameter} a default"
         raise NotCompilable(f"{method} has a parameter without default", source.file, source.node.lineno, advice)

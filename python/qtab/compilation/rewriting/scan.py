@@ -28,18 +28,6 @@ class Names:
         ]
         names = [one.id for one in stored] + [(alias.asname or alias.name.partition(".")[0]) for alias in imported]
         self.counts = Counter([*self.parameters, *names])
-        augmented = {
-            one.target.id for one in self._walk() if isinstance(one, ast.AugAssign) and isinstance(one.target, ast.Name)
-        }
-        in_loops = {
-            one.id
-            for loop in self._walk()
-            if isinstance(loop, LOOPS)
-            for one in ast.walk(loop)
-            if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)
-        }
-        self.single = {name for name, count in self.counts.items() if count == 1} - augmented - in_loops
-        """The names that are bound once, outside of loops: they may hold a constant."""
 
     def _walk(self) -> Iterator[ast.AST]:
         for statement in self.node.body:
@@ -128,6 +116,17 @@ def _of_library(function: ast.expr) -> bool:
 def calls_own_functions(node: ast.AST) -> bool:
     """Returns whether a statement calls something that may change the state: anything but NumPy, ``math``, builtins."""
     return any(isinstance(one, ast.Call) and not _of_library(one.func) for one in ast.walk(node))
+
+
+def changed_attributes(body: list[ast.stmt]) -> set[str]:
+    """Returns the names of attributes that statements assign, or whose elements they assign."""
+    found = set()
+    for statement in body:
+        for one in ast.walk(statement):
+            targets = one.targets if isinstance(one, ast.Assign) else []
+            for target in [one.target] if isinstance(one, ast.AugAssign | ast.AnnAssign) else targets:
+                found |= {part.attr for part in ast.walk(target) if isinstance(part, ast.Attribute)}
+    return found
 
 
 def info_names(node: ast.FunctionDef) -> set[str]:

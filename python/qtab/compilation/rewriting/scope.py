@@ -40,6 +40,8 @@ class Scope:
         self.kinds: dict[str, Kind] = {}
         self.fixed: dict[str, Value] = {}
         self.versions: dict[str, str] = {}
+        self.views: dict[str, frozenset[str]] = {}
+        """The attributes whose memory each local variable shares in Python."""
         self.owned: dict[str, bool] = {}
         """Whether each local array was made by the function, so that no other name refers to it."""
         self.dynamic: set[str] = set()
@@ -77,7 +79,8 @@ class Scope:
     def local(self, name: str) -> Value:
         """Returns a local variable."""
         version = self.version(name)
-        return Value(self.kinds[version], version, action=name in self.actions)
+        views = self.views.get(version, frozenset())
+        return Value(self.kinds[version], version, action=name in self.actions, views=views)
 
     def version(self, name: str) -> str:
         """Returns the variable of the program that holds a local variable now."""
@@ -110,6 +113,15 @@ class Scope:
         if isinstance(value.kind, Array):
             version = self.version(name)
             self.owned[version] = self.owned.get(version, True) and value.fresh
+
+    def note_alias(self, value: Value, node: ast.AST, compiled: Compiled | None = None) -> None:
+        """Notes that a variable, or a parameter of a called function, shares memory with attributes in Python."""
+        if value.views:
+            names = " and ".join(f"self.{name}" for name in sorted(value.views))
+            reason, advice = f"a variable shares the memory of {names}, which is changed in place", "write .copy()"
+            self.program.aliases.append(
+                (compiled or self.compiled, value.views, lambda: self.refuse(node, reason, advice))
+            )
 
     def is_owned(self, name: str) -> bool:
         """Returns whether no other name refers to a local array that was made by the function."""

@@ -48,6 +48,12 @@ class Statements(Displays):
         self.program.depth -= 1
         return ended
 
+    def may_change_state(self, node: ast.AST) -> bool:
+        """Returns whether a statement calls the user's functions or properties."""
+        names = {one.attr for one in ast.walk(node) if isinstance(one, ast.Attribute)}
+        find = self.program.attributes.find
+        return calls_own_functions(node) or any(isinstance(find(name)[0], property) for name in names)
+
     def statement(self, node: ast.stmt) -> bool:
         """Rewrites a statement; returns whether what follows cannot be reached."""
         kind = type(node).__name__
@@ -57,7 +63,7 @@ class Statements(Displays):
         if method is None:
             raise self.refuse(node, f"the statement {kind} cannot be compiled", "write it with if, for and while")
         simple = not isinstance(node, ast.If | ast.For | ast.While | ast.Match)
-        self.copies_state = simple and calls_own_functions(node)
+        self.copies_state = simple and self.may_change_state(node)
         result: bool = method(node)
         return result
 
@@ -122,6 +128,8 @@ class Statements(Displays):
         return False
 
     def _do_assert(self, node: ast.Assert) -> bool:
+        if not __debug__:
+            return False
         test = self.test(node.test)
         if test.is_fixed and test.fixed:
             return False
@@ -135,7 +143,7 @@ class Statements(Displays):
         return True
 
     def _do_if(self, node: ast.If) -> bool:
-        self.copies_state = calls_own_functions(node.test)
+        self.copies_state = self.may_change_state(node.test)
         test = self.test(node.test)
         if test.is_fixed:
             return self.block(node.body if test.fixed else node.orelse)
@@ -261,5 +269,5 @@ class Statements(Displays):
                 reason = f"the function returns {in_words(kind)}, and {in_words(lifted.kind)} here"
                 raise self.refuse(node, reason, "return the same type everywhere")
             kind = joined
-        fresh = isinstance(kind, Array)
-        return Value(kind, "", fresh=fresh)
+        views = frozenset[str]().union(*(value.views for value, _, _ in self.returns))
+        return Value(kind, "", fresh=isinstance(kind, Array) and not views, views=views)

@@ -47,9 +47,9 @@ def store(scope: "Statements", node: ast.stmt, name: str, value: Value) -> None:
     scope.flow.assigned.add(name)
     scope.program.stored.add(name)
     can_change = isinstance(kind, Array) or isinstance(getattr(known.twin, name), list)
-    if can_change and not value.fresh and (value.parts is None or scope.is_shared):
+    if can_change and not value.fresh and (value.parts is None or scope.is_shared or value.views):
         reason, advice = f"self.{name} shares memory that is changed in place", "write .copy() where it is assigned"
-        known.shared[name] = lambda: scope.refuse(node, reason, advice)
+        known.shared.append(({name, *value.views}, lambda: scope.refuse(node, reason, advice)))
     _store_field(scope, node, name, kind, value)
 
 

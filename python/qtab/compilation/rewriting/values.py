@@ -75,6 +75,8 @@ class Value:
     """Whether evaluating the code may change the state."""
     action: bool = False
     """Whether it is the action that ``step`` was given."""
+    views: frozenset[str] = frozenset()
+    """The attributes whose memory it shares in Python, such as that of ``self.board[0]``."""
     raw: str = ""
     """The code of the bytes of an array of booleans that is in the record."""
 

@@ -1,6 +1,7 @@
 """Values in variables of the program, so that their code is evaluated once."""
 
 import ast
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from qtab.compilation.rewriting.arrays import copied
@@ -27,13 +28,14 @@ def in_variables(scope: "Statements", node: ast.stmt, value: Value) -> Value:
     scope.temporaries += 1
     name = f"x_{scope.temporaries}"
     scope.emit(f"{name} = {kept(value).code}", node)
-    return Value(value.kind, name, fresh=value.fresh)
+    return Value(value.kind, name, fresh=value.fresh, views=value.views)
 
 
 def kept(value: Value) -> Value:
     """Returns a value for a name: arrays of the record and parts of arrays are copied."""
     if isinstance(value.kind, Array) and not (value.fresh or value.frozen or value.code.isidentifier()):
-        return Value(value.kind, copied(value).code, effects=value.effects)
+        return Value(value.kind, copied(value).code, effects=value.effects, views=value.views)
     if value.parts is not None and any(part.kind != INFO for part in value.parts):
-        return tuple_value(tuple(kept(part) for part in value.parts))
+        made = tuple_value(tuple(kept(part) for part in value.parts))
+        return replace(made, views=made.views | value.views)
     return value
