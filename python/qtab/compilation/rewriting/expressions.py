@@ -7,7 +7,7 @@ import operator
 from dataclasses import replace
 from typing import Any
 
-from qtab.compilation.rewriting import calls, containers, members, membership, specials
+from qtab.compilation.rewriting import calls, containers, members, membership, specials, vectors
 from qtab.compilation.rewriting.operators import COMPARISONS, SYMBOLS, binary, comparison, unary
 from qtab.compilation.rewriting.program import converted, tuple_value
 from qtab.compilation.rewriting.scope import Scope
@@ -132,7 +132,8 @@ class Expressions(Scope):
         parts = left.parts + right.parts if left.parts and right.parts and isinstance(kind, TupleKind) else None
         if parts:
             return tuple_value(parts)
-        return Value(kind, f"({left.code} {symbol} {right.code})", fresh=True, effects=left.effects or right.effects)
+        code = vectors.code(self, symbol, left, right, kind) or f"({left.code} {symbol} {right.code})"
+        return Value(kind, code, fresh=True, effects=left.effects or right.effects)
 
     def folded(self, node: ast.AST, function: Any, *values: Any) -> Value:
         """Returns the result of a function of constants."""
@@ -214,7 +215,8 @@ class Expressions(Scope):
         kind = comparison(symbol, left, right)
         if isinstance(kind, tuple):
             raise self.refuse(node, *kind)
-        return Value(kind, f"({left.code} {symbol} {right.code})", fresh=True, effects=left.effects or right.effects)
+        code = vectors.code(self, symbol, left, right, kind) or f"({left.code} {symbol} {right.code})"
+        return Value(kind, code, fresh=True, effects=left.effects or right.effects)
 
     def _chain(self, node: ast.Compare, operands: list[Value]) -> Value:
         lifted = [self.lift(value, node) for value in operands]

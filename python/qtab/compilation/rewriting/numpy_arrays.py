@@ -101,5 +101,6 @@ def array_equal(scope: "Expressions", node: ast.Call, values: list[Value], named
         raise scope.refuse(node, "np.array_equal of numbers", "write ==")
     if one.kind.ndim != other.kind.ndim or one.kind.dtype != other.kind.dtype:
         raise scope.refuse(node, "np.array_equal of arrays of two dtypes or dimensions", "convert with .astype first")
-    scope.compiled.uses.add("h_equal")
-    return Value(BOOL, f"bool(h_equal({one.code}, {other.code}))", effects=one.effects or other.effects)
+    helper = "h_equal_vectors" if one.kind.ndim == 1 else "h_equal"
+    scope.compiled.uses.add(helper)
+    return Value(BOOL, f"bool({helper}({one.code}, {other.code}))", effects=one.effects or other.effects)

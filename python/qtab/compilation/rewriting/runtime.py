@@ -34,6 +34,49 @@ def h_clip_arrays(values: Any, low: Any, high: Any) -> Any:
     return clipped
 
 
+def h_clip_vector(values: Any, low: Any, high: Any) -> Any:
+    """``np.clip`` for a vector, with numbers as bounds; a loop compiles faster than functions of arrays."""
+    clipped = np.empty(values.shape[0], values.dtype)
+    for i in range(values.shape[0]):
+        clipped[i] = h_clip(values[i], low, high)
+    return clipped
+
+
+def h_clip_vectors(values: Any, low: Any, high: Any) -> Any:
+    """``np.clip`` for a vector, with vectors of its length as bounds."""
+    clipped = np.empty(values.shape[0], values.dtype)
+    for i in range(values.shape[0]):
+        clipped[i] = h_clip(values[i], low[i], high[i])
+    return clipped
+
+
+def h_store_vector(field: Any, values: Any) -> None:
+    """Assigns a vector to an attribute; its length must stay the same."""
+    if field.shape[0] != values.shape[0]:
+        raise ValueError
+    for i in range(values.shape[0]):
+        field[i] = values[i]
+
+
+def h_store_matrix(field: Any, values: Any) -> None:
+    """Assigns a matrix to an attribute; its shape must stay the same."""
+    if field.shape[0] != values.shape[0] or field.shape[1] != values.shape[1]:
+        raise ValueError
+    for i in range(values.shape[0]):
+        for j in range(values.shape[1]):
+            field[i, j] = values[i, j]
+
+
+def h_equal_vectors(one: Any, other: Any) -> Any:
+    """``np.array_equal`` of two vectors."""
+    if one.shape[0] != other.shape[0]:
+        return False
+    for i in range(one.shape[0]):  # noqa: SIM110 - for Numba
+        if one[i] != other[i]:
+            return False
+    return True
+
+
 def h_store(field: Any, values: Any) -> None:
     """Assigns an array to an attribute; its shape must stay the same."""
     if field.shape != values.shape:

@@ -60,8 +60,9 @@ def _store_field(scope: "Statements", node: ast.stmt, field: str, kind: Any, val
         for i, item in enumerate(kind.items):
             _store_field(scope, node, f"{field}.{i}", item, scope.element(value, i))
     elif isinstance(kind, Array):
-        scope.compiled.uses.add("h_store")
-        scope.emit(f"h_store(record[{field!r}], {value.code})", node)
+        helper = {1: "h_store_vector", 2: "h_store_matrix"}.get(kind.ndim, "h_store")
+        scope.compiled.uses.add(helper)
+        scope.emit(f"{helper}(record[{field!r}], {value.code})", node)
     else:
         scope.emit(f"record[{field!r}] = {value.code}", node)
 
