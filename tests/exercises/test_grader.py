@@ -137,7 +137,7 @@ def test_a_mistake_is_recognised_behind_another_rounding() -> None:
     report = check("q_learning", rounded)
     assert report.mistakes == (MISTAKES["truncation"],)
     assert not report.recognition.exact
-    assert "gives the same numbers as your function in all checks, except for rounding:" in str(report)
+    assert "gives the same numbers as your function in all checks, except for rounding:" in report.recognition.lines[0]
 
 
 def test_only_finished_checks_are_compared_with_mistakes() -> None:
@@ -148,7 +148,7 @@ def test_only_finished_checks_are_compared_with_mistakes() -> None:
 
     report = check("sarsa", stops)
     assert report.mistakes == (MISTAKES["swapped_rates"],)
-    assert "in the checks that it finished:" in str(report)
+    assert "in the checks that it finished:" in report.recognition.lines[0]
 
 
 def broken(function: Callable[..., Any], message: str, name: str = "sarsa", seconds: float = 10.0) -> None:

@@ -120,7 +120,7 @@ def equal(mine: Any, other: Any, exact: bool) -> bool:
 def _entries(quantity: str, mine: Any, other: Any, before: Any) -> Iterator[str]:
     """Yields a line for each of the first differing entries, with their value ``before``, if that is known."""
     if isinstance(other, dict):
-        yield "yours drew other random numbers, or another number of them, than the reference up to this point"
+        yield "it drew other random numbers than the reference, or more or fewer"
         return
     if not isinstance(other, np.ndarray):
         yield f"yours {mine}, reference {other}"

@@ -31,7 +31,7 @@ class Transition:
     def __str__(self) -> str:
         action = self.env.action_name(self.action)
         before, after = self.env.in_words(self.observation), self.env.in_words(self.next_observation)
-        return f"state {before}; action {action}; reward {self.reward:g}; next state {after}{self.ending}"
+        return f"state {before}; action {action}; reward {self.reward:g}\nnext state {after}{self.ending}"
 
 
 class RecordingEnv(gym.Wrapper[Any, Any, Any, Any]):
