@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import qtab
-from qtab.exercises import EXERCISES, check, find
+from qtab.exercises import EXERCISES, check, find, time_limit
 from qtab.exercises.mistakes import MISTAKES
 
 SARSA = find("sarsa").model
@@ -209,6 +209,16 @@ def test_a_loop_without_an_end_is_stopped(in_thread: bool) -> None:
     assert done == [True]
 
 
+def test_without_signals_a_second_thread_stops_a_loop() -> None:
+    def loop() -> None:
+        while True:
+            pass
+
+    with pytest.raises(time_limit.TimeIsUp):
+        time_limit._by_thread(0.1, loop, ())
+    assert time_limit._by_thread(10.0, max, (1, 2)) == 2
+
+
 @pytest.mark.parametrize(
     ("function", "message"),
     [
@@ -241,6 +251,8 @@ def test_global_generators_are_reported_and_left_as_they_were() -> None:
     broken(python, "it uses Python's global generator")
     assert np.array_equal(np.random.get_state()[1], numpy_before)  # type: ignore[index]  # noqa: NPY002
     assert random.getstate() == python_before
+    report = check("epsilon_greedy", lambda values, epsilon, rng: np.random.randint(5))  # noqa: NPY002
+    assert str(report).count("NumPy's global generator") == len(report.results)  # once in each check
 
 
 def test_a_copied_table_and_an_unused_generator_are_remarked() -> None:

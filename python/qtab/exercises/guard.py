@@ -38,11 +38,17 @@ def guarded(function: Callable[..., Any], arguments: Sequence[Any], record: Reco
         raise Misuse(f"it raised {_named(error)}{_line(function, error)}") from None
     finally:
         if not _same_state(numpy_before, np.random.get_state(legacy=False)):  # noqa: NPY002
-            record.faults.append(GLOBAL_NUMPY)
+            _add(record, GLOBAL_NUMPY)
             np.random.set_state(numpy_before)  # noqa: NPY002
         if random.getstate() != python_before:
-            record.faults.append(GLOBAL_PYTHON)
+            _add(record, GLOBAL_PYTHON)
             random.setstate(python_before)
+
+
+def _add(record: Record, fault: str) -> None:
+    """Adds a fault, unless an earlier call of the check had it."""
+    if fault not in record.faults:
+        record.faults.append(fault)
 
 
 def check_parameters(function: Callable[..., Any], count: int) -> None:
