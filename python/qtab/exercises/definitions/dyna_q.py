@@ -12,6 +12,7 @@ from qtab.exercises.parts import NONE, POLICY, UPDATE, Mistakes, epsilon_greedy,
 STARTER = '''\
 import numpy as np
 
+
 def dyna_q(env, q, episodes, planning_steps, learning_rate, discount, epsilon, rng):
     """Learn by Dyna-Q: change q in place.
 

@@ -14,6 +14,7 @@ from qtab.exercises.parts import NONE, POLICY, Mistakes
 STARTER = '''\
 import numpy as np
 
+
 def epsilon_greedy(values, epsilon, rng):
     """Return the number of an action.
 

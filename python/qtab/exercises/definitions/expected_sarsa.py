@@ -12,6 +12,7 @@ from qtab.exercises.parts import NONE, POLICY, UPDATE, Mistakes, epsilon_greedy,
 STARTER = '''\
 import numpy as np
 
+
 def expected_sarsa(env, q, episodes, learning_rate, discount, epsilon, rng):
     """Learn by Expected Sarsa: change q in place after each step.
 

@@ -12,6 +12,7 @@ from qtab.exercises.parts import NONE, POLICY, Mistakes, epsilon_greedy
 STARTER = '''\
 import numpy as np
 
+
 def monte_carlo(env, q, episodes, discount, epsilon, rng):
     """Learn by first-visit Monte Carlo control: change q in place after each episode.
 

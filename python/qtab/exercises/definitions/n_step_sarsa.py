@@ -12,6 +12,7 @@ from qtab.exercises.parts import NONE, POLICY, UPDATE, Mistakes, epsilon_greedy,
 STARTER = '''\
 import numpy as np
 
+
 def n_step_sarsa(env, q, episodes, n, learning_rate, discount, epsilon, rng):
     """Learn by n-step Sarsa: change q in place.
 

@@ -14,6 +14,7 @@ from qtab.exercises.parts import NONE, Mistakes
 STARTER = '''\
 import numpy as np
 
+
 def policy_evaluation(P, policy, values, discount):
     """Make one sweep of policy evaluation; return the new values, of shape (states,).
 

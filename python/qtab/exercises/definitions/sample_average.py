@@ -13,6 +13,7 @@ from qtab.exercises.parts import NONE, Mistakes
 STARTER = '''\
 import numpy as np
 
+
 def sample_average(estimates, counts, action, reward):
     """Learn from one reward of a bandit: change estimates and counts in place.
 

@@ -13,9 +13,8 @@ from qtab.exercises.parts import NONE, POLICY, UPDATE, Mistakes, epsilon_greedy,
 STARTER = '''\
 import numpy as np
 
-def sarsa_lambda(
-    env, features, w, episodes, learning_rate, discount, trace_decay, epsilon, rng
-):
+
+def sarsa_lambda(env, features, w, episodes, learning_rate, discount, trace_decay, epsilon, rng):
     """Learn by Sarsa(lambda) with accumulating traces: change w in place.
 
     The values of an observation are w[rows].sum(axis=0), of shape (actions,), where

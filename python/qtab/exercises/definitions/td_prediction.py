@@ -12,6 +12,7 @@ from qtab.exercises.parts import NONE, UPDATE, Mistakes, move, nothing_follows, 
 STARTER = '''\
 import numpy as np
 
+
 def td_prediction(env, values, policy, episodes, learning_rate, discount):
     """Estimate the values of a policy by TD(0): change values in place.
 

@@ -14,6 +14,7 @@ from qtab.exercises.parts import NONE, Mistakes
 STARTER = '''\
 import numpy as np
 
+
 def value_iteration(P, discount, tolerance):
     """Find the optimal values, and return (values, policy).
 
