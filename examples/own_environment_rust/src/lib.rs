@@ -47,7 +47,10 @@ impl Env for Shop {
     }
 
     fn reset(&self, rng: &mut Generator<'_>) -> Evening {
-        Evening { stock: rng.integers(0, self.capacity + 1), day: rng.integers(0, 7) }
+        Evening {
+            stock: rng.integers(0, self.capacity + 1),
+            day: rng.integers(0, 7),
+        }
     }
 
     fn step(&self, state: &Evening, action: usize, rng: &mut Generator<'_>) -> Step<Evening> {
@@ -57,7 +60,14 @@ impl Env for Shop {
         let stock = state.stock + order - sold;
         let spent = self.cost * order as f64 + if order > 0 { self.delivery } else { 0.0 };
         let reward = self.price * sold as f64 - spent - self.storage * stock as f64;
-        Step::new(Evening { stock, day: (state.day + 1) % 7 }, reward, false)
+        Step::new(
+            Evening {
+                stock,
+                day: (state.day + 1) % 7,
+            },
+            reward,
+            false,
+        )
     }
 
     fn observe(&self, state: &Evening, observation: &mut [i64]) {
@@ -72,4 +82,11 @@ impl Env for Shop {
     }
 }
 
-export_env!(Shop { capacity: 12, largest_order: 8, price: 3.0, cost: 1.0, delivery: 1.5, storage: 0.125 });
+export_env!(Shop {
+    capacity: 12,
+    largest_order: 8,
+    price: 3.0,
+    cost: 1.0,
+    delivery: 1.5,
+    storage: 0.125
+});
