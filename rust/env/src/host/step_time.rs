@@ -4,17 +4,21 @@ use std::time::{Duration, Instant};
 
 use super::{BitGenerator, Ending, Environment, Episode, RandomBits};
 
-/// The time of a step, from `steps` steps with the first available action. Zero if it cannot be measured, as memory does
-/// not suffice or a function fails.
+/// A time after which no further step is measured.
+const LONG: Duration = Duration::from_millis(1);
+
+/// The time of a step, from at most `steps` steps with the first available action, and only one if it takes a
+/// millisecond. Zero if it cannot be measured, as memory does not suffice or a function fails.
 pub fn step_time(environment: &Environment, steps: u32, rng: &mut impl BitGenerator) -> Duration {
-    total(environment, steps, rng).unwrap_or(Duration::ZERO) / steps.max(1)
+    measured(environment, steps, rng).unwrap_or(Duration::ZERO)
 }
 
-fn total(environment: &Environment, steps: u32, rng: &mut impl BitGenerator) -> Option<Duration> {
+fn measured(environment: &Environment, steps: u32, rng: &mut impl BitGenerator) -> Option<Duration> {
     let mut episode = Episode::new(environment).ok()?;
     let mut is_over = true;
+    let mut taken = 0;
     let start = Instant::now();
-    for _ in 0..steps {
+    while taken < steps && start.elapsed() < LONG {
         if is_over {
             episode.reset(&mut RandomBits::new(rng)).ok()?;
         }
@@ -22,6 +26,7 @@ fn total(environment: &Environment, steps: u32, rng: &mut impl BitGenerator) -> 
         let action = if masked { episode.action_mask().iter().position(|&byte| byte == 1)? } else { 0 };
         let (_, ending) = episode.step(action, &mut RandomBits::new(rng)).ok()?;
         is_over = ending != Ending::Continues;
+        taken += 1;
     }
-    Some(start.elapsed())
+    Some(start.elapsed() / taken.max(1))
 }

@@ -3,10 +3,14 @@
 use std::collections::TryReserveError;
 use std::error::Error;
 use std::fmt::{self, Display, Formatter};
+use std::time::{Duration, Instant};
 
 use super::{BitGenerator, CallError, Ending, Environment, Episode, RandomBits};
 use crate::Number;
 use crate::table::{FLOAT32, FLOAT64};
+
+/// The time after which a trial takes no further step.
+const LONGEST: Duration = Duration::from_secs(1);
 
 /// A rule of the interface that a function broke in a trial.
 #[derive(Clone, Debug, PartialEq)]
@@ -85,6 +89,7 @@ impl From<TryReserveError> for TrialError {
 }
 
 /// Plays `steps` steps with random actions, drawn from `rng`, and checks after each call what the functions have written.
+/// It stops after a second, as a step may take long.
 ///
 /// # Errors
 /// The first rule that a function broke.
@@ -117,7 +122,11 @@ impl<'a, T: Number> Trial<'a, T> {
     fn play(&mut self, steps: usize, rng: &mut (impl BitGenerator + Clone)) -> Result<(), TrialError> {
         let mut actions = rng.clone();
         let mut is_over = true;
+        let start = Instant::now();
         for _ in 0..steps {
+            if start.elapsed() > LONGEST {
+                break;
+            }
             if is_over {
                 self.episode.reset(&mut RandomBits::new(rng))?;
                 self.check("reset", false)?;
