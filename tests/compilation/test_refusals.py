@@ -81,6 +81,16 @@ class DrawsUnknown(Base):
         return len(rng.bytes(4))  # here
 
 
+class Clips(Base):
+    def transition(self, state: Any, action: int, rng: np.random.Generator) -> Any:
+        return float(np.clip(state + action, 0.0, 1.0)), 0.0, False  # here
+
+
+class CallsItsBase(Base):
+    def transition(self, state: Any, action: int, rng: np.random.Generator) -> Any:
+        return super().transition(state, action, rng)  # here
+
+
 class Powers(Base):
     def initial_state(self, rng: np.random.Generator) -> Any:
         return np.array([rng.random()])
@@ -139,9 +149,11 @@ REFUSED: list[tuple[type[Base], str]] = [
     (GlobalGenerator, r"np.random.random\(\) does not draw from the generator of the environment; draw from rng"),
     (StandardGenerator, r"random.random\(\) does not draw from the generator of the environment; draw from rng"),
     (ChangesItself, "self.count changes the environment; keep in the state what changes"),
-    (ChangesAnArray, "Numba: Cannot modify readonly array.*; copy the array first, and return the copy"),
+    (ChangesAnArray, "Numba: an array of the state, or of self, is changed; copy the array first, and return the copy"),
     (ReadsADict, "self.rewards contains a value of type dict"),
     (DrawsUnknown, "Unknown attribute 'bytes' of type NumPyRandomGeneratorType"),
+    (Clips, r"Numba: clip\(float64, float64, float64\) is not available; write min\(max\(x, low\), high\)"),
+    (CallsItsBase, r"super\(\) cannot be compiled; call a method of another name"),
     (Powers, r"with seed \d, in episode \d, step \d+, the reward is .* in compiled code and .* in Python, probably by"),
     (Exponentials, r"probably by np.exp\(state \* 3\); write math.exp"),
 ]

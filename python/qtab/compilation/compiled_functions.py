@@ -1,5 +1,6 @@
 """Compilation of Python functions together with the plain Python functions that they call."""
 
+import contextlib
 from types import CellType, FunctionType, ModuleType
 from typing import Any
 
@@ -38,7 +39,8 @@ class FunctionCompiler:
             for name in names & function.__globals__.keys():
                 used[name] = self._replaced(function.__globals__[name])
             for cell, old in zip(cells, function.__closure__ or (), strict=True):
-                cell.cell_contents = self._replaced(old.cell_contents)
+                with contextlib.suppress(ValueError):  # it is empty
+                    cell.cell_contents = self._replaced(old.cell_contents)
         return self._dispatchers[function]
 
     def method(self, function: FunctionType, static: bool) -> Any:

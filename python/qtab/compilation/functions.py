@@ -7,6 +7,9 @@ from typing import Any
 METHODS = ("initial_state", "transition", "observe", "action_mask")
 """The methods of a functional environment that are compiled."""
 
+LIBRARIES = ("numpy", "numba", "math")
+"""Modules whose functions Numba implements itself."""
+
 
 def methods_of(env: Any) -> dict[str, FunctionType]:
     """Returns the functions of ``METHODS`` that an environment has."""
@@ -66,9 +69,11 @@ def used_values(function: FunctionType) -> Iterator[tuple[str, Any]]:
 
 
 def plain(function: Any) -> FunctionType | None:
-    """Returns the Python function of a function or of one that Numba compiles; None for other values."""
+    """Returns the user's function, also of one that Numba compiles; None for other values."""
     inner = getattr(function, "py_func", function)
-    return inner if isinstance(inner, FunctionType) else None
+    if not isinstance(inner, FunctionType) or str(inner.__module__).partition(".")[0] in LIBRARIES:
+        return None
+    return inner
 
 
 def _called(function: FunctionType, cls: type) -> Iterator[FunctionType]:

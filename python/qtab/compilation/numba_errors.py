@@ -29,11 +29,11 @@ _NOISE = (
     "Rejected as the implementation raised a specific error:",
 )
 _ADVICE = (
+    (">>> clip(float64", "write min(max(x, low), high)"),
     ("Unknown attribute", "use numbers, tuples and arrays, and functions of math and NumPy"),
     ("Cannot modify readonly array", "copy the array first, and return the copy"),
     ("Cannot unify", "give the variable values of one type"),
     ("Untyped global name", "use numbers, tuples, arrays and functions"),
-    ("super", "call the base class's function by another name"),
 )
 
 
@@ -49,7 +49,8 @@ def not_compilable(error: Exception, files: Iterable[str]) -> NotCompilable:
     file, line = None, None
     for found in _PLACE.finditer(text):
         name, number = found[1] or found[3], found[2] or found[4]
-        match = next((one for one in known if one.endswith(name.lstrip(".")) or one == name), None)
+        short = re.sub(r"^(?:\.\.?[/\\])+", "", name)  # Numba shortens the paths of files
+        match = next((one for one in known if one.endswith(short)), None)
         if match is not None:
             file, line = match, int(number)
             break
@@ -59,9 +60,14 @@ def not_compilable(error: Exception, files: Iterable[str]) -> NotCompilable:
 
 
 def _reason(text: str) -> str:
+    if "Cannot modify readonly array" in text:
+        return "an array of the state, or of self, is changed"
+    if (call := re.search(r"No implementation of function.*\n[ \n]*>>> (.*)\n", text)) is not None:
+        return f"{call[1]} is not available"
     lines = [line.strip() for line in text.splitlines()]
     useful = [line for line in lines if line and not line.startswith(_NOISE)]
     # The reason of the innermost failure is the most specific one, as in "TypingError: self.rewards is a dict".
     specific = [line.partition(": ")[2] for line in useful if line.startswith(("TypingError: ", "NumbaTypeError: "))]
+    specific = [line for line in specific if not line.startswith(_NOISE)]
     chosen = (specific or useful or [text or "no reason given"])[0]
     return chosen if len(chosen) <= 160 else chosen[:157] + "..."

@@ -93,6 +93,8 @@ def _refused(node: ast.AST) -> tuple[str, str] | None:
         name = _dotted(node)
         if isinstance(node.ctx, ast.Store | ast.Del) and name.startswith("self."):
             return "changes the environment", "keep in the state what changes"
+    if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "super":
+        return "cannot be compiled", "call a method of another name"
     if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
         if _dotted(node.func).startswith(("np.random.", "numpy.random.", "random.")):
             return "does not draw from the generator of the environment", "draw from rng"
