@@ -10,7 +10,6 @@ pub const MAX_SWEEPS: u64 = 200_000;
 
 /// The reason why planning found no solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum PlanningError {
     /// The caller set the stop flag.
     Stopped,

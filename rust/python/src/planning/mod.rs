@@ -42,6 +42,8 @@ fn of_any_method(error: PlanningError) -> Option<PyErr> {
         PlanningError::Stopped => Some(PyKeyboardInterrupt::new_err(())),
         PlanningError::OutOfMemory { bytes } => Some(out_of_memory(bytes)),
         PlanningError::Overflow(_) => Some(PyOverflowError::new_err(format!("rewards must be smaller: {error}"))),
-        _ => None,
+        PlanningError::NotConverged { .. } | PlanningError::NoProperPolicy(_) | PlanningError::UnboundedReturn(_) => {
+            None
+        }
     }
 }
