@@ -2,7 +2,9 @@
  *
  * A library exports one function, `const qtab_env *qtab_env_1(void)`, and `qtab.NativeEnv("libmy_env.so")` trains on it.
  * The functions keep nothing between calls: the state is memory of the caller, and random numbers come from the
- * generator that the caller passes. Several threads call them at the same time.
+ * generator that the caller passes. Several threads call them at the same time. `observation` and `action_mask` are never
+ * NULL; their bytes may be those of an earlier state. A terminal state needs no action mask. A step that returns both
+ * QTAB_TERMINATED and QTAB_TRUNCATED counts as terminated.
  */
 #ifndef QTAB_ENV_H
 #define QTAB_ENV_H

@@ -8,9 +8,12 @@ use crate::{Generator, Number};
 /// random numbers only from the generator that they receive, and are called on several threads at the same time. A
 /// function that panics ends the run with an error. This needs `panic = "unwind"`, Cargo's default.
 pub trait Env: Send + Sync + 'static {
-    /// The state of an episode: a number, an array, a tuple, or a struct that derives `Clone` and `Copy`, without
-    /// references. Its bytes are stored when a run is saved within an episode, and only this build of the library may
-    /// read them. Its alignment is at most 16.
+    /// The state of an episode: a number, an array, a tuple, or a struct that derives `Clone` and `Copy`. Its alignment
+    /// is at most 16.
+    ///
+    /// Its bytes are stored when a run is saved within an episode, and another process restores them, so that a state
+    /// contains no references or pointers to functions. Only this build of the library may read them. Bytes of padding
+    /// are stored as well; they may differ between equal states.
     type State: Copy + Send + 'static;
 
     /// The type of an observation's numbers: `f32`, `f64` or `i64`. Observations of one `i64` are a Discrete space.

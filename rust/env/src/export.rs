@@ -73,7 +73,7 @@ fn table_of<E: Env>(env: E) -> Table {
         struct_size: size_of::<Table>() as u32,
         state_size: size_of::<E::State>() as u64,
         observation_type: E::Number::TYPE,
-        observation_size: exposed.observation_size as u32,
+        observation_size: exposed.observation_size.try_into().unwrap_or(u32::MAX),
         observation_low: leaked(|bounds| bounds.0.to_f64()),
         observation_high: leaked(|bounds| bounds.1.to_f64()),
         num_actions: exposed.num_actions.try_into().unwrap_or(i64::MAX),

@@ -21,7 +21,7 @@ pub const CONTINUES: i32 = 0;
 pub const TERMINATED: i32 = 1;
 /// `QTAB_TRUNCATED`: the episode was cut off.
 pub const TRUNCATED: i32 = 2;
-/// `QTAB_FAILED`: the function failed, and what it wrote is void.
+/// `QTAB_FAILED`: the function failed, and its output is ignored.
 pub const FAILED: i32 = -1;
 
 /// `qtab_bitgen`, a random generator: the `bitgen_t` of `NumPy`.

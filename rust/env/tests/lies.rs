@@ -49,7 +49,7 @@ fn wrong_numbers_are_told_by_the_name_of_their_field() {
             "observation_low",
             Table { observation_low: right.observation_high, observation_high: right.observation_low, ..right },
         ),
-        ("observation_low", Table { observation_high: infinite.as_ptr(), ..right }),
+        ("observation_high", Table { observation_high: infinite.as_ptr(), ..right }),
     ];
     for (field, table) in &wrong {
         match checked(table) {

@@ -33,7 +33,8 @@ def external_env(env: gym.Env, backend: str) -> _core.ExternalEnv | None:
     Raises:
         NotInRustError: if Rust cannot step the environment.
         TypeError: if the method returns something other than a capsule.
-        ValueError: if the capsule does not hold an environment of this version, or its sizes are wrong.
+        ValueError: if the capsule does not hold an environment of this version, its sizes are wrong, or its time limit
+            is not the attribute ``max_episode_steps``.
     """
     if not has_capsule(env):
         return _compiled_class(env) if backend == "numba" else None
@@ -43,7 +44,11 @@ def external_env(env: gym.Env, backend: str) -> _core.ExternalEnv | None:
         if (name := next((name for name in ("reset", "step") if name in vars(base)), None)) is not None:
             raise NotInRustError(f"its class {base.__name__} overrides {name}", "leave reset and step as they are")
     failed = getattr(unwrapped, "__qtab_env_failed__", None)
-    return _core.ExternalEnv(unwrapped.__qtab_env__(), None if failed is None else _failure_handler(failed))
+    external = _core.ExternalEnv(unwrapped.__qtab_env__(), None if failed is None else _failure_handler(failed))
+    limit = external.max_episode_steps
+    if limit is not None and (own := getattr(unwrapped, "max_episode_steps", None)) != limit:
+        raise ValueError(f"max_episode_steps of the environment must be {limit}, as in its capsule, got {own}")
+    return external
 
 
 def _compiled_class(env: gym.Env) -> _core.ExternalEnv:

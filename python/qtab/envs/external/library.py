@@ -16,6 +16,8 @@ from qtab.envs.external.trial import capsule_in, check_for_crash, try_out
 _lock = threading.Lock()
 _loaded: dict[str, "Library"] = {}
 """The libraries loaded by this process, by the digest of their content."""
+_in_place: dict[str, str] = {}
+"""The digests of the libraries of which no copy could be loaded, by their paths."""
 
 
 @dataclass(frozen=True)
@@ -48,32 +50,56 @@ def load(path: "str | os.PathLike[str]") -> Library:
     file = Path(path)
     if not file.is_file():
         raise FileNotFoundError(f"path must be that of a shared library, but there is no file {str(file)!r}")
-    digest = hashlib.sha256(file.read_bytes()).hexdigest()[:32]
+    content = file.read_bytes()
+    digest = hashlib.sha256(content).hexdigest()[:32]
     with _lock:
         if digest not in _loaded:
-            _loaded[digest] = _load(file, digest)
+            _loaded[digest] = _load(file, content, digest)
         return _loaded[digest]
 
 
-def _load(file: Path, digest: str) -> Library:
+def load_again(path: str, digest: str) -> Library:
+    """Loads the library that had a digest, perhaps in another process.
+
+    Args:
+        path: Its path.
+        digest: The digest of its content.
+
+    Raises:
+        FileNotFoundError: if there is no such file.
+        ValueError: if it was compiled again since.
+    """
+    library = _loaded.get(digest) or load(path)
+    if library.digest != digest:
+        raise ValueError(f"{path} was compiled again since the environment was copied or pickled")
+    return library
+
+
+def _load(file: Path, content: bytes, digest: str) -> Library:
     try:
         check_for_crash(_core.__file__, file.resolve())
-        capsule = capsule_in(_load_copy(file))
+        capsule = capsule_in(_load_copy(file.resolve(), content, digest))
         return Library(digest, capsule, try_out(_core, capsule))
     except ValueError as error:
         raise ValueError(f"{file} cannot be used: {error}") from None
 
 
-def _load_copy(file: Path) -> ctypes.CDLL:
-    folder = tempfile.mkdtemp(prefix="qtab-")
+def _load_copy(file: Path, content: bytes, digest: str) -> ctypes.CDLL:
+    folder = Path(tempfile.mkdtemp(prefix="qtab-"))
     try:
-        copy = shutil.copy(file, folder)
-        return ctypes.CDLL(copy)
+        copy = folder / file.name
+        copy.write_bytes(content)
+        return ctypes.CDLL(str(copy))
     except OSError:
         pass  # it may need other files beside it, or the temporary folder does not allow code
     finally:
         shutil.rmtree(folder, ignore_errors=True)  # Windows keeps the file until the process ends
+    if _in_place.get(str(file), digest) != digest:
+        # The system would return the functions that are loaded already.
+        raise ValueError("it was compiled again, and this process still has its earlier version: start Python again")
     try:
-        return ctypes.CDLL(str(file.resolve()))
+        library = ctypes.CDLL(str(file))
     except OSError as error:
         raise ValueError(f"it must be a shared library that this machine can load: {error}") from None
+    _in_place[str(file)] = digest
+    return library

@@ -1,7 +1,9 @@
 """``qtab.NativeEnv``: an environment in a shared library, written in C, Rust or another compiled language."""
 
+import operator
 import os
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import gymnasium as gym
@@ -11,7 +13,7 @@ from gymnasium.error import ResetNeeded
 
 from qtab import _core
 from qtab.envs.class_code import LIBRARY, class_code
-from qtab.envs.external.library import load
+from qtab.envs.external.library import load, load_again
 
 
 class NativeEnv(gym.Env[Any, Any]):
@@ -65,7 +67,9 @@ class NativeEnv(gym.Env[Any, Any]):
 
     @property
     def state(self) -> bytes:
-        """The state of the episode: ``state_size`` bytes, whose meaning is the library's. It can be set, too.
+        """The state of the episode: ``state_size`` bytes, whose meaning is the library's.
+
+        It can be set to bytes that it had before. The library is not protected from other bytes.
 
         Raises:
             gymnasium.error.ResetNeeded: before the first reset.
@@ -89,6 +93,7 @@ class NativeEnv(gym.Env[Any, Any]):
 
         Raises:
             RuntimeError: if the function of the library fails.
+            ValueError: if it returns an unknown code.
         """
         super().reset(seed=seed, options=options)
         episode = self._episode or _core.ExternalEpisode(self._library.external)
@@ -107,27 +112,35 @@ class NativeEnv(gym.Env[Any, Any]):
         Raises:
             gymnasium.error.ResetNeeded: before the first reset.
             IndexError: if there is no such action.
+            TypeError: if the action is not an integer.
             RuntimeError: if the function of the library fails.
             ValueError: if its reward is not a finite number.
         """
-        episode = self._started("step")
+        episode, action = self._started("step"), operator.index(action)
+        if not 0 <= action < (count := self._library.external.num_actions):
+            raise IndexError(f"action must be from 0 to {count - 1}, got {action}")
         bit_generator = self.np_random.bit_generator
         with bit_generator.lock:
-            reward, terminated, truncated = episode.step(int(action), bit_generator)
+            reward, terminated, truncated = episode.step(action, bit_generator)
         self._elapsed += 1
         if self.max_episode_steps is not None and self._elapsed >= self.max_episode_steps and not terminated:
             truncated = True
         return self._observation(episode), reward, terminated, truncated, self._info(episode)
 
     def __getstate__(self) -> dict[str, Any]:
-        """Returns the attributes, with the bytes of the state instead of the episode."""
+        """Returns the attributes, with the library's path and digest, and the bytes of the state."""
         state = None if self._episode is None else self._episode.state()
-        return {**vars(self), "_library": None, "_episode": state}
+        return {**vars(self), "_library": (str(Path(self.library).resolve()), self._library.digest), "_episode": state}
 
     def __setstate__(self, attributes: Mapping[str, Any]) -> None:
-        """Loads the library again, and continues the episode."""
+        """Loads the library again, and continues the episode.
+
+        Raises:
+            FileNotFoundError: if the file is gone, and this process has not loaded it.
+            ValueError: if it was compiled again since.
+        """
         vars(self).update(attributes)
-        self._library = load(self.library)
+        self._library = load_again(*attributes["_library"])
         state, self._episode = attributes["_episode"], None
         if state is not None:
             self._episode = _core.ExternalEpisode(self._library.external)

@@ -55,21 +55,23 @@ def try_out(core: Any, capsule: Any) -> Any:
 
 
 def check_for_crash(extension: str, file: Path) -> None:
-    """Tries a library out in a separate process; does nothing where none can be started.
+    """Tries a library out in a separate process, if one can be started.
 
     Args:
         extension: The path of the extension module.
         file: The path of the library.
 
     Raises:
-        ValueError: if the process crashes.
+        ValueError: if the process crashes, or takes longer than a minute.
     """
     if not Path(sys.executable or "").name.startswith("python"):
         return  # in a program that embeds Python
     command = [sys.executable, "-I", __file__, extension, str(file)]
     try:
         done = subprocess.run(command, capture_output=True, timeout=_SECONDS, check=False)  # noqa: S603 - our own program
-    except (OSError, subprocess.TimeoutExpired):
+    except subprocess.TimeoutExpired:
+        raise ValueError(f"a trial of {_STEPS} steps did not end within {_SECONDS:.0f} seconds") from None
+    except OSError:
         return
     if done.returncode < 0:
         raise ValueError(f"it crashed in a trial of {_STEPS} steps ({_signal_name(-done.returncode)})")

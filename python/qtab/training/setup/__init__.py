@@ -1,1 +1,1 @@
-"""What precedes the first episode: the environment is found, all settings are filled in, and the memory is computed."""
+"""Prepares a run: finds its environment, fills in all settings, and computes the memory."""

@@ -83,7 +83,7 @@ where
     /// a checkpoint replaces them.
     fn identity(&self) -> RunIdentity {
         let mut identity = RunIdentity::default();
-        identity.add("algorithm", format_args!("{:?}", self.algorithm));
+        identity.add("algorithm", format_args!("{:?}", self.algorithm_with_limit()));
         identity.add("policy", format_args!("{:?}", self.policy));
         identity.add("learning_rate", format_args!("{:?}", self.learning_rate));
         identity.add("discount", self.discount);

@@ -48,7 +48,7 @@ impl<E, F> TrainerBuilder<E, F> {
                 Err(BuildError::invalid("initial_table", expected, format!("{rows} rows and {actions} actions")))
             }
             InitialValues::Table(table) if table.values().iter().any(|value| !value.is_finite()) => {
-                Err(BuildError::invalid("initial_table", "one of finite values", "others"))
+                Err(BuildError::invalid("initial_table", "a table of finite values", "NaN or infinity"))
             }
             _ => Ok(()),
         }

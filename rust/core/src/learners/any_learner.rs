@@ -114,7 +114,7 @@ impl<R: ActiveRows> AnyLearner<R> {
     /// `OutOfMemory`; `Stopped` after `stop` was set.
     ///
     /// # Panics
-    /// If the algorithm has targets of 0 rewards.
+    /// If `n_steps` is 0.
     pub fn new(
         algorithm: AnyAlgorithm,
         agent: Agent,

@@ -82,7 +82,7 @@ impl Pcg64 {
         self.buffered_u32
     }
 
-    /// Moves to the place that a generator of the same seed has reached with so many words drawn and this buffered half.
+    /// Moves to the position after `words_drawn` words, with this buffered half.
     pub fn move_to(&mut self, words_drawn: u64, buffered_u32: Option<u32>) {
         self.engine.advance(u128::from(words_drawn).wrapping_sub(u128::from(self.words_drawn)));
         self.words_drawn = words_drawn;

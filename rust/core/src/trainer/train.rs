@@ -66,7 +66,7 @@ impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> Trainer<T, L, R> {
 
     /// The greedy policy of what was learned so far.
     pub fn greedy_policy(&self) -> GreedyPolicy {
-        GreedyPolicy::new(&self.learner.tables(), self.learner.shape().1, self.learner.action_masks())
+        GreedyPolicy::new(&self.learner.policy_tables(), self.learner.shape().1, self.learner.action_masks())
     }
 }
 

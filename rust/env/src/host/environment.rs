@@ -84,8 +84,9 @@ impl Environment {
             require("observation_low", low <= high, || "at most observation_high".into(), format!("{low} > {high}"))?;
             if self.table.observation_type == INT64 {
                 let whole = |bound: f64| bound.fract() == 0.0 && bound.abs() <= 9_007_199_254_740_992.0;
-                let got = if whole(low) { high } else { low };
-                require("observation_low", whole(low) && whole(high), || "an integer for QTAB_INT64".into(), got)?;
+                for (name, bound) in [("observation_low", low), ("observation_high", high)] {
+                    require(name, whole(bound), || "an integer for QTAB_INT64".into(), bound)?;
+                }
             }
         }
         Ok(())

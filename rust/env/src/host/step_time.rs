@@ -15,18 +15,19 @@ pub fn step_time(environment: &Environment, steps: u32, rng: &mut impl BitGenera
 
 fn measured(environment: &Environment, steps: u32, rng: &mut impl BitGenerator) -> Option<Duration> {
     let mut episode = Episode::new(environment).ok()?;
-    let mut is_over = true;
-    let mut taken = 0;
+    let limit = environment.max_episode_steps().unwrap_or(u64::MAX);
+    let (mut is_over, mut elapsed, mut taken) = (true, 0, 0);
     let start = Instant::now();
     while taken < steps && start.elapsed() < LONG {
         if is_over {
             episode.reset(&mut RandomBits::new(rng)).ok()?;
+            elapsed = 0;
         }
         let masked = environment.has_action_mask();
         let action = if masked { episode.action_mask().iter().position(|&byte| byte == 1)? } else { 0 };
         let (_, ending) = episode.step(action, &mut RandomBits::new(rng)).ok()?;
-        is_over = ending != Ending::Continues;
-        taken += 1;
+        (elapsed, taken) = (elapsed + 1, taken + 1);
+        is_over = ending != Ending::Continues || elapsed >= limit;
     }
     Some(start.elapsed() / taken.max(1))
 }

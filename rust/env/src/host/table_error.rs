@@ -27,7 +27,7 @@ impl Display for TableError {
     fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
         match self {
             Self::Null => write!(formatter, "its table is NULL"),
-            Self::Misaligned => write!(formatter, "the address of its table is not that of a struct"),
+            Self::Misaligned => write!(formatter, "its table is not aligned to 8 bytes"),
             Self::Version(version) => {
                 write!(formatter, "its version of qtab_env.h must be {}, got {version}", crate::ENV_VERSION)
             }

@@ -121,7 +121,8 @@ impl<'a, T: Number> Trial<'a, T> {
 
     fn play(&mut self, steps: usize, rng: &mut (impl BitGenerator + Clone)) -> Result<(), TrialError> {
         let mut actions = rng.clone();
-        let mut is_over = true;
+        let limit = self.episode.environment().max_episode_steps().unwrap_or(u64::MAX);
+        let (mut is_over, mut elapsed) = (true, 0);
         let start = Instant::now();
         for _ in 0..steps {
             if start.elapsed() > LONGEST {
@@ -130,11 +131,13 @@ impl<'a, T: Number> Trial<'a, T> {
             if is_over {
                 self.episode.reset(&mut RandomBits::new(rng))?;
                 self.check("reset", false)?;
+                elapsed = 0;
             }
             let action = self.choose(&mut actions);
             let before = (self.episode.state().to_vec(), rng.clone());
             let result = self.episode.step(action, &mut RandomBits::new(rng))?;
-            is_over = result.1 != Ending::Continues;
+            elapsed += 1;
+            is_over = result.1 != Ending::Continues || elapsed >= limit;
             self.check("step", result.1 == Ending::Terminated)?;
             let (state, mut same_rng) = before;
             self.repeat(&state, action, &mut same_rng, result)?;

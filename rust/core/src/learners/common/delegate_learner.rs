@@ -67,6 +67,10 @@ macro_rules! delegate_learner {
             match self { $($pattern => $crate::Learner::<$active>::tables($learner)),+ }
         }
 
+        fn policy_tables(&self) -> Vec<&[f64]> {
+            match self { $($pattern => $crate::Learner::<$active>::policy_tables($learner)),+ }
+        }
+
         fn tables_mut(&mut self) -> Vec<&mut [f64]> {
             match self { $($pattern => $crate::Learner::<$active>::tables_mut($learner)),+ }
         }

@@ -76,8 +76,13 @@ pub trait Learner<R> {
     /// after the last step of a call.
     fn complete_tables(&mut self) {}
 
-    /// The values of the tables, row by row. The greedy policy maximizes their sum.
+    /// The values of the tables, row by row.
     fn tables(&self) -> Vec<&[f64]>;
+
+    /// The tables of which the greedy policy maximizes the sum: all but that of a critic.
+    fn policy_tables(&self) -> Vec<&[f64]> {
+        self.tables()
+    }
 
     /// The values of the tables, mutable, so that a resumed run can replace them.
     fn tables_mut(&mut self) -> Vec<&mut [f64]>;

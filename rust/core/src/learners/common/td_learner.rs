@@ -89,6 +89,10 @@ where
         std::iter::once(self.agent.table.values()).chain(second).collect()
     }
 
+    fn policy_tables(&self) -> Vec<&[f64]> {
+        if U::HAS_CRITIC { vec![self.agent.table.values()] } else { Learner::<R>::tables(self) }
+    }
+
     fn tables_mut(&mut self) -> Vec<&mut [f64]> {
         let second = self.rule.second_table_mut().map(QTable::values_mut);
         std::iter::once(self.agent.table.values_mut()).chain(second).collect()

@@ -11,6 +11,9 @@ pub trait UpdateRule<R, G> {
     /// As [`Learner::HAS_VECTOR_PASSES`](super::Learner::HAS_VECTOR_PASSES).
     const HAS_VECTOR_PASSES: bool = false;
 
+    /// Whether the second table holds the values of a critic, which the policy does not read.
+    const HAS_CRITIC: bool = false;
+
     /// Samples the first action of an episode; `None` leaves the choice to the policy.
     #[inline]
     fn first_action(&mut self, agent: &mut G, state: R, rng: &mut impl Rng) -> Option<usize> {

@@ -48,6 +48,8 @@ pub(super) fn td_error<R: Copy + AsRef<[u32]>>(
 }
 
 impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for ActorCritic {
+    const HAS_CRITIC: bool = true;
+
     #[inline]
     fn learn(
         &mut self,

@@ -84,6 +84,8 @@ impl ActorCriticLambda {
 }
 
 impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for ActorCriticLambda {
+    const HAS_CRITIC: bool = true;
+
     #[inline]
     fn learn(
         &mut self,

@@ -73,6 +73,8 @@ impl<R: ActiveRows> Reinforce<R> {
 }
 
 impl<R: ActiveRows> UpdateRule<R, Agent> for Reinforce<R> {
+    const HAS_CRITIC: bool = true;
+
     #[inline]
     fn learn(
         &mut self,

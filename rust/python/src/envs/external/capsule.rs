@@ -1,6 +1,6 @@
 //! The two capsules of this interface: an environment, and a bit generator of `NumPy`.
 
-#![expect(unsafe_code, reason = "a capsule holds an address, and its name states of what")]
+#![expect(unsafe_code, reason = "a capsule holds an address, and its name gives the type")]
 
 use std::ffi::CStr;
 

@@ -26,8 +26,8 @@ const LARGEST_WORK: u64 = 1 << 20;
 
 /// An environment of another library. `capsule` is what `__qtab_env__()` returned, and is kept. Where a function of the
 /// environment fails, `on_failure(state, words_drawn, buffered_u32, action, seed)` is called, which should raise the
-/// error: `state` are the bytes of the state before the step, or None for a reset; the generator of the run, which was
-/// seeded with `seed`, had drawn so many words and held half a word.
+/// error: `state` are the bytes of the state before the step, or None for a reset; `words_drawn` and `buffered_u32` are
+/// the position of the run's generator, which was seeded with `seed`.
 #[pyclass(frozen, name = "ExternalEnv", module = "qtab._core")]
 pub(crate) struct PyExternalEnv(Arc<ExternalEnv>);
 
