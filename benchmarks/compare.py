@@ -12,6 +12,7 @@ import idle_env
 import mountain_car
 import numba_loops
 import own
+import own_environments
 import vector_envs
 from qtab._utils.versions import versions
 from tables import Table
@@ -21,9 +22,9 @@ PARTS: Mapping[str, Sequence[Callable[[], Table]]] = {
     "environments": [environment_presets.training],
     "learners": [algorithms.learners],
     "book": [algorithms.book],
-    "own": [own.training],
     "stepping": [mountain_car.stepping, idle_env.learning],
     "vectors": [vector_envs.stepping],
+    "own": [own.training, own_environments.training],
 }
 
 

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import qtab
-from support.libraries import SOURCES, compile_c, example_class, needs_compiler
+from support.libraries import compile_c, example_class, needs_compiler
+from support.repository import ROOT
 
 pytestmark = needs_compiler
 BINS: dict[str, Any] = {"discretizer": "bins", "bins": [12, 10], "episodes": 60}
@@ -53,7 +54,7 @@ def test_the_numbers_are_those_of_python(lander: Path, settings: dict[str, Any])
 
 def test_mountain_car_in_c_equals_that_of_the_core(tmp_path: Path) -> None:
     core = qtab.train("MountainCar-v0", episodes=50, seed=1)
-    library = compile_c(SOURCES / "mountain_car.c", tmp_path, "mountain_car")
+    library = compile_c(ROOT / "benchmarks" / "mountain_car.c", tmp_path, "mountain_car")
     names = (
         "algorithm",
         "discretizer",
