@@ -195,6 +195,38 @@ def test_a_refusal_is_remembered(caplog: pytest.LogCaptureFixture) -> None:
             capsule_of(Exponentials())
 
 
+class Starts(Base):
+    """Fails at resets, for one of its attributes."""
+
+    def __init__(self, start: float, bound: float = 10.0) -> None:
+        self.start, self.bound = start, bound
+
+    def initial_state(self, rng: np.random.Generator) -> Any:
+        if self.start > self.bound:
+            raise ValueError("too far")
+        return self.start
+
+
+def test_a_failing_reset_is_no_property_of_the_class() -> None:
+    with pytest.raises(NotCompilable, match=r"^initial_state raises ValueError: too far$"):
+        capsule_of(Starts(11.0))
+    with pytest.raises(
+        NotCompilable, match=r"^no episode can begin, because ValueError is raised: observe of Starts must"
+    ):
+        capsule_of(Starts(1e10, bound=1e11))
+    capsule_of(Starts(1.0))
+
+
+def test_spaces_without_bounds() -> None:
+    class Unbounded(Base):
+        observation_space = spaces.Box(-np.inf, np.inf, (1,), np.float64)
+
+    env = gym.wrappers.TimeLimit(Unbounded(), 20)
+    chosen: dict[str, Any] = {"discretizer": "bins", "bins": 5, "low": [0.0], "high": [6.0], "episodes": 5, "seed": 0}
+    one, other = (qtab.train(env, backend=backend, **chosen) for backend in ("numba", "python"))
+    assert one.q_table.tobytes() == other.q_table.tobytes()
+
+
 def test_numba_can_be_disabled(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("NUMBA_DISABLE_JIT", "1")
     with pytest.raises(NotCompilable, match=r"^NUMBA_DISABLE_JIT is set$"):

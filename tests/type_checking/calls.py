@@ -14,7 +14,28 @@ from typing_extensions import assert_type
 import qtab
 
 
+class Counter(qtab.FunctionalEnv):
+    """An environment of one's own."""
+
+    observation_space = gym.spaces.Discrete(10)
+    action_space = gym.spaces.Discrete(2)
+
+    def initial_state(self, rng: np.random.Generator) -> int:
+        return int(rng.integers(0, 5))
+
+    def transition(self, state: int, action: int, rng: np.random.Generator) -> tuple[int, float, bool]:
+        return state + action, -1.0, state + action == 9
+
+    def observe(self, state: int) -> int:
+        return state
+
+    def action_mask(self, state: int) -> list[bool]:
+        return [True, state < 9]
+
+
 def right_calls(run: qtab.Run, env: gym.Env) -> None:
+    run = qtab.train(Counter(), backend="numba", action_mask=True)
+    run = qtab.train(gym.wrappers.TimeLimit(Counter(render_mode=None), 100), backend="python")
     run = qtab.train("MountainCar-v0")
     run = qtab.train("MountainCar-v0", learning_rate=0.1, algorithm="sarsa_lambda", trace_decay=0.9, seed=0)
     run = qtab.train(env, learning_rate=1, tiles=4, low=[-1, -1], high=np.array([1.0, 1.0]), discretizer="tiles")

@@ -19,7 +19,7 @@ from qtab.compilation.compiled_env import FUNCTIONS, CompiledEnv
 from qtab.compilation.digest import Unknown, digest_of
 from qtab.compilation.functions import helper_methods, methods_of, names_of, plain, reachable
 from qtab.compilation.layout import Array, Layout, Number, Tuple, decode, layout_of
-from qtab.compilation.not_compilable import NotCompilable
+from qtab.compilation.not_compilable import NotCompilable, NotNow
 from qtab.compilation.observation import ObservationLayout
 from qtab.compilation.parameters import Parameters
 from qtab.compilation.proof import FunctionalTwin, prove
@@ -66,9 +66,9 @@ def compiled_env(env: Any) -> tuple[CompiledEnv, Parameters]:
         # Such code depends on objects that other processes do not have; it is compiled once for each class.
         digest, file = f"{id(type(env))} {error} {parameters.layout} {parameters.constants}", ""
     with _lock:
-        if digest not in _compiled:
-            _compiled[digest] = _load_or_compile(env, parameters, observation, digest, file)
-        found = _compiled[digest]
+        found = _compiled.get(digest) or _load_or_compile(env, parameters, observation, digest, file)
+        if not isinstance(found, NotNow):
+            _compiled[digest] = found
     if isinstance(found, NotCompilable):
         raise NotCompilable(found.reason, found.file, found.line, found.advice)
     return found, parameters
@@ -134,7 +134,7 @@ def _load_or_compile(
     except machine_code.CannotLoad as error:
         return NotCompilable(str(error))
     except NotCompilable as refusal:
-        if file:
+        if file and not isinstance(refusal, NotNow):
             reasons = [refusal.reason, refusal.file, refusal.line, refusal.advice]
             cache.write(file, digest, None, {"refusal": reasons})
         return refusal
@@ -161,7 +161,7 @@ def _compile(
     try:
         env.initial_state(np.random.default_rng(0))
     except Exception as error:  # it is raised again when Python resets the environment
-        raise NotCompilable(f"initial_state raises {type(error).__name__}: {error}") from None
+        raise NotNow(f"initial_state raises {type(error).__name__}: {error}") from None
     files = {function.__code__.co_filename for function in functions}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
@@ -174,7 +174,7 @@ def _compile(
         except NotCompilable:
             raise
         except Exception as error:  # an internal error of Numba; Python can step the environment
-            raise NotCompilable(f"Numba failed with {type(error).__name__}: {error}") from None
+            raise NotNow(f"Numba failed with {type(error).__name__}: {error}") from None
         made = machine_code.make(compiled.functions, ARGUMENTS)
     seconds = time.perf_counter() - started
     if seconds > SLOW_SECONDS:

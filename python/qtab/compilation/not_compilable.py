@@ -1,4 +1,4 @@
-"""The error for an environment that cannot be compiled, with the place and the advice."""
+"""The errors for an environment that cannot be compiled, with the place and the advice."""
 
 
 class NotCompilable(Exception):  # noqa: N818 - it is no fault of the environment, which Python can step
@@ -19,3 +19,7 @@ class NotCompilable(Exception):  # noqa: N818 - it is no fault of the environmen
 
     def __reduce__(self) -> tuple[object, ...]:
         return type(self), (self.reason, self.file, self.line, self.advice)
+
+
+class NotNow(NotCompilable):
+    """An environment was not compiled for a reason that may not hold for other attributes, or another time."""

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from qtab.compilation.compiled_env import CompiledEnv, Stepper
 from qtab.compilation.layout import encode, leaves
-from qtab.compilation.not_compilable import NotCompilable
+from qtab.compilation.not_compilable import NotCompilable, NotNow
 from qtab.compilation.scan import place_of, suspects
 from qtab.compilation.struct import FAILED, TERMINATED, TRUNCATED
 
@@ -51,11 +51,15 @@ def prove(twin: Any, compiled: CompiledEnv, parameters: NDArray[np.uint8], funct
 
     Raises:
         NotCompilable: at the first difference; it names the numbers, the likely line and what to write instead.
+        NotNow: if a reset fails, so that nothing can be compared.
     """
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")
         for seed in SEEDS:
             difference = _compare(twin, compiled, parameters, seed)
+            if isinstance(difference, Exception):
+                name = type(difference).__name__
+                raise NotNow(f"no episode can begin, because {name} is raised: {difference}")
             if difference is not None:
                 raise _refusal(difference, functions)
 
@@ -94,7 +98,10 @@ class FunctionalTwin:
         return numbers
 
 
-def _compare(twin: Any, compiled: CompiledEnv, parameters: NDArray[np.uint8], seed: int) -> Difference | None:
+def _compare(
+    twin: Any, compiled: CompiledEnv, parameters: NDArray[np.uint8], seed: int
+) -> Difference | Exception | None:
+    """Returns the first difference, None if there is none, or the exception of a reset, after which nothing follows."""
     rng = np.random.Generator(np.random.PCG64(seed))
     stepper = Stepper(compiled, parameters, np.random.PCG64(seed))
     choose = np.random.default_rng(seed + 1000)
@@ -115,7 +122,8 @@ def _compare(twin: Any, compiled: CompiledEnv, parameters: NDArray[np.uint8], se
                 # The state in Python may have changed; both start again with equal generators.
                 rng.bit_generator.state = stepper.bit_generator.state
                 if step == 0:
-                    return None  # no episode can begin; training raises the error
+                    failure: Exception = numbers
+                    return failure
             step = -1
     return None
 
