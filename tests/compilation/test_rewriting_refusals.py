@@ -51,6 +51,7 @@ REFUSALS = {
     refused.Generates: ("cells_of is a generator", "write a loop"),
     refused.BigDict: ("a string is used as a value", "use an integer"),
     refused.Hypotenuse: ("math.hypot may round differently", "math.sqrt(x * x + y * y)"),
+    refused.SometimesUnset: ("the variable bonus may not be set", "before the branch"),
     refused.ListObservation: ("the observation is a tuple of 1", "return np.array"),
 }
 

@@ -276,3 +276,10 @@ class ListObservation(Base):
         gym.Env.reset(self, seed=seed)
         self.x = 0.0
         return self.observe(), {}  # here
+
+
+class SometimesUnset(Base):
+    def change(self, action):
+        if self.x > 20:
+            bonus = 5.0 + self.x
+        return bonus if self.x > 20 else 0.0  # here

@@ -33,6 +33,7 @@ def assign(scope: "Statements", node: ast.stmt, targets: list[ast.expr], value_n
         for target in targets:
             if isinstance(target, ast.Name):
                 scope.kinds[scope.version(target.id)] = INFO
+                scope.note_set(target.id)
         return
     unpacked = isinstance(value_node, ast.Tuple | ast.List) and isinstance(targets[0], ast.Tuple | ast.List)
     sources = value_node.elts if unpacked else [value_node]  # type: ignore[attr-defined]
@@ -99,6 +100,7 @@ def bind(scope: "Statements", node: ast.stmt, target: ast.expr, value: Value) ->
 
 
 def _bind_name(scope: "Statements", node: ast.stmt, name: str, value: Value) -> None:
+    scope.note_set(name)
     if name in scope.infos:
         if isinstance(value.kind, InfoKind | DictKind) or isinstance(value.fixed, dict):
             scope.kinds[scope.version(name)] = INFO

@@ -78,7 +78,7 @@ class Expressions(Scope):
         if name in self.fixed:
             return self.fixed[name]
         if self.names.is_local(name):
-            if self.kind_of_local(name) is None:
+            if self.kind_of_local(name) is None or not self.is_set(name):
                 raise self.refuse(
                     node, f"the variable {name} may not be set yet", "set it before the branch or the loop"
                 )

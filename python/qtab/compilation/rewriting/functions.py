@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from qtab.compilation.rewriting import specials
 from qtab.compilation.rewriting.program import Compiled, Flow, Program
-from qtab.compilation.rewriting.scope import Scope
+from qtab.compilation.rewriting.scope import LOCAL, Scope
 from qtab.compilation.rewriting.sources import Source
 from qtab.compilation.rewriting.statements import Statements
 from qtab.compilation.rewriting.values import Array, InfoKind, TupleKind, Value, constant
@@ -101,7 +101,9 @@ def _rewrite(rewriter: Statements, parameters: dict[str, Value]) -> None:
     rewriter.unstable = False
     rewriter.lines, rewriter.indent, rewriter.depth, rewriter.temporaries = [], 1, 0, 0
     rewriter.returns = []
-    rewriter.flow, rewriter.flows_at_return = Flow(), []
+    rewriter.flow, rewriter.flows_at_return, rewriter.flows_at_exit = Flow(), [], []
+    for name in parameters:
+        rewriter.note_set(name)
     if rewriter.role:
         rewriter.program.infos.pop(rewriter.role, None)
     rewriter.actions = {name for name, value in parameters.items() if value.action}
@@ -142,7 +144,8 @@ def _finish(rewriter: Statements, parameters: dict[str, Value]) -> None:
             node, "the function returns None here, and a value elsewhere", "return a value everywhere"
         )
     compiled.result = rewriter.result()
-    compiled.flow = Flow(set.intersection(*rewriter.flows_at_return), rewriter.flow.read)
+    always = set.intersection(*rewriter.flows_at_return)
+    compiled.flow = Flow({name for name in always if not name.startswith(LOCAL)}, rewriter.flow.read)
     body = rewriter.lines
     compiled.trivial = [line.strip() for line, _ in body] == ["return"]
     if not body:

@@ -28,8 +28,10 @@ def while_loop(scope: "Statements", node: ast.While) -> bool:
         return False
     scope.emit(f"while {'True' if test.is_fixed else test.code}:", node)
     before = set(scope.flow.assigned)
+    scope.flows_at_exit.append(([], []))
     scope.indented(node.body)
-    scope.flow.assigned = before
+    breaks, _ = scope.flows_at_exit.pop()
+    scope.flow.assigned = set.intersection(*breaks) if test.is_fixed and breaks else before
     return test.is_fixed and not leaves_loop(node.body)
 
 
@@ -55,12 +57,24 @@ def _range(scope: "Statements", node: ast.For, call: ast.Call) -> bool:
         numbers = range(*[value.fixed for value in values])
         if not numbers:
             return False
-    _head(scope, node, f"range({', '.join(value.code for value in values)})", Value(INT, ""))
+    known = all(value.is_fixed for value in values)
+    _head(scope, node, f"range({', '.join(value.code for value in values)})", Value(INT, ""), is_run=known)
     return False
 
 
-def _head(scope: "Statements", node: ast.For, iterable: str, item: Value, before: str = "") -> None:
-    """Writes a loop whose rounds are counted at run time; ``before`` computes the element from ``i``."""
+def _head(
+    scope: "Statements", node: ast.For, iterable: str, item: Value, before: str = "", is_run: bool = False
+) -> None:
+    """Writes a loop whose rounds are counted at run time.
+
+    Args:
+        scope: The function.
+        node: The loop.
+        iterable: The code of what is counted.
+        item: The kind of the elements.
+        before: The code that computes an element from ``i``.
+        is_run: Whether there is at least one round.
+    """
     scope.temporaries += 1
     name = f"i_{scope.temporaries}"
     scope.emit(f"for {name} in {iterable}:", node)
@@ -71,11 +85,17 @@ def _head(scope: "Statements", node: ast.For, iterable: str, item: Value, before
         if isinstance(one, ast.Name) and one.id not in scope.dynamic:
             scope.dynamic.add(one.id)
             scope.unstable = True
+    before_loop = set(scope.flow.assigned)
     value = Value(item.kind, before.format(i=name) if before else name)
     assignments.assign_value(scope, node, node.target, value)
-    before_loop = set(scope.flow.assigned)
-    scope.block(node.body)
-    scope.flow.assigned = before_loop
+    constants = set(scope.fixed)
+    scope.flows_at_exit.append(([], []))
+    ended = scope.block(node.body)
+    breaks, continues = scope.flows_at_exit.pop()
+    ends = breaks + continues + ([] if ended else [scope.flow.assigned])
+    scope.flow.assigned = set.intersection(*ends) if is_run and ends else before_loop
+    for one_name in scope.fixed.keys() - constants:  # it is not set if the loop is not run
+        del scope.fixed[one_name]
     scope.indent -= 1
     scope.depth -= 1
     scope.program.depth -= 1
@@ -118,7 +138,7 @@ def _indexed(scope: "Statements", node: ast.For, items: list[Value], counted: bo
     value = containers.lookup(scope, node.iter, [item.fixed for item in items], Value(INT, "{i}"))
     kind = TupleKind((INT, value.kind)) if counted else value.kind
     code = f"({{i}}, {value.code})" if counted else value.code
-    _head(scope, node, f"range({len(items)})", Value(kind, name), code)
+    _head(scope, node, f"range({len(items)})", Value(kind, name), code, is_run=True)
     return False
 
 

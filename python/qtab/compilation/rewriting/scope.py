@@ -10,6 +10,8 @@ from qtab.compilation.rewriting.sources import Source
 from qtab.compilation.rewriting.values import INFO, Array, Kind, Value, in_words, join
 
 MAX_SHOWN = 90
+LOCAL = "local variable "
+"""The beginning of the entries of local variables in a flow."""
 
 
 class Scope:
@@ -51,6 +53,8 @@ class Scope:
         self.lines: list[tuple[str, int]] = []
         self.indent = 1
         self.flow = Flow()
+        self.flows_at_exit: list[tuple[list[set[str]], list[set[str]]]] = []
+        """For each loop around the statement, what is assigned at each `break` and at each `continue`."""
         self.flows_at_return: list[set[str]] = []
         """The attributes that are assigned where the function returns."""
         self.depth = 0
@@ -113,6 +117,14 @@ class Scope:
         if isinstance(value.kind, Array):
             version = self.version(name)
             self.owned[version] = self.owned.get(version, True) and value.fresh
+
+    def note_set(self, name: str) -> None:
+        """Notes that a local variable is set from here on."""
+        self.flow.assigned.add(f"{LOCAL}{name}")
+
+    def is_set(self, name: str) -> bool:
+        """Returns whether a local variable is set here whatever happens."""
+        return f"{LOCAL}{name}" in self.flow.assigned
 
     def note_alias(self, value: Value, node: ast.AST, compiled: Compiled | None = None) -> None:
         """Notes that a variable, or a parameter of a called function, shares memory with attributes in Python."""

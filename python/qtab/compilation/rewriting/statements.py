@@ -39,10 +39,12 @@ class Statements(Displays):
         self.indent += 1
         self.depth += 1
         self.program.depth += 1
-        before = len(self.lines)
+        before, constants = len(self.lines), set(self.fixed)
         ended = self.block(statements)
         if len(self.lines) == before:
             self.emit("pass")
+        for name in self.fixed.keys() - constants:  # it is not set if the block is not run
+            del self.fixed[name]
         self.indent -= 1
         self.depth -= 1
         self.program.depth -= 1
@@ -198,10 +200,12 @@ class Statements(Displays):
         return loops.while_loop(self, node)
 
     def _do_break(self, node: ast.Break) -> bool:
+        self.flows_at_exit[-1][0].append(set(self.flow.assigned))
         self.emit("break", node)
         return True
 
     def _do_continue(self, node: ast.Continue) -> bool:
+        self.flows_at_exit[-1][1].append(set(self.flow.assigned))
         self.emit("continue", node)
         return True
 
