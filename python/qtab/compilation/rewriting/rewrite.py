@@ -49,6 +49,11 @@ def rewrite(env: gym.Env) -> Rewritten:
             continue
         except RecursionError:
             raise NotCompilable("the class is nested too deeply", advice="write smaller expressions") from None
+        except NotCompilable:
+            raise
+        except Exception as error:  # of this package; Python can step the environment
+            reason = f"{type(env).__name__} is not understood ({type(error).__name__}: {error})"
+            raise NotCompilable(reason, advice="train it with backend='gymnasium'") from error
     raise NotCompilable("the types of the attributes are not clear", advice="give each attribute one type")
 
 
