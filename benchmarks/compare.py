@@ -11,8 +11,8 @@ import environment_presets
 import idle_env
 import mountain_car
 import numba_loops
-import own
-import own_environments
+import own_functions
+import own_library
 import vector_envs
 from qtab._utils.versions import versions
 from tables import Table
@@ -24,7 +24,7 @@ PARTS: Mapping[str, Sequence[Callable[[], Table]]] = {
     "book": [algorithms.book],
     "stepping": [mountain_car.stepping, idle_env.learning],
     "vectors": [vector_envs.stepping],
-    "own": [own.training, own_environments.training],
+    "own": [own_functions.training, own_library.training],
 }
 
 

@@ -18,7 +18,7 @@ import footprint
 import idle_env
 import mountain_car
 import numba_loops
-import own_environments
+import own_library
 import qtab as package
 import tables
 import vector_envs
@@ -75,7 +75,7 @@ def test_every_benchmark_counts_its_steps() -> None:
 def test_the_benchmarks_of_the_book_count_their_steps(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(algorithms, "EPISODES", 2000)
     monkeypatch.setattr(algorithms, "PROBLEMS", 2)
-    monkeypatch.setattr(own_environments, "EPISODES_IN_PYTHON", 1)
+    monkeypatch.setattr(own_library, "EPISODES_IN_PYTHON", 1)
     loops = algorithms.book().benchmarks
     assert set(loops) == {*algorithms.BANDITS, algorithms.WALK, *algorithms.PREDICTION, *algorithms.CONTROL}
     assert loops[algorithms.BANDIT](1) == 2 * algorithms.STEPS

@@ -13,7 +13,7 @@ import c_loop
 import environment_presets
 import idle_env
 import numba_loops
-import own
+import own_functions
 import plain_loop
 import qtab
 import table_loop
@@ -32,7 +32,7 @@ def test_the_numba_loop_equals_the_articles_loop_to_the_bit() -> None:
 
 
 def test_the_own_environment_equals_the_packages() -> None:
-    run, same = own.train(4, "python", 10), qtab.train("MountainCar-v0", seed=4, episodes=10, backend="rust")
+    run, same = own_functions.train(4, "python", 10), qtab.train("MountainCar-v0", seed=4, episodes=10, backend="rust")
     assert run.q_table.tobytes() == same.q_table.tobytes()
     assert run.episode_returns.tobytes() == same.episode_returns.tobytes()
 

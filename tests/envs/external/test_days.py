@@ -29,7 +29,7 @@ def test_a_run_resumes_within_the_planning_after_a_terminal_step(tmp_path: Path)
     timer = threading.Timer(0.1, signal.raise_signal, [signal.SIGINT])
 
     def interrupt_soon(progress: Any) -> bool:
-        if len(progress.episode_returns) == 1:
+        if progress.episodes == 1:
             timer.start()
         return True
 
