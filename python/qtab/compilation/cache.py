@@ -56,7 +56,7 @@ def write(source_file: str, digest: str, code: MachineCode | None, description: 
     content = _MAGIC + hashlib.sha256(body).hexdigest().encode() + b"\n" + body
     for folder in _folders(source_file):
         with contextlib.suppress(OSError):
-            folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+            folder.mkdir(parents=True, exist_ok=True)
             handle, temporary = tempfile.mkstemp(dir=folder, prefix=".qtab-")
             try:
                 with os.fdopen(handle, "wb") as file:
@@ -91,10 +91,13 @@ def _folders(source_file: str) -> Iterator[Path]:
     path = Path(source_file)
     if path.is_file():
         yield path.parent / "__pycache__"
+    with contextlib.suppress(RuntimeError):  # the user has no home
+        yield _cache() / "qtab" / "compiled"
+
+
+def _cache() -> Path:
     if sys.platform == "win32":
-        root = Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local")
-    elif sys.platform == "darwin":
-        root = Path.home() / "Library" / "Caches"
-    else:
-        root = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    yield root / "qtab" / "compiled"
+        return Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local")
+    if sys.platform == "darwin":
+        return Path.home() / "Library" / "Caches"
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
