@@ -7,6 +7,7 @@ import gymnasium as gym
 import numpy as np
 
 from qtab import _core
+from qtab.envs.class_code import is_of_library
 from qtab.envs.matching import NotInRustError, layers, unknown_wrapper
 
 
@@ -37,7 +38,12 @@ def external_env(env: gym.Env, backend: str) -> _core.ExternalEnv | None:
             is not the attribute ``max_episode_steps``.
     """
     if not has_capsule(env):
-        return _compiled_class(env) if backend == "numba" else None
+        if backend != "numba":
+            return None
+        if is_of_library(type(env.unwrapped)):
+            reason = "Numba compiles your own classes, derived from gymnasium.Env or qtab.FunctionalEnv"
+            raise NotInRustError(reason, "leave out backend")
+        return _compiled_class(env)
     unwrapped = _unwrapped(env)
     cls = type(unwrapped)
     for base in cls.__mro__[: next(i for i, base in enumerate(cls.__mro__) if "__qtab_env__" in vars(base))]:
