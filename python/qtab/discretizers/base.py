@@ -2,7 +2,7 @@
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import Any, ClassVar
@@ -35,8 +35,9 @@ class Discretizer(ABC):
 
     reads_space: ClassVar[bool] = False
     """Whether :meth:`observe` must convert the observations of the environment for the extension."""
-    reads_numbers: ClassVar[bool] = False
-    """Whether the extension can also read the numbers of an observation, by :meth:`spec_of_numbers`."""
+    flat_first: ClassVar[Sequence[int] | None] = None
+    """The numbers that :meth:`observe` subtracts from the components of an observation, in the order of the space; None
+    if it does more than that."""
     has_cells: ClassVar[bool] = True
     """Whether exactly one row, the cell of an observation, is active, so that the table has an axis per component."""
     has_component_axes: ClassVar[bool] = True

@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -34,7 +34,6 @@ class Composite(Discretizer):
     """
 
     reads_space = True
-    reads_numbers = True
 
     layout: Layout
     groups: tuple[Group, ...]
@@ -153,13 +152,12 @@ class Composite(Discretizer):
         """Whether one group has all the components."""
         return len(self.groups) == 1 and self.groups[0].components == tuple(range(self.layout.size))
 
-    def spec(self, first: Sequence[int] | None = None) -> DiscretizerSpec:
+    def spec(self) -> DiscretizerSpec:
         """Returns the discretizer as the extension takes it, for the flat arrays of :meth:`observe`."""
         if self._is_whole:
             return self.groups[0].discretizer.spec()
-        first = first or [0] * self.layout.size
         if not self.groups:
-            return {"type": "identity", "first": list(first), "counts": self.counts, "scalar": False}
+            return {"type": "identity", "first": [0] * self.layout.size, "counts": self.counts, "scalar": False}
         owners = {component: group for group in self.groups for component in group.components}
         factors, stride = list[FactorSpec](), 1
         if self._tiles is not None:
@@ -170,16 +168,17 @@ class Composite(Discretizer):
             count = self.counts[component]
             if not count:
                 continue
-            index: IdentitySpec = {"type": "identity", "first": [first[component]], "counts": [count], "scalar": True}
+            index: IdentitySpec = {"type": "identity", "first": [0], "counts": [count], "scalar": True}
             spec = owners[component].spec_of(component) if component in owners else index
             factors.append({"components": [component], "stride": stride, "discretizer": spec})
             stride *= count
         return {"type": "product", "dimensions": self.layout.size, "factors": factors}
 
-    def spec_of_numbers(self) -> DiscretizerSpec:
-        """Returns the discretizer as the extension takes it, for the numbers of observations as they are."""
-        parts = zip(self.layout.parts, self._first, strict=True)
-        return self.spec([low for part, first in parts for low in ([0] * part.size if first is None else first)])
+    @property
+    def flat_first(self) -> list[int]:  # type: ignore[override]
+        """The numbers that :meth:`observe` subtracts from the components, so that indices begin at 0."""
+        pairs = zip(self._first, self.layout.parts, strict=True)
+        return [int(low) for first, part in pairs for low in ([0] * part.size if first is None else first)]
 
     @cached_property
     def _first(self) -> list[NDArray[np.int64] | None]:

@@ -1,6 +1,6 @@
 """Adds the number of steps taken to the cell of an observation, like Gymnasium's ``TimeAwareObservation``."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -55,6 +55,11 @@ class TimeAware(Discretizer):
     def reads_space(self) -> bool:  # type: ignore[override]
         """Whether the cells must convert the observations of the environment for the extension."""
         return self.cells.reads_space
+
+    @property
+    def flat_first(self) -> Sequence[int] | None:  # type: ignore[override]
+        """The numbers that :meth:`observe` subtracts from the components; None if it does more than that."""
+        return self.cells.flat_first
 
     @property
     def shape(self) -> tuple[int, ...]:

@@ -24,7 +24,7 @@ def days(folder: Path, **options: object) -> Path:
 
 
 def test_a_run_resumes_within_the_planning_after_a_terminal_step(tmp_path: Path) -> None:
-    settings: dict[str, Any] = {"algorithm": "dyna_q", "planning_steps": 1_000_000, "action_mask": True, "episodes": 40}
+    settings: dict[str, Any] = {"algorithm": "dyna_q", "planning_steps": 1_000_000, "action_mask": True, "seed": 0}
     env = qtab.NativeEnv(days(tmp_path))
     timer = threading.Timer(0.1, signal.raise_signal, [signal.SIGINT])
 
@@ -34,10 +34,10 @@ def test_a_run_resumes_within_the_planning_after_a_terminal_step(tmp_path: Path)
         return True
 
     with pytest.raises(KeyboardInterrupt) as raised:
-        qtab.train(env, callback=interrupt_soon, callback_every=1, **settings)
+        qtab.train(env, episodes=40, callback=interrupt_soon, callback_every=1, **settings)
     stopped: qtab.Run = raised.value.run  # type: ignore[attr-defined]
     assert len(stopped.episode_returns) < 40
-    resumed, whole = qtab.resume(stopped, env=env), qtab.train(env, **settings)
+    resumed, whole = qtab.resume(stopped, env=env), qtab.train(env, episodes=40, **settings)
     assert resumed.tables.tobytes() == whole.tables.tobytes()
 
 
@@ -78,9 +78,9 @@ def test_a_file_that_cannot_be_copied_and_changes_is_refused(tmp_path: Path, mon
         return load(path)
 
     monkeypatch.setattr(ctypes, "CDLL", load_in_place)
-    qtab.NativeEnv(days(tmp_path))
+    qtab.NativeEnv(days(tmp_path, REWARD="3.0"))
     with pytest.raises(ValueError, match="it was compiled again, and this process still has its earlier version"):
-        qtab.NativeEnv(days(tmp_path, REWARD="2.0"))
+        qtab.NativeEnv(days(tmp_path, REWARD="4.0"))
 
 
 def test_a_copy_has_the_same_library(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -117,7 +117,8 @@ class NativeEnv(gym.Env[Any, Any]):
             ValueError: if its reward is not a finite number.
         """
         episode, action = self._started("step"), operator.index(action)
-        if not 0 <= action < (count := self._library.external.num_actions):
+        count = self._library.external.num_actions
+        if not 0 <= action < count:
             raise IndexError(f"action must be from 0 to {count - 1}, got {action}")
         bit_generator = self.np_random.bit_generator
         with bit_generator.lock:

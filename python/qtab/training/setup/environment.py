@@ -138,6 +138,8 @@ class NativeEnvironment:
     """An environment that Rust steps."""
 
     parameters: _core.NativeEnv
+    external: _core.ExternalEnv | None = None
+    """The environment of a capsule; None for one of this package."""
 
     def spec(self) -> NativeEnvSpec:
         """Returns the environment as the extension takes it."""
@@ -182,6 +184,19 @@ class PythonEnvironment:
 
 
 Environment: TypeAlias = NativeEnvironment | PythonEnvironment
+
+
+def with_discretizer(environment: Environment, discretizer: Discretizer) -> tuple[Environment, bool]:
+    """Returns an environment as it is with a discretizer, and whether Python must read its observations.
+
+    The functions of an environment in a capsule write the components of any observation in the order of the space.
+    """
+    if not discretizer.reads_space or not isinstance(environment, NativeEnvironment):
+        return environment, discretizer.reads_space
+    external, first = environment.external, discretizer.flat_first
+    if external is None or first is None or len(first) != len(external.bounds):
+        return environment, True
+    return replace(environment, parameters=external.native_env(first)), False
 
 
 class ObservedEnv(gym.Wrapper[Any, Any, Any, Any]):

@@ -39,6 +39,7 @@ from qtab.training.setup.environment import (
     asks_for_masks,
     known_masks,
     observed_masks,
+    with_discretizer,
 )
 from qtab.training.setup.preset_fit import infer_discretizer, set_aside
 from qtab.training.setup.resolved_run import ResolvedRun, derived_settings
@@ -202,16 +203,16 @@ def _fill_defaults(request: _Request, owns_env: bool) -> ResolvedRun:
     of_preset = {name: value for name, value in of_preset.items() if getattr(config, name) is not DEFAULTS[name]}
     with naming_preset(config.preset, of_preset, request.asked):
         discretizer = discretizers.build(env.observation_space, config, len(actions))
+    environment, in_python = with_discretizer(environment, discretizer)
     masks = None if asks_for_masks(config.action_mask) else NO_MASKS
     in_rust = isinstance(environment, NativeEnvironment)
     external = request.entry if isinstance(request.entry, _core.ExternalEnv) else None
     if in_rust and masks is None and config.action_mask is True and external is not None:
         masks = WRITTEN_MASKS if external.has_action_mask else None
-    elif in_rust and masks is None and not discretizer.reads_space:
+    elif in_rust and masks is None and not in_python:
         masks = known_masks(config.action_mask, env, discretizer, len(actions))
-    read_in_python = discretizer.reads_space and (external is None or not discretizer.reads_numbers)
-    if in_rust and (masks is None or read_in_python):
-        in_rust, python_reason = False, READ_IN_PYTHON if read_in_python else MASKS_BY_STEP
+    if in_rust and (masks is None or in_python):
+        in_rust, python_reason = False, READ_IN_PYTHON if in_python else MASKS_BY_STEP
         if config.backend in INSISTING:
             raise rust_unavailable(python_reason, config.backend)
     if masks is None:
@@ -248,7 +249,7 @@ def _environment(request: _Request, actions: Actions, owns_env: bool) -> tuple[E
     if entry is not None and backend not in IN_PYTHON:
         try:
             if isinstance(entry, _core.ExternalEnv):
-                return NativeEnvironment(entry.native_env()), None
+                return NativeEnvironment(entry.native_env(), entry), None
             return NativeEnvironment(native_env(entry.name, request.env.unwrapped, actions)), None
         except (TypeError, ValueError) as error:
             if backend in INSISTING:

@@ -7,12 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab import _core
-from qtab._discretizer_spec import DiscretizerSpec
 from qtab._spec import EnvironmentSpec, RunSpec
 from qtab.config import Config
 from qtab.config.config import replace_checked
 from qtab.config.options import is_set
-from qtab.discretizers import Composite, Discretizer
+from qtab.discretizers import Discretizer
 from qtab.envs.actions import Actions
 from qtab.training.setup.environment import ActionMasks, Environment, NativeEnvironment, ObservedEnv
 
@@ -62,16 +61,11 @@ class ResolvedRun:
             return {**spec, "env": env, "action_mask": masks}
         return spec
 
-    def _discretizer_spec(self) -> DiscretizerSpec:
-        if self.is_native and isinstance(self.discretizer, Composite):
-            return self.discretizer.spec_of_numbers()
-        return self.discretizer.spec()
-
     def spec(self) -> RunSpec:
         """Returns the run without its seed, as the extension takes it."""
         return {
             "env": self._env_spec(),
-            "discretizer": self._discretizer_spec(),
+            "discretizer": self.discretizer.spec(),
             "num_actions": len(self.actions),
             "max_episode_steps": self.max_episode_steps,
             "action_masks": self.masks.spec(),

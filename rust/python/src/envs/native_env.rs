@@ -55,7 +55,7 @@ impl PyNativeEnv {
     #[staticmethod]
     #[pyo3(signature = (capsule, on_failure = None))]
     fn from_capsule(capsule: &Bound<'_, PyAny>, on_failure: Option<Py<PyAny>>) -> PyResult<Self> {
-        Ok(PyExternalEnv::new(capsule, on_failure)?.native_env())
+        Ok(PyExternalEnv::new(capsule, on_failure)?.native_env(Vec::new()))
     }
 }
 

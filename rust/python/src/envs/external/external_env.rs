@@ -13,7 +13,7 @@ use qtab_env::{FLOAT32, FLOAT64, Number};
 
 use super::super::native_env::NativeEnv;
 use super::external_task::{ExternalTask, TaskOptions};
-use super::observations::{ConvertTo, Converted, ConvertedProduct};
+use super::observations::{ConvertTo, Converted};
 use crate::convert::Seed;
 use crate::error::invalid;
 use crate::runs::{AnyRecordings, BoxedFactory, RunFactory, boxed_run, check_actions, observed_run, one_step_runs};
@@ -102,12 +102,12 @@ impl ExternalEnv {
     fn box_runs<T, D>(self: &Arc<Self>, to_dtype: fn(f64) -> D, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>>
     where
         T: ConvertTo<D>,
-        D: Float + Send + Sync + 'static,
+        D: Float + Default + Send + Sync + 'static,
     {
         if let DiscretizerSpec::Tiles(tiles) = &spec.discretizer {
-            return self.runs_with::<T, _>(Converted::<D, _>::new(tiles.tile_coding::<D, MAX_TILINGS>()), spec);
+            return self.runs_with::<T, _>(Converted::new(tiles.tile_coding::<D, MAX_TILINGS>(), Vec::new()), spec);
         }
-        self.runs_with::<T, _>(Converted::<D, _>::new(spec.discretizer.grid(to_dtype)?), spec)
+        self.runs_with::<T, _>(Converted::new(spec.discretizer.grid(to_dtype)?, Vec::new()), spec)
     }
 
     /// Runs with a discretizer of the type of the observations, which may estimate the values of a policy that reads
@@ -157,19 +157,23 @@ impl ExternalEnv {
         Err(invalid("discretizer", format!("one for observations of {size} numbers"), dimensions))
     }
 
-    fn build_runs(self: &Arc<Self>, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>> {
+    /// Runs as the spec describes them. `first` are the numbers to subtract from those of an observation; empty for zeros.
+    fn build_runs(self: &Arc<Self>, first: &[i64], spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>> {
         let observation_type = self.environment.observation_type();
+        let is_float = [FLOAT32, FLOAT64].contains(&observation_type);
         if let DiscretizerSpec::Identity(reader) = &spec.discretizer {
             self.check_dimensions(reader.dimensions())?;
-            if [FLOAT32, FLOAT64].contains(&observation_type) {
-                return Err(invalid("discretizer", "one for a Box of observations", "'identity'"));
-            }
-            return self.cell_runs::<i64, _>(reader.clone(), spec);
+            return match first {
+                _ if is_float => Err(invalid("discretizer", "one for a Box of observations", "'identity'")),
+                [] => self.cell_runs::<i64, _>(reader.clone(), spec),
+                first => self.cell_runs::<i64, _>(Converted::new(reader.clone(), first.to_vec()), spec),
+            };
         }
         let (dtype, dimensions) = spec.discretizer.box_space()?;
         self.check_dimensions(dimensions)?;
         if let DiscretizerSpec::Product(product) = &spec.discretizer {
-            let features = ConvertedProduct::new(product.features.clone());
+            let first = first.iter().map(|&first| first as f64).collect();
+            let features = Converted::new(product.features.clone(), first);
             return match observation_type {
                 FLOAT32 => self.runs_with::<f32, _>(features, spec),
                 FLOAT64 => self.runs_with::<f64, _>(features, spec),
@@ -191,11 +195,14 @@ impl ExternalEnv {
     }
 }
 
-/// An environment of another library, as training takes it.
-pub(super) struct SharedExternalEnv(pub(super) Arc<ExternalEnv>);
+/// An environment of another library, as training takes it, with the numbers to subtract from those of an observation.
+pub(super) struct SharedExternalEnv {
+    pub(super) env: Arc<ExternalEnv>,
+    pub(super) first: Vec<i64>,
+}
 
 impl NativeEnv for SharedExternalEnv {
     fn runs(&self, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>> {
-        self.0.build_runs(spec)
+        self.env.build_runs(&self.first, spec)
     }
 }

@@ -1,24 +1,23 @@
 //! Features of the observations that an environment writes into a buffer.
 
-use std::marker::PhantomData;
-
 use qtab_core::Features;
-use qtab_core::features::{OutOfBounds, Product};
+use qtab_core::features::OutOfBounds;
 use qtab_env::Number;
 
 use crate::convert::DiscreteReader;
 
 /// A number of an observation that can be converted to the dtype of a discretizer, as `NumPy`'s `astype` does.
 pub(super) trait ConvertTo<T>: Number {
-    fn convert(self) -> T;
+    /// The number less `first`.
+    fn convert(self, first: T) -> T;
 }
 
 macro_rules! convert_to {
     ($($from:ty => $to:ty),*) => {$(
         impl ConvertTo<$to> for $from {
             #[inline]
-            fn convert(self) -> $to {
-                self as $to
+            fn convert(self, first: $to) -> $to {
+                self as $to - first
             }
         }
     )*};
@@ -28,38 +27,58 @@ convert_to!(f32 => f64, f64 => f32, i64 => f32, i64 => f64);
 
 impl ConvertTo<f64> for f64 {
     #[inline]
-    fn convert(self) -> f64 {
-        self
+    fn convert(self, first: f64) -> f64 {
+        self - first
     }
 }
 
-/// Features of numbers of type `T`, for observations of another type.
+impl ConvertTo<i64> for i64 {
+    #[inline]
+    fn convert(self, first: i64) -> i64 {
+        self.wrapping_sub(first)
+    }
+}
+
+/// Observations of at most this many numbers are converted without an allocation.
+const FEW_NUMBERS: usize = 32;
+
+/// Features of numbers of type `T`, for observations of another type, or for indices that do not begin at 0.
 #[derive(Clone, Debug)]
 pub(super) struct Converted<T, F> {
-    pub(super) features: F,
-    to: PhantomData<T>,
+    features: F,
+    /// The numbers to subtract from those of an observation; empty for zeros.
+    first: Vec<T>,
 }
 
 impl<T, F> Converted<T, F> {
-    pub(super) fn new(features: F) -> Self {
-        Self { features, to: PhantomData }
+    pub(super) fn new(features: F, first: Vec<T>) -> Self {
+        Self { features, first }
     }
 }
 
-impl<S: ConvertTo<T>, T, F: Features<[T]>> Features<[S]> for Converted<T, F> {
+impl<S, T, F> Features<[S]> for Converted<T, F>
+where
+    S: ConvertTo<T>,
+    T: Copy + Default,
+    F: Features<[T]>,
+{
     type Active = F::Active;
 
     fn active_rows(&self, observation: &[S]) -> Result<F::Active, OutOfBounds> {
-        self.features.active_rows(&observation.iter().map(|&number| number.convert()).collect::<Vec<T>>())
+        let first = |index| self.first.get(index).copied().unwrap_or_default();
+        let converted = observation.iter().enumerate().map(|(index, &number)| number.convert(first(index)));
+        let mut few = [T::default(); FEW_NUMBERS];
+        if let Some(values) = few.get_mut(..observation.len()) {
+            values.iter_mut().zip(converted).for_each(|(value, number)| *value = number);
+            return self.features.active_rows(values);
+        }
+        self.features.active_rows(&converted.collect::<Vec<T>>())
     }
 
     fn len(&self) -> usize {
         self.features.len()
     }
 }
-
-/// The features of a product, for observations of any type.
-pub(super) type ConvertedProduct = Converted<f64, Product>;
 
 /// Each combination of integers has its own row.
 impl Features<[i64]> for DiscreteReader {

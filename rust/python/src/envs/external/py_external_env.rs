@@ -43,9 +43,11 @@ impl PyExternalEnv {
         Ok(Self(Arc::new(ExternalEnv { environment, step_work, _capsule: capsule.clone().unbind(), on_failure })))
     }
 
-    /// The environment as training takes it.
-    pub(crate) fn native_env(&self) -> PyNativeEnv {
-        PyNativeEnv::from(Arc::new(SharedExternalEnv(Arc::clone(&self.0))) as Arc<dyn NativeEnv>)
+    /// The environment as training takes it. `first` are the numbers to subtract from those of an observation, so that
+    /// indices begin at 0; empty for zeros.
+    #[pyo3(signature = (first = Vec::new()))]
+    pub(crate) fn native_env(&self, first: Vec<i64>) -> PyNativeEnv {
+        PyNativeEnv::from(Arc::new(SharedExternalEnv { env: Arc::clone(&self.0), first }) as Arc<dyn NativeEnv>)
     }
 
     /// The number of bytes of a state.
