@@ -55,6 +55,10 @@ class NativeEnv(gym.Env[Any, Any]):
         self._episode: _core.ExternalEpisode | None = None
         self._elapsed = 0
 
+    def __repr__(self) -> str:
+        """Returns one line with the path."""
+        return f"<{type(self).__name__} of {self.library!r}>"
+
     def __qtab_env__(self) -> Any:
         """Returns the capsule by which Rust steps the environment."""
         return self._library.capsule

@@ -70,6 +70,10 @@ class FunctionalEnv(gym.Env[Any, Any], ABC):
         if own is not None and len(signature(own).parameters) == 2:
             cls.render = _of_current_state(own)  # type: ignore[method-assign]
 
+    def __repr__(self) -> str:
+        """Returns the name of the class; Gymnasium would show an environment without an id by its address."""
+        return super().__repr__() if self.spec is not None else f"<{type(self).__name__}>"
+
     @abstractmethod
     def initial_state(self, rng: np.random.Generator) -> Any:
         """Returns the first state of an episode.
