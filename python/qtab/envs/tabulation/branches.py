@@ -11,6 +11,8 @@ MOST_VALUES = 10_000
 """The most values that one draw may have."""
 MOST_OUTCOMES = 100_000
 """The most combinations of draws in one call of a function."""
+MOST_DRAWS = 1_000
+"""The most draws in one run of a function; one that draws until a value fits would never end."""
 
 
 class CannotListError(Exception):
@@ -48,9 +50,14 @@ class Branches:
             probabilities: The probabilities of the values. Values without probability are left out.
 
         Raises:
-            CannotListError: if there are too many values, or if the function draws differently than in an earlier run
-                with the same values.
+            CannotListError: if there are too many values or draws, or if the function draws differently than in an
+                earlier run with the same values.
         """
+        if self._depth == MOST_DRAWS:
+            raise self.refused(
+                f"{call} and more than {MOST_DRAWS:,} draws in one call; to draw until a value fits, use rng.choice of "
+                "the values that fit"
+            )
         if self._depth == len(self._path):
             if len(probabilities) > MOST_VALUES:
                 raise self.refused(f"{call}, which has {len(probabilities):,} values, more than {MOST_VALUES:,}")
