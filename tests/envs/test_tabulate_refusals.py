@@ -271,3 +271,18 @@ def test_a_table_that_steps_do_not_follow_is_refused():
         qtab.tabulate(gym.make("Taxi-v4", fickle_passenger=True))
     with pytest.raises(ValueError, match="its class BlockingMazeEnv overrides reset"):
         qtab.tabulate(gym.make("qtab/BlockingMaze-v0"))
+
+
+def test_other_steps_and_resets_than_those_of_a_functional_environment_are_refused():
+    def step(self, action):
+        observation, reward, *others = Line.step(self, action)
+        return observation, float(reward) - 10, *others
+
+    for name, method in (("step", step), ("reset", lambda self, **arguments: Line.reset(self, **arguments))):
+        below = type("Below", (type(line(**{name: method})),), {})
+        with pytest.raises(ValueError, match=f"env must not override step or reset .* its class Line overrides {name}"):
+            qtab.tabulate(below())
+    env: Any = Line()
+    env.step = lambda action: step(env, action)
+    with pytest.raises(ValueError, match="its method step was replaced"):
+        qtab.tabulate(env)

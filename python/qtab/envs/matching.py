@@ -151,6 +151,20 @@ def layers(env: gym.Env) -> Iterator[gym.Env]:
     yield env
 
 
+def overridden(cls: type, owner: type) -> tuple[type, str] | None:
+    """Returns the class that overrides ``reset`` or ``step`` of a base class, and which; None if none does.
+
+    Args:
+        cls: The class.
+        owner: The base class.
+    """
+    for base in cls.__mro__[: cls.__mro__.index(owner)]:
+        for name in ("reset", "step"):
+            if name in vars(base):
+                return base, name
+    return None
+
+
 def unknown_wrapper(env: gym.Env) -> str | None:
     """Returns the class name of the outermost wrapper that may change a number; None if there is none."""
     *wrappers, _ = layers(env)

@@ -8,7 +8,7 @@ import numpy as np
 
 from qtab import _core
 from qtab.envs.class_code import is_of_library
-from qtab.envs.matching import NotInRustError, layers, unknown_wrapper
+from qtab.envs.matching import NotInRustError, layers, overridden, unknown_wrapper
 
 
 def has_capsule(env: gym.Env) -> bool:
@@ -46,9 +46,10 @@ def external_env(env: gym.Env, backend: str) -> _core.ExternalEnv | None:
         return _compiled_class(env)
     unwrapped = _unwrapped(env)
     cls = type(unwrapped)
-    for base in cls.__mro__[: next(i for i, base in enumerate(cls.__mro__) if "__qtab_env__" in vars(base))]:
-        if (name := next((name for name in ("reset", "step") if name in vars(base)), None)) is not None:
-            raise NotInRustError(f"its class {base.__name__} overrides {name}", "leave reset and step as they are")
+    owner = next(base for base in cls.__mro__ if "__qtab_env__" in vars(base))
+    if (found := overridden(cls, owner)) is not None:
+        base, name = found
+        raise NotInRustError(f"its class {base.__name__} overrides {name}", "leave reset and step as they are")
     failed = getattr(unwrapped, "__qtab_env_failed__", None)
     external = _core.ExternalEnv(unwrapped.__qtab_env__(), None if failed is None else _failure_handler(failed))
     limit = external.max_episode_steps

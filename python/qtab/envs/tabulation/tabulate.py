@@ -9,7 +9,7 @@ import numpy as np
 from qtab._utils import checks
 from qtab._utils.shown import shown
 from qtab.envs.functional import FunctionalEnv
-from qtab.envs.matching import layers, time_limit
+from qtab.envs.matching import layers, overridden, time_limit
 from qtab.envs.origin.describe import NEUTRAL
 from qtab.envs.tabulation.copied_outcomes import CopiedOutcomes
 from qtab.envs.tabulation.functional_outcomes import FunctionalOutcomes
@@ -55,7 +55,7 @@ def tabulate(env: gym.Env[Any, Any], *, max_states: int = 100_000) -> TabulatedE
     Raises:
         TypeError: if an argument has the wrong type, or a method of the environment returns one.
         ValueError: for more than ``max_states`` states, outcomes that cannot be listed, states that cannot be compared,
-            an environment that truncates episodes itself, other action spaces, or wrappers that may change a number.
+            an environment that truncates episodes itself, a functional one that overrides ``step`` or ``reset``, other action spaces, or wrappers that may change a number.
             The message names the state, the action and the draw.
     """
     if not isinstance(env, gym.Env):
@@ -71,8 +71,22 @@ def tabulate(env: gym.Env[Any, Any], *, max_states: int = 100_000) -> TabulatedE
     limit = time_limit(env)
     if has_known_table(unwrapped):
         return tabulate_known(unwrapped, limit, max_states)
-    outcomes = FunctionalOutcomes(unwrapped) if isinstance(unwrapped, FunctionalEnv) else CopiedOutcomes(unwrapped)
-    return _tabulated(outcomes, unwrapped, limit, max_states)
+    if not isinstance(unwrapped, FunctionalEnv):
+        return _tabulated(CopiedOutcomes(unwrapped), unwrapped, limit, max_states)
+    _check_not_overridden(unwrapped)
+    return _tabulated(FunctionalOutcomes(unwrapped), unwrapped, limit, max_states)
+
+
+def _check_not_overridden(env: FunctionalEnv) -> None:
+    cls = type(env)
+    found = overridden(cls, FunctionalEnv)
+    replaced = next((name for name in ("reset", "step") if name in vars(env)), None)
+    if found is not None or replaced is not None:
+        made = f"its class {found[0].__name__} overrides {found[1]}" if found else f"its method {replaced} was replaced"
+        raise ValueError(
+            f"env must not override step or reset of qtab.FunctionalEnv, whose steps follow from its other methods, "
+            f"but {made}"
+        )
 
 
 def _tabulated(outcomes: Outcomes, env: Any, limit: int | None, max_states: int) -> TabulatedEnv:
