@@ -55,8 +55,8 @@ def tabulate(env: gym.Env[Any, Any], *, max_states: int = 100_000) -> TabulatedE
     Raises:
         TypeError: if an argument has the wrong type, or a method of the environment returns one.
         ValueError: for more than ``max_states`` states, outcomes that cannot be listed, states that cannot be compared,
-            an environment that truncates episodes itself, a functional one that overrides ``step`` or ``reset``, other action spaces, or wrappers that may change a number.
-            The message names the state, the action and the draw.
+            an environment that truncates episodes itself, a functional one that overrides ``step`` or ``reset``, other
+            action spaces, or wrappers that may change a number. The message names the state, the action and the draw.
     """
     if not isinstance(env, gym.Env):
         raise TypeError(f"env must be an environment, got {shown(env)}")
