@@ -1,5 +1,9 @@
 """qtab.tabulate of ordinary Gymnasium classes: copies are stepped, and all attributes are the state."""
 
+import random
+from collections import deque
+from enum import IntEnum
+from types import SimpleNamespace
 from typing import Any
 
 import gymnasium as gym
@@ -174,6 +178,88 @@ def test_references_to_itself_and_its_generator_are_no_new_states():
         return Corridor.step(self, action)
 
     assert len(qtab.tabulate(corridor(step=step)).P) == len(qtab.tabulate(Corridor()).P) + 2  # before the first step
+
+
+class Board(list[int]):
+    """A list with an attribute."""
+
+    turn = 0
+
+
+class History(deque[int]):
+    """A collection that is written in C."""
+
+
+class Slotted:
+    """A class without ``__dict__``."""
+
+    __slots__ = ("moves",)
+
+
+class BelowSlotted(Slotted):
+    """A class with ``__dict__``, and a base without it."""
+
+
+class Dice(random.Random):
+    """Another generator, of a base written in C."""
+
+
+class Color(IntEnum):
+    """A number with attributes that do not change."""
+
+    RED = 1
+
+
+def keep(make, change):
+    """A corridor that keeps an object and changes it in each step, and ends after four."""
+
+    def reset(self, **arguments):
+        self.kept = make()
+        return Corridor.reset(self, **arguments)
+
+    def step(self, action):
+        change(self.kept)
+        return Corridor.step(self, action)
+
+    return corridor(reset=reset, step=step)
+
+
+def turn(board):
+    board.turn += 1
+
+
+def move(slotted):
+    slotted.moves = getattr(slotted, "moves", 0) + 1
+
+
+@pytest.mark.parametrize(
+    ("make", "change", "text"),
+    [
+        (Board, turn, r"self\.kept is a Board with attributes of its own"),
+        (History, lambda history: history.append(1), r"self\.kept is a History, with the base deque written in C"),
+        (BelowSlotted, move, r"self\.kept is a BelowSlotted, whose base Slotted has __slots__"),
+        (lambda: Dice(0), lambda dice: dice.random(), r"self\.kept is a Dice, with the base Random written in C"),
+    ],
+    ids=["list", "deque", "slots", "Random"],
+)
+def test_objects_with_a_state_outside_their_attributes_are_refused(make, change, text):
+    with pytest.raises(ValueError, match=text):
+        qtab.tabulate(keep(make, change), max_states=200)
+
+
+def test_an_environment_with_slots_is_refused():
+    def step(self, action):
+        self.moves = getattr(self, "moves", 0) + 1
+        return Corridor.step(self, action)
+
+    env = type("Slots", (Corridor,), {"__slots__": ("moves",), "step": step})()
+    with pytest.raises(ValueError, match="it is a Slots, which has __slots__"):
+        qtab.tabulate(env, max_states=200)
+
+
+def test_members_of_enumerations_and_lists_without_attributes_are_compared():
+    for make in (lambda: Color.RED, lambda: type("Plain", (list,), {})([1]), lambda: SimpleNamespace(a=1)):
+        assert len(qtab.tabulate(keep(make, lambda kept: None)).P) == len(qtab.tabulate(Corridor()).P)
 
 
 def test_an_environment_that_cannot_be_copied_is_refused():

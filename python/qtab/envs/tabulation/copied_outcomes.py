@@ -15,7 +15,7 @@ from qtab._utils.shown import shown
 from qtab.config.functions import checked_mask
 from qtab.envs.tabulation.branches import Branches, CannotListError
 from qtab.envs.tabulation.generator import ListingGenerator
-from qtab.envs.tabulation.state_keys import NotComparableError, attributes_key, state_text
+from qtab.envs.tabulation.state_keys import NotComparableError, attributes_key, part_outside_attributes, state_text
 from qtab.envs.tabulation.walk import Outcome, Visit
 
 _NOT_STATE = ("_np_random", "_np_random_seed", "spec", "metadata", "render_mode", "observation_space", "action_space")
@@ -47,7 +47,7 @@ class CopiedOutcomes:
         env: The environment. It is copied, and not stepped.
 
     Raises:
-        ValueError: if it cannot be copied.
+        ValueError: if it cannot be copied, or has a state outside its attributes.
     """
 
     name_of_state = "self"
@@ -56,6 +56,8 @@ class CopiedOutcomes:
         self._branches = Branches()
         self._rng = ListingGenerator(self._branches)
         self._name = type(env).__name__
+        if (reason := part_outside_attributes(type(env))) is not None:
+            raise ValueError(f"env must keep its state in attributes, but it is a {self._name}, {reason}")
         self._shared = [env.observation_space, env.action_space, env.metadata, env.spec]
         """Objects that the copies share."""
         try:

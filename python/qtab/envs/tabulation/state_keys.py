@@ -3,8 +3,8 @@
 import math
 from collections.abc import Hashable, Iterator, Mapping, Sequence
 from enum import Enum
-from types import FunctionType, MethodType, ModuleType
-from typing import Any
+from types import BuiltinFunctionType, FunctionType, MethodType, ModuleType, SimpleNamespace
+from typing import Any, Generic
 
 import gymnasium as gym
 import numpy as np
@@ -15,6 +15,12 @@ from qtab.envs.tabulation.uniform import Uniform
 
 _CONSTANT = (type, ModuleType, Enum, type(None), str, bytes)
 """Objects that do not change in an episode."""
+
+_COMPARED_BY_VALUE = (int, float, str, bytes, tuple, list, set, frozenset, Mapping, np.ndarray)
+"""Values of which only the number, the text or the items are compared, not the attributes of a subclass."""
+
+_IN_ATTRIBUTES = (object, Generic, SimpleNamespace)
+"""Classes written in C whose objects keep nothing besides their attributes."""
 
 _DEEPEST = 4
 """The depth to which the attributes of objects are searched for growing numbers."""
@@ -67,6 +73,8 @@ def _key(value: Any, name: str, seen: dict[int, int] | None) -> Hashable:
         name: Its name in messages.
         seen: A number for each object that can change, by its id; None to compare objects by value only.
     """
+    if isinstance(value, _COMPARED_BY_VALUE) and not isinstance(value, Enum) and getattr(value, "__dict__", None):
+        raise NotComparableError(f"{name} is a {type(value).__qualname__} with attributes of its own")
     if isinstance(value, bool | int | np.bool_ | np.integer):
         return value
     if isinstance(value, float | np.floating):
@@ -115,7 +123,20 @@ def _key_of_object(value: Any, name: str, seen: dict[int, int] | None) -> Hashab
         return value
     if not hasattr(value, "__dict__") or cls.__module__.partition(".")[0] in ("gymnasium", "numpy", "random"):
         raise NotComparableError(f"{name} is a {cls.__module__}.{cls.__qualname__}, which cannot be compared")
+    if (reason := part_outside_attributes(cls)) is not None:
+        raise NotComparableError(f"{name} is a {cls.__qualname__}, {reason}")
     return (cls, *((key, _key(item, f"{name}.{key}", seen)) for key, item in sorted(vars(value).items())))
+
+
+def part_outside_attributes(cls: type) -> str | None:
+    """Returns why ``vars`` does not hold the whole state of the objects of a class, in words; None if it does."""
+    for base in cls.__mro__:
+        slots = vars(base).get("__slots__", ())
+        if set((slots,) if isinstance(slots, str) else slots) - {"__dict__", "__weakref__"}:
+            return f"whose base {base.__qualname__} has __slots__" if base is not cls else "which has __slots__"
+        if isinstance(vars(base).get("__new__"), BuiltinFunctionType) and base not in _IN_ATTRIBUTES:
+            return f"with the base {base.__qualname__} written in C, which may keep a state that cannot be seen"
+    return None
 
 
 def growing_numbers(states: Sequence[Any], name: str = "state") -> str:
