@@ -256,17 +256,46 @@ def test_wrong_first_states_are_refused(outcomes, error, text):
         qtab.tabulate(env)
 
 
-class Steeper(FrozenLakeEnv):
-    """A frozen lake whose steps do not follow its table."""
+class Dry(FrozenLakeEnv):
+    """A frozen lake that never slips: each step is in its table, with another probability."""
 
     def step(self, action: Any) -> Any:
-        state, reward, *others = super().step(action)
-        return state, reward - 1, *others
+        _, self.s, reward, terminated = self.P[self.s][action][1]
+        return self.s, reward, terminated, False, {}
 
 
-def test_a_table_that_steps_do_not_follow_is_refused():
-    with pytest.raises(ValueError, match=r"env must follow its table P, but step\(\d\) in state 0 returned"):
-        qtab.tabulate(Steeper())
+class Elsewhere(FrozenLakeEnv):
+    """A frozen lake that is always in state 5."""
+
+    s: Any = property(lambda self: 5, lambda self, value: None)
+
+
+class Pictured(FrozenLakeEnv):
+    """A frozen lake with other pictures."""
+
+    def render(self) -> Any:
+        return None
+
+
+def test_a_table_that_steps_do_not_follow_is_refused(monkeypatch):
+    with pytest.raises(
+        ValueError, match=r"its class Dry overrides step; qtab\.TabularEnv\(env\.P, env\.init.* follows"
+    ):
+        qtab.tabulate(Dry())
+    below: Any = type("Below", (Dry,), {})
+    with pytest.raises(ValueError, match="its class Dry overrides step"):
+        qtab.tabulate(below())
+    with pytest.raises(ValueError, match=r"env must follow its table P, but reset\(\) returned 5"):
+        qtab.tabulate(Elsewhere())
+    assert qtab.tabulate(Pictured()).P == qtab.tabulate(FrozenLakeEnv()).P
+    env: Any = FrozenLakeEnv()
+    env.step = lambda action: Dry.step(env, action)
+    with pytest.raises(ValueError, match="its method step was replaced"):
+        qtab.tabulate(env)
+    with monkeypatch.context() as patch:
+        patch.setattr(FrozenLakeEnv, "step", Dry.step)
+        with pytest.raises(ValueError, match=r"FrozenLakeEnv\.step was replaced"):
+            qtab.tabulate(FrozenLakeEnv())
     with pytest.raises(ValueError, match="fickle_passenger=True"):
         qtab.tabulate(gym.make("Taxi-v4", fickle_passenger=True))
     with pytest.raises(ValueError, match="its class BlockingMazeEnv overrides reset"):

@@ -43,6 +43,10 @@ def tabulate_known(env: Any, max_episode_steps: int | None, max_states: int) -> 
     for name in ("reset", "step"):
         if isinstance(env, TabularEnv) and getattr(type(env), name) is not getattr(TabularEnv, name):
             raise ValueError(f"env must follow its table P, but its class {type(env).__name__} overrides {name}")
+    if (other := _other_steps(env)) is not None:
+        raise ValueError(
+            f"env must follow its table P, but {other}; qtab.TabularEnv(env.P, env.initial_state_distrib) follows it"
+        )
     known = quantities_of("" if env.spec is None else env.spec.id)
     table = TabulatedEnv(
         env.P,
@@ -59,7 +63,7 @@ def tabulate_known(env: Any, max_episode_steps: int | None, max_states: int) -> 
             f"env must have the spaces {table.observation_space} and {table.action_space} of its table P, got "
             f"{env.observation_space} and {env.action_space}"
         )
-    if not _steps_by_table(env):
+    if not is_of_library(type(env)):
         _check_steps(env, table)
     return table
 
@@ -75,11 +79,18 @@ def _masks(env: Any) -> NDArray[np.bool_] | None:
     return masks
 
 
-def _steps_by_table(env: gym.Env) -> bool:
-    """Returns whether a class of Gymnasium or of this package steps the environment, without changed methods."""
+def _other_steps(env: gym.Env) -> str | None:
+    """Returns in words why Gymnasium or this package does not reset and step the environment; None if they do."""
     cls = type(env)
-    replaced = any(callable(getattr(cls, name, None)) for name in vars(env))
-    return is_of_library(cls) and changed_library_code(cls) is None and not replaced
+    for name in ("reset", "step"):
+        owner = next(base for base in cls.__mro__ if name in vars(base))
+        if not is_of_library(owner):
+            return f"its class {owner.__name__} overrides {name}"
+    replaced = next((name for name in vars(env) if callable(getattr(cls, name, None))), None)
+    if replaced is not None:
+        return f"its method {replaced} was replaced"
+    changed = changed_library_code(cls)
+    return None if changed is None else f"{changed} was replaced"
 
 
 def _check_steps(env: gym.Env, table: TabulatedEnv) -> None:

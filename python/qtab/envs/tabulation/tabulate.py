@@ -26,7 +26,9 @@ def tabulate(env: gym.Env[Any, Any], *, max_states: int = 100_000) -> TabulatedE
     environment is refused; they are never estimated.
 
     - An environment with ``P`` and ``initial_state_distrib``, such as Gymnasium's toy text, gives its own table,
-      unchanged to the bit. For classes outside Gymnasium and qtab, 2,000 sampled steps are compared with the table.
+      unchanged to the bit. Its methods ``reset`` and ``step`` must be those of Gymnasium's or qtab's class: sampled
+      steps could not show that others have the same probabilities. For a class that overrides one of them, tabulate
+      ``qtab.TabularEnv(env.P, env.initial_state_distrib)``.
     - For a :class:`qtab.FunctionalEnv`, the states that can be reached are visited breadth first. A transition that
       draws random numbers is repeated once for each combination of values. This works for ``integers``, ``choice``,
       ``permutation``, ``shuffle`` and ``binomial`` with few values, and for ``random()`` and ``uniform(low, high)`` if
