@@ -274,3 +274,57 @@ def test_classic_control_is_refused_for_its_draw():
         qtab.tabulate(gym.make("MountainCar-v0"))
     with pytest.raises(ValueError, match=r"reset of CartPoleEnv calls rng\.uniform.*size=\(4,\)"):
         qtab.tabulate(gym.make("CartPole-v1"))
+
+
+def resetting(begin, **attributes):
+    """A corridor whose resets also call a function, and with other attributes."""
+
+    def reset(self, **arguments):
+        Corridor.reset(self, **arguments)
+        begin(self)
+        return self.place, {}
+
+    env = corridor(reset=reset)
+    vars(env).update(attributes)
+    return env
+
+
+def alternate(env):
+    env.turn = 1 - env.turn
+    env.place = env.turn
+
+
+def start_where_it_ended(env):
+    env.place = getattr(env, "last", 0)
+
+
+def remember(self, action):
+    answer = Corridor.step(self, action)
+    self.last = min(self.place, 2)
+    return answer
+
+
+def test_an_episode_that_begins_differently_after_another_is_refused():
+    text = r"reset of Corridor must not depend on what an earlier episode left .*'place': 4.*, it sets self\.place to"
+    with pytest.raises(ValueError, match=text):
+        qtab.tabulate(resetting(alternate, turn=0))
+    env = resetting(start_where_it_ended)
+    type(env).step = remember
+    with pytest.raises(ValueError, match=text):
+        qtab.tabulate(env)
+
+    def observed(self, **arguments):
+        Corridor.reset(self, **arguments)
+        return getattr(self, "last", 0), {}
+
+    with pytest.raises(ValueError, match="it returns other observations or masks"):
+        qtab.tabulate(corridor(reset=observed, step=remember))
+
+
+def test_attributes_that_no_reset_uses_may_survive_an_episode():
+    expected = qtab.tabulate(Corridor())
+    last = qtab.tabulate(corridor(step=remember))
+    assert len(last.P) > len(expected.P)
+    assert np.array_equal(last.initial_state_distrib[:2], [0.5, 0.5])
+    built = resetting(lambda env: vars(env).setdefault("walls", [1, 2]))
+    assert qtab.tabulate(built).P == expected.P

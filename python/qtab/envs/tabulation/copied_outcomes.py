@@ -15,6 +15,7 @@ from qtab._utils.shown import shown
 from qtab.config.functions import checked_mask
 from qtab.envs.tabulation.branches import Branches, CannotListError
 from qtab.envs.tabulation.generator import ListingGenerator
+from qtab.envs.tabulation.later_resets import Reset, difference
 from qtab.envs.tabulation.state_keys import NotComparableError, attributes_key, part_outside_attributes, state_text
 from qtab.envs.tabulation.walk import Outcome, Visit
 
@@ -58,6 +59,9 @@ class CopiedOutcomes:
         self._name = type(env).__name__
         if (reason := part_outside_attributes(type(env))) is not None:
             raise ValueError(f"env must keep its state in attributes, but it is a {self._name}, {reason}")
+        self._first: Reset | None = None
+        self._ended: set[Hashable] = set()
+        """The keys of the terminal states after which a reset was compared with the first one."""
         self._shared = [env.observation_space, env.action_space, env.metadata, env.spec]
         """Objects that the copies share."""
         try:
@@ -71,17 +75,16 @@ class CopiedOutcomes:
         Raises:
             ValueError: if the first states cannot be listed or compared.
         """
-        try:
-            return list(self._branches.outcomes(self._reset))
-        except CannotListError as error:
-            raise self._refused("reset", error, "") from None
+        self._first = self._resets(self._env)
+        return list(self._first.visits)
 
     def step(self, state: Any, action: int) -> list[Outcome]:
         """Returns the outcomes of an action.
 
         Raises:
             TypeError: if the reward is not a number.
-            ValueError: if the outcomes cannot be listed, depend on more than the attributes, or truncate the episode.
+            ValueError: if the outcomes cannot be listed, depend on more than the attributes, or truncate the episode,
+                or if an episode after a terminal state begins differently than the first one.
         """
         where = _Place(self, state, action)
 
@@ -99,6 +102,9 @@ class CopiedOutcomes:
                 f"step of {self._name} must depend only on its attributes: a repeated step of a copy with the same "
                 f"random numbers returned another result, {where}"
             )
+        for _, one in found:
+            if one.terminated:
+                self._check_next_episode(one.visit)
         return [replace(one, probability=chance) for chance, one in found]
 
     def plain_states(self, states: Sequence[Any]) -> list[Any]:
@@ -125,8 +131,26 @@ class CopiedOutcomes:
         finally:
             env._np_random = generator
 
-    def _reset(self) -> Visit:
-        env = self._copy(self._env)
+    def _resets(self, before: Any) -> Reset:
+        try:
+            visits = list(self._branches.outcomes(lambda: self._reset(before)))
+        except CannotListError as error:
+            raise self._refused("reset", error, "") from None
+        return Reset(before, visits, self.attributes)
+
+    def _check_next_episode(self, last: Visit) -> None:
+        if self._first is None or last.key in self._ended:
+            return
+        self._ended.add(last.key)
+        found = difference(self._first, self._resets(last.state))
+        if found is not None:
+            raise ValueError(
+                f"reset of {self._name} must not depend on what an earlier episode left in its attributes, but after "
+                f"an episode that ended in the state {state_text(self.attributes(last.state))}, it {found}"
+            )
+
+    def _reset(self, before: Any) -> Visit:
+        env = self._copy(before)
         env.np_random = self._rng
         observation, info = env.reset()
         return self._visit(env, observation, info, "reset", terminated=False)
