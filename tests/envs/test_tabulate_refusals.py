@@ -315,3 +315,18 @@ def test_other_steps_and_resets_than_those_of_a_functional_environment_are_refus
     env.step = lambda action: step(env, action)
     with pytest.raises(ValueError, match="its method step was replaced"):
         qtab.tabulate(env)
+
+
+def test_the_attributes_of_a_functional_environment_are_not_changed():
+    def counting(self, state, action, rng):
+        self.counts[0] += 1
+        return min(state + action, 4), -1.0, state + action >= 4
+
+    env: Any = line(transition=counting)
+    env.counts = np.zeros(1)
+    with pytest.raises(ValueError, match=r"a method of Line changed self\.counts"):
+        qtab.tabulate(env)
+    assert env.counts[0] == 0
+    other: Any = Line()
+    other.items = (item for item in "ab")  # which cannot be copied
+    assert len(qtab.tabulate(other).P) == 5

@@ -42,13 +42,13 @@ class FunctionalOutcomes:
         self._name = type(env).__name__
         self._rng = ListingGenerator(self._branches)
         self._sampler = np.random.default_rng(0)
-        self._env = copy.copy(env)
+        self._env = _copied(env)
         self._env.np_random, self._env.render_mode = self._rng, None
         self._before = _attributes(self._env)
         self._visits: dict[tuple[Hashable, bool], Visit] = {}
         """The states that were found, by their keys and whether they are terminal."""
-        self._outcomes: Callable[[Any, int], Any] | None = getattr(env, "outcomes", None)
-        self._initial_outcomes: Callable[[], Any] | None = getattr(env, "initial_outcomes", None)
+        self._outcomes: Callable[[Any, int], Any] | None = getattr(self._env, "outcomes", None)
+        self._initial_outcomes: Callable[[], Any] | None = getattr(self._env, "initial_outcomes", None)
 
     def initial(self) -> list[tuple[Fraction, Visit]]:
         """Returns the first states of an episode with their probabilities.
@@ -213,6 +213,15 @@ class FunctionalOutcomes:
                 f"env must have states of numbers, tuples and arrays, but in {self._name}, {error}"
             ) from None
         return key
+
+
+def _copied(env: FunctionalEnv) -> FunctionalEnv:
+    """Returns a copy with copies of the attributes, which methods may change by mistake; shallow if there are none."""
+    shared = (env.observation_space, env.action_space, env.metadata, env.spec)
+    try:
+        return copy.deepcopy(env, {id(one): one for one in shared})
+    except Exception:  # copying runs code of any class
+        return copy.copy(env)
 
 
 def _attributes(env: FunctionalEnv) -> dict[str, Hashable]:
