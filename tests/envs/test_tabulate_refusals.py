@@ -1,5 +1,6 @@
 """qtab.tabulate refuses what it cannot list exactly. The message names the place, the draw and the remedy."""
 
+from functools import cached_property
 from typing import Any
 
 import gymnasium as gym
@@ -330,3 +331,42 @@ def test_the_attributes_of_a_functional_environment_are_not_changed():
     other: Any = Line()
     other.items = (item for item in "ab")  # which cannot be copied
     assert len(qtab.tabulate(other).P) == 5
+
+
+def test_a_random_number_in_an_attribute_is_refused_as_a_change():
+    def keeping(self, state, action, rng):
+        self.luck = rng.random()
+        return min(state + action, 4), -1.0, state + action >= 4
+
+    with pytest.raises(ValueError, match=r"a method of Line changed self\.luck"):
+        qtab.tabulate(line(transition=keeping))
+
+
+def test_an_attribute_with_the_name_of_a_method_is_not_called():
+    env: Any = Line()
+    env.outcomes, env.initial_outcomes = [(1, 2)], 3
+    assert qtab.tabulate(env).P == qtab.tabulate(Line()).P
+
+
+class Computed(Line):
+    """A Line whose last place is computed once."""
+
+    @cached_property
+    def lasts(self) -> list[int]:
+        """The last place."""
+        return [4]
+
+    def transition(self, state: Any, action: int, rng: np.random.Generator) -> Any:
+        state = min(state + action, self.lasts[0])
+        return state, -1.0, state == self.lasts[0]
+
+
+def test_a_cached_property_is_no_change_unless_its_value_changes():
+    assert qtab.tabulate(Computed()).P == qtab.tabulate(Line()).P
+
+    def changing(self, state, action, rng):
+        self.lasts.append(state)
+        return Computed.transition(self, state, action, rng)
+
+    with pytest.raises(ValueError, match=r"a method of Computed changed self\.lasts"):
+        qtab.tabulate(type("Computed", (Computed,), {"transition": changing})())

@@ -2,10 +2,12 @@
 
 import copy
 import math
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Hashable, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
+from functools import cached_property
+from inspect import getattr_static
 from typing import Any
 
 import numpy as np
@@ -47,8 +49,8 @@ class FunctionalOutcomes:
         self._before = _attributes(self._env)
         self._visits: dict[tuple[Hashable, bool], Visit] = {}
         """The states that were found, by their keys and whether they are terminal."""
-        self._outcomes: Callable[[Any, int], Any] | None = getattr(self._env, "outcomes", None)
-        self._initial_outcomes: Callable[[], Any] | None = getattr(self._env, "initial_outcomes", None)
+        self._outcomes: Callable[[Any, int], Any] | None = _method(self._env, "outcomes")
+        self._initial_outcomes: Callable[[], Any] | None = _method(self._env, "initial_outcomes")
 
     def initial(self) -> list[tuple[Fraction, Visit]]:
         """Returns the first states of an episode with their probabilities.
@@ -114,9 +116,8 @@ class FunctionalOutcomes:
             ValueError: if they did. The message names the attribute.
         """
         now = _attributes(self._env)
-        changed = next(
-            (name for name in sorted(now.keys() | self._before) if now.get(name) != self._before.get(name)), ""
-        )
+        before = _cached_properties(self._env, now.keys() - self._before) | self._before
+        changed = next((name for name in sorted(now.keys() | before) if now.get(name) != before.get(name)), "")
         if changed:
             raise ValueError(
                 f"env must keep what changes in its state, but a method of {self._name} changed self.{changed}"
@@ -230,8 +231,31 @@ def _attributes(env: FunctionalEnv) -> dict[str, Hashable]:
     for name, value in vars(env).items():
         if name not in _OF_BASE:
             with suppress(NotComparableError):
-                found[name] = state_key(value)
+                found[name] = _attribute_key(value)
     return found
+
+
+def _attribute_key(value: Any) -> Hashable:
+    try:
+        return state_key(value)
+    except CannotListError:  # a random number, which differs from every other value
+        return object()
+
+
+def _cached_properties(env: FunctionalEnv, names: Iterable[str]) -> dict[str, Hashable]:
+    """Returns, for the names that are cached properties, the values that they have when they are computed again."""
+    found: dict[str, Hashable] = {}
+    for name in names:
+        cached = getattr_static(type(env), name, None)
+        if isinstance(cached, cached_property):
+            with suppress(NotComparableError):
+                found[name] = _attribute_key(cached.func(env))
+    return found
+
+
+def _method(env: FunctionalEnv, name: str) -> Callable[..., Any] | None:
+    """Returns a method of an environment; None if its class has none."""
+    return getattr(env, name) if callable(getattr(type(env), name, None)) else None
 
 
 def _identity(outcome: Outcome) -> tuple[Hashable, float, bool]:
