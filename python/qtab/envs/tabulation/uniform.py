@@ -63,6 +63,9 @@ class Uniform:
         return self.refuse(f"asked for its {name}")
 
     def _below(self, other: Any) -> Any:
+        if isinstance(other, np.ndarray | np.floating) and other.dtype.kind == "f" and other.dtype.itemsize < 8:
+            # NumPy rounds the random number to this type first.
+            return self.refuse(f"compared with a {other.dtype.name}, which rounds it (convert the number with float())")
         if isinstance(other, np.ndarray):
             return np.array([self._below(item) for item in other.ravel().tolist()], np.bool_).reshape(other.shape)
         if isinstance(other, Uniform) or not isinstance(other, int | float | np.number | np.bool_):
