@@ -328,3 +328,17 @@ def test_attributes_that_no_reset_uses_may_survive_an_episode():
     assert np.array_equal(last.initial_state_distrib[:2], [0.5, 0.5])
     built = resetting(lambda env: vars(env).setdefault("walls", [1, 2]))
     assert qtab.tabulate(built).P == expected.P
+
+
+def test_class_attributes_that_steps_change_are_refused():
+    def step(self, action):
+        self.places[0] += 1
+        return Corridor.step(self, action)
+
+    def below(self, action):
+        type(self).steps = getattr(self, "steps", 0) + 1
+        return Corridor.step(self, action)
+
+    for method, attributes, name in ((step, {"places": np.zeros(1)}, "places"), (below, {}, "steps")):
+        with pytest.raises(ValueError, match=rf"its steps changed Corridor\.{name}$"):
+            qtab.tabulate(corridor(step=method, **attributes))

@@ -1,6 +1,8 @@
 """``qtab.tabulate``: the transition table of an environment with few states."""
 
 import random
+import sys
+from collections.abc import Hashable
 from typing import Any
 
 import gymnasium as gym
@@ -8,13 +10,15 @@ import numpy as np
 
 from qtab._utils import checks
 from qtab._utils.shown import shown
+from qtab.envs.class_code import is_of_library
 from qtab.envs.functional import FunctionalEnv
 from qtab.envs.matching import layers, overridden, time_limit
 from qtab.envs.origin.describe import NEUTRAL
+from qtab.envs.tabulation.branches import CannotListError
 from qtab.envs.tabulation.copied_outcomes import CopiedOutcomes
 from qtab.envs.tabulation.functional_outcomes import FunctionalOutcomes
 from qtab.envs.tabulation.known_table import has_known_table, tabulate_known
-from qtab.envs.tabulation.state_keys import state_text
+from qtab.envs.tabulation.state_keys import NotComparableError, state_key, state_text
 from qtab.envs.tabulation.tabulated_env import MOST_NAMES, TabulatedEnv
 from qtab.envs.tabulation.walk import Outcomes, Walk
 
@@ -94,9 +98,13 @@ def _check_not_overridden(env: FunctionalEnv) -> None:
 def _tabulated(outcomes: Outcomes, env: Any, limit: int | None, max_states: int) -> TabulatedEnv:
     space = env.action_space
     walk = Walk(outcomes, int(space.n), int(space.start), max_states)
-    before = _other_generators(env)
+    before, of_class = _other_generators(env), _class_attributes(type(env))
     distribution = walk.run()
     _check_unchanged(env, before)
+    now = _class_attributes(type(env))
+    changed = sorted(name for name in now.keys() | of_class if now.get(name) != of_class.get(name))
+    if changed:
+        raise ValueError(f"env must keep what changes in its own attributes, but its steps changed {changed[0]}")
     states = outcomes.plain_states([visit.state for visit in walk.visits])
     names = [state_text(state) for state in states] if len(states) <= MOST_NAMES else []
     table = TabulatedEnv(
@@ -109,6 +117,23 @@ def _tabulated(outcomes: Outcomes, env: Any, limit: int | None, max_states: int)
     )
     table.states, table.observations = tuple(states), tuple(visit.observation for visit in walk.visits)
     return table
+
+
+def _class_attributes(cls: type) -> dict[str, Hashable]:
+    """Returns the keys of the attributes of a class and its bases outside Gymnasium and qtab that can be compared."""
+    found: dict[str, Hashable] = {}
+    for base in cls.__mro__:
+        if is_of_library(base) or base.__module__ in sys.stdlib_module_names:
+            continue
+        for name, value in vars(base).items():
+            if not name.startswith("__"):
+                try:
+                    found[f"{base.__name__}.{name}"] = state_key(value)
+                except NotComparableError:
+                    continue
+                except CannotListError:  # a random number
+                    found[f"{base.__name__}.{name}"] = object()
+    return found
 
 
 def _other_generators(env: Any) -> dict[str, Any]:
