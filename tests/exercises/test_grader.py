@@ -151,6 +151,18 @@ def test_only_finished_checks_are_compared_with_mistakes() -> None:
     assert "in the checks that it finished:" in report.recognition.lines[0]
 
 
+def test_finished_checks_that_are_right_do_not_claim_a_mistake() -> None:
+    def stops(values, epsilon, rng):
+        if epsilon == 0.3:
+            raise ValueError("oops")
+        return int(epsilon_greedy(values, epsilon, rng))
+
+    report = check("epsilon_greedy", stops)
+    assert [result.passed for result in report.results] == [True, True, True, False]
+    assert report.mistakes == ()
+    assert report.recognition.lines == []
+
+
 def broken(function: Callable[..., Any], message: str, name: str = "sarsa", seconds: float = 10.0) -> None:
     """Checks that every check of a function fails with a message, and none is left out."""
     report = check(name, function, seconds=seconds)
