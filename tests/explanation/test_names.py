@@ -47,6 +47,29 @@ def test_a_call_names_states_and_actions() -> None:
     assert explained(NamedFloor(), action_names=("a", "b", "c", "d")).action_name in {"a", "b", "c", "d"}
 
 
+class FloorFromOne(Floor):
+    """The same room, whose states are numbered from 1."""
+
+    observation_space = gym.spaces.Discrete(9, start=1)
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> Any:
+        observation, info = super().reset(seed=seed, options=options)
+        return observation + 1, info
+
+    def step(self, action: int) -> Any:
+        observation, *others = super().step(action)
+        return observation + 1, *others
+
+
+def test_the_cells_of_a_map_start_with_the_first_state() -> None:
+    step = explained(FloorFromOne(), layout=FLOOR)
+    assert (int(step.observation), step.state, step.next_state) == (1, "row 0, column 0", "row 0, column 1")
+    run = qtab.train(FloorFromOne(), episodes=3, seed=0, max_episode_steps=20)
+    assert cell_in_words(run, 0, columns=3) == "row 0, column 0"
+    assert cell_in_words(run, 8, columns=3) == "row 2, column 2"
+    assert cell_in_words(run, 0) == explained(FloorFromOne()).state == "1"
+
+
 def test_an_environment_names_states_and_actions() -> None:
     step = explained(NamedFloor())
     assert (step.state, step.next_state) == ("row 0, column 0", "row 0, column 1")

@@ -35,17 +35,27 @@ class Names:
 
     def state(self, observation: Any) -> str:
         """Returns an observation in words."""
-        return state_in_words(run_quantities(self.run.config, self.run.discretizer), observation, self.columns)
+        known = run_quantities(self.run.config, self.run.discretizer)
+        low = self.run.discretizer.low
+        return state_in_words(known, observation, self.columns, int(low) if low.ndim == 0 else 0)
 
     def cell(self, row: int) -> str:
         """Returns a row of the table in words."""
         return cell_in_words(self.run, row, self.columns)
 
 
-def state_in_words(known: Quantities, observation: Any, columns: int | None = None) -> str:
-    """Returns an observation in words: its components by name, or a place on a map with ``columns`` columns."""
+def state_in_words(known: Quantities, observation: Any, columns: int | None = None, first: int = 0) -> str:
+    """Returns an observation in words: its components by name, or its place on a map.
+
+    Args:
+        known: The names of the components.
+        observation: The observation.
+        columns: The number of columns of a map with numbered states; None without a map.
+        first: The number of the first state of the map.
+    """
     if columns is not None:
-        return f"row {int(observation) // columns}, column {int(observation) % columns}"
+        row, column = divmod(int(observation) - first, columns)
+        return f"row {row}, column {column}"
     if isinstance(observation, Mapping) or (isinstance(observation, tuple) and any(map(_has_parts, observation))):
         return _number(observation)
     if known.layout == "taxi" and np.ndim(observation) == 0:
@@ -124,7 +134,8 @@ def cell_in_words(run: Run, row: int, columns: int | None = None) -> str:
         return f"cell {row}"
     cell = [int(index) for index in np.unravel_index(row, discretizer.shape)]
     if discretizer.low.ndim == 0 and len(cell) == 1:
-        return state_in_words(run_quantities(run.config, discretizer), cell[0] + int(discretizer.low), columns)
+        first = int(discretizer.low)
+        return state_in_words(run_quantities(run.config, discretizer), cell[0] + first, columns, first)
     return ", ".join(_within(axis, index) for axis, index in zip(run.axes, cell, strict=True))
 
 
