@@ -247,10 +247,15 @@ def rising_epsilon(run: Run, config: Config) -> str:
     before, after = schedule.after(finished, run.config.episodes), schedule.after(finished, config.episodes)
     if after <= before or finished == 0:
         return ""
+    starts_again = ""
+    if config.learning_rate_schedule != "constant":
+        starts_again = f" (the learning rate then starts again at {config.learning_rate:.3g})"
+    # With the same seed, the new run would repeat the random numbers of the earlier one.
+    seed = f", seed={config.seed + 1}" if isinstance(config.seed, int) else ""
     return (
         f": epsilon rises from {before:.3g} to {after:.3g} and falls again, and the returns may become worse at first. "
-        "To keep it low, train on from the table instead: qtab.train(config=run.config.replace("
-        f"episodes={config.episodes - finished}, epsilon={config.min_epsilon!r}, initial_q=run.tables))"
+        f"To keep it low, train on from the table instead{starts_again}: qtab.train(config=run.config.replace("
+        f"episodes={config.episodes - finished}, epsilon={config.min_epsilon!r}{seed}, initial_q=run.tables))"
     )
 
 

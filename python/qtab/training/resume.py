@@ -29,9 +29,10 @@ def resume(
     snapshots, even if the run was stopped in the middle of an episode. With more episodes, schedules such as a falling
     ε are spread over all of them, as if the run had had so many from the start: ε rises again from the value at which
     it stopped, and the returns may become worse at first. The logger ``qtab`` reports this. To keep ε low, train on
-    from the table instead: ``qtab.train(config=run.config.replace(episodes=1000, epsilon=0.0,
-    initial_q=run.tables))``. Training the config of such a run again gives different
-    numbers, and :func:`qtab.verify` and :func:`qtab.explain` can repeat only the episodes before the extension.
+    from the table instead: ``qtab.train(config=run.config.replace(episodes=1000, epsilon=0.0, seed=run.config.seed + 1,
+    initial_q=run.tables))``. A falling learning rate starts again in that run. Training the config of an extended run
+    again gives different numbers, and :func:`qtab.verify` and :func:`qtab.explain` can repeat only the episodes before
+    the extension.
 
     An environment that is stepped in Python is resumed with its next episode, since qtab cannot restore its state
     within an episode. The result is that of the uninterrupted run if the run was stopped between two episodes and the
