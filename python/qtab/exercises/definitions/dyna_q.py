@@ -91,5 +91,5 @@ EXERCISE = Exercise(
     starter=STARTER,
     model=dyna_q,
     mistakes=("no_planning", "plans_over_pairs", "model_after_planning", *UPDATE, *POLICY),
-    checks=control_checks(dyna_q, planning_steps=3),
+    checks=control_checks(dyna_q, planning_steps=(3, 1, 5)),
 )

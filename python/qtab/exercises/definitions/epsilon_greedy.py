@@ -37,10 +37,11 @@ def epsilon_greedy(
 
 
 def _calls(epsilon: float, decimals: int) -> Iterator[dict[str, Any]]:
-    """Yields values with few decimals, so that some are equal; the calls share a generator."""
+    """Yields values of 2 to 7 actions with few decimals, so that some are equal; the calls share a generator."""
     makes_values, rng = np.random.default_rng(1), np.random.default_rng(2)
-    for _ in range(60):
-        yield {"values": makes_values.normal(size=5).round(decimals) + 0.0, "epsilon": epsilon, "rng": rng}
+    for number in range(60):
+        values = makes_values.normal(size=2 + (number + 3) % 6).round(decimals) + 0.0
+        yield {"values": values, "epsilon": epsilon, "rng": rng}
 
 
 EXERCISE = Exercise(

@@ -81,5 +81,5 @@ EXERCISE = Exercise(
     starter=STARTER,
     model=n_step_sarsa,
     mistakes=("one_step_more", "discount_once", "end_not_flushed", *UPDATE, *POLICY),
-    checks=control_checks(n_step_sarsa, n=3),
+    checks=control_checks(n_step_sarsa, n=(3, 1, 8)),
 )

@@ -52,8 +52,10 @@ def td_prediction(
             state = next_state
 
 
-def _check(title: str, env_id: str, episodes: int, steps: int, spread: float) -> PredictionCheck:
-    settings = {"learning_rate": 0.2, "discount": 0.9}
+def _check(
+    title: str, env_id: str, episodes: int, steps: int, spread: float, learning_rate: float, discount: float
+) -> PredictionCheck:
+    settings = {"learning_rate": learning_rate, "discount": discount}
     return PredictionCheck(title, td_prediction, env_id, episodes, steps, settings, spread=spread, seed=1)
 
 
@@ -66,8 +68,8 @@ EXERCISE = Exercise(
     model=td_prediction,
     mistakes=("value_of_old_state", *UPDATE),
     checks=[
-        _check("CliffWalking-v1, 5 episodes of at most 30 steps from zeros", "CliffWalking-v1", 5, 30, 0.0),
-        _check("FrozenLake-v1, 20 episodes from random values", "FrozenLake-v1", 20, 1000, 1.0),
-        _check("FrozenLake-v1, 20 episodes of at most 4 steps", "FrozenLake-v1", 20, 4, 1.0),
+        _check("CliffWalking-v1, 5 episodes of at most 30 steps from zeros", "CliffWalking-v1", 5, 30, 0.0, 0.2, 0.9),
+        _check("FrozenLake-v1, 20 episodes from random values", "FrozenLake-v1", 20, 1000, 1.0, 0.5, 0.8),
+        _check("FrozenLake-v1, 20 episodes of at most 4 steps", "FrozenLake-v1", 20, 4, 1.0, 0.1, 1.0),
     ],
 )
