@@ -319,6 +319,31 @@ def test_global_generators_are_reported_and_left_as_they_were() -> None:
     assert str(report).count("NumPy's global generator") == len(report.results)  # once in each check
 
 
+def test_the_error_handling_of_numpy_is_left_as_it_was() -> None:
+    def strict(*arguments):
+        np.seterr(all="raise")
+        SARSA(*arguments)
+
+    before = np.geterr()
+    check("sarsa", strict)
+    assert np.geterr() == before
+
+
+def test_a_generator_function_is_reported() -> None:
+    def sarsa(env, q, episodes, learning_rate, discount, epsilon, rng):
+        yield
+
+    broken(sarsa, "it contains yield")
+
+
+def test_a_changed_policy_is_reported() -> None:
+    def changes(env, values, policy, episodes, learning_rate, discount):
+        find("td_prediction").model(env, values, policy, episodes, learning_rate, discount)
+        policy[:] = 0
+
+    broken(changes, "it changes its argument policy", "td_prediction")
+
+
 def test_a_copied_table_and_an_unused_generator_are_remarked() -> None:
     report = check("sarsa", lambda env, q, *others: SARSA(env, q.copy(), *others))
     assert any("q never changes" in remark for remark in report.advice)

@@ -20,15 +20,18 @@ GLOBAL_PYTHON = "it uses Python's global generator (the module random): draw all
 def guarded(function: Callable[..., Any], arguments: Sequence[Any], record: Record, seconds: float) -> Any:
     """Calls a function; returns its result.
 
-    The states of the global generators are the same afterwards.
+    The states of the global generators and NumPy's error handling are the same afterwards.
 
     Raises:
-        Misuse: if the function raises an exception, or does not return in time.
+        Misuse: if the function raises an exception, does not return in time, or is a generator function.
     """
     check_parameters(function, len(arguments))
+    if inspect.isgeneratorfunction(function):
+        raise Misuse("it contains yield, so that a call only makes a generator and runs nothing: remove the yield")
     numpy_before, python_before = np.random.get_state(legacy=False), random.getstate()  # noqa: NPY002
     try:
-        return call_within(seconds, function, arguments)
+        with np.errstate():
+            return call_within(seconds, function, arguments)
     except Misuse:
         raise
     except TimeIsUp:

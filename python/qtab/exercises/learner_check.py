@@ -13,7 +13,7 @@ from qtab.config import Config
 from qtab.envs.quantities import quantities_of
 from qtab.exercises.exercise import Solution, parameters
 from qtab.exercises.guard import guarded
-from qtab.exercises.record import Record
+from qtab.exercises.record import Misuse, Record
 from qtab.exercises.recording_env import RecordingEnv
 from qtab.reference.parts.discretizers import TileCoding
 from qtab.reference.parts.streams import agent_stream
@@ -55,8 +55,18 @@ class LearnerCheck:
                 **self.settings,
                 **self.own_arguments(env),
             }
+            fixed = {name: array.copy() for name, array in self._arrays(given).items()}
             guarded(function, [given[name] for name in names], record, seconds)
             recording.finish()
+            for name, before in fixed.items():
+                if not np.array_equal(before, given[name]):
+                    raise Misuse(f"it changes its argument {name}: work on a copy, {name}.copy()")
+
+    def _arrays(self, given: Mapping[str, Any]) -> dict[str, NDArray[Any]]:
+        """Returns the arrays among the arguments that a learner must not change."""
+        return {
+            name: value for name, value in given.items() if isinstance(value, np.ndarray) and name != self.table
+        }
 
     def initial_table(self, env: gym.Env) -> Table:
         """Returns the values before the first episode."""
