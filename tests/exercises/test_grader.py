@@ -1,4 +1,4 @@
-"""The grader passes what is right, and says what is wrong with everything else."""
+"""The grader passes solutions that are right, and explains why others fail."""
 
 import random
 import re
@@ -327,6 +327,34 @@ def test_the_error_handling_of_numpy_is_left_as_it_was() -> None:
     before = np.geterr()
     check("sarsa", strict)
     assert np.geterr() == before
+
+
+def resets_after_each_episode(more_steps: int, more_resets: int) -> Callable[..., None]:
+    """Returns a Q-learning that resets after each episode, the last one included, and then goes too far."""
+
+    def q_learning(env, q, episodes, learning_rate, discount, epsilon, rng):
+        state, _ = env.reset()
+        for _ in range(episodes):
+            over = False
+            while not over:
+                action = epsilon_greedy(q[state], epsilon, rng)
+                next_state, reward, terminated, truncated, _ = env.step(action)
+                target = reward if terminated else reward + discount * q[next_state].max()
+                q[state, action] += learning_rate * (target - q[state, action])
+                state, over = next_state, terminated or truncated
+            state, _ = env.reset()
+        for _ in range(more_resets):
+            env.reset()
+        for _ in range(more_steps):
+            env.step(0)
+
+    return q_learning
+
+
+def test_a_reset_after_the_last_episode_is_ignored() -> None:
+    assert check("q_learning", resets_after_each_episode(0, 0)).passed
+    broken(resets_after_each_episode(1, 0), "but episodes is", "q_learning")
+    broken(resets_after_each_episode(0, 1), "but episodes is", "q_learning")
 
 
 def test_a_generator_function_is_reported() -> None:

@@ -63,21 +63,25 @@ class RecordingEnv(gym.Wrapper[Any, Any, Any, Any]):
         self._columns = map_columns(env)
         self._episode = self._step = -1
         self._over = True
+        self._has_reset_at_end = False
         self._observation: Any = None
         self._about: object = ""
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> Any:
-        """Starts an episode.
+        """Starts an episode. One reset after the last episode is ignored, as long as no step follows.
 
         Raises:
-            Misuse: for a seed, and after the last episode.
+            Misuse: for a seed, within the last episode, and for a second reset after it.
         """
         if seed is not None:
             raise Misuse("it calls env.reset with a seed: call env.reset() without one, the environment has its seed")
+        if self._episode + 1 == self._episodes and self._over and not self._has_reset_at_end:
+            self._has_reset_at_end = True  # finish records the tables
+            return self.env.reset(options=options)
         if self._episode >= 0:
             self._see()
         if self._episode + 1 == self._episodes:
-            raise Misuse(f"it starts episode {self._episodes} (counted from 0), but episodes is {self._episodes}")
+            raise self._one_episode_more()
         self._episode, self._step, self._over, self._about = self._episode + 1, -1, False, ""
         first_seed = self._seed if self._episode == 0 else None
         self._observation, info = self.env.reset(seed=first_seed, options=options)
@@ -87,8 +91,10 @@ class RecordingEnv(gym.Wrapper[Any, Any, Any, Any]):
         """Takes a step.
 
         Raises:
-            Misuse: for an action that the environment does not have, and after the end of the episode.
+            Misuse: for an action that the environment does not have, and after the end of the episode or the last one.
         """
+        if self._has_reset_at_end:
+            raise self._one_episode_more()
         if self._over:
             when = "before env.reset()" if self._episode < 0 else "after the end of the episode"
             raise Misuse(
@@ -108,6 +114,9 @@ class RecordingEnv(gym.Wrapper[Any, Any, Any, Any]):
         self._about = Transition(self, self._observation, int(action), float(reward), observation, ending)
         self._observation = observation
         return observation, reward, terminated, truncated, info
+
+    def _one_episode_more(self) -> Misuse:
+        return Misuse(f"it starts episode {self._episodes} (counted from 0), but episodes is {self._episodes}")
 
     def finish(self) -> None:
         """Records the tables after the last step."""
