@@ -1,4 +1,4 @@
-"""The mistakes that the grader recognises: it repeats a check with each of them built into the reference."""
+"""The texts that explain the mistakes that the grader recognises: what is wrong, and how to fix it."""
 
 from collections.abc import Mapping
 
@@ -93,7 +93,7 @@ MISTAKES: Mapping[str, str] = {
         "planning draws from all pairs of a state and an action at once. Draw a state first, and then one of the "
         "actions tried in it"
     ),
-    "model_after_planning": "the model learns of a step only after planning. Store the step first, and plan afterwards",
+    "model_after_planning": "the step is stored only after planning. Store the step first, and plan afterwards",
     # traces
     "replacing_traces": "the traces are replaced by 1. Accumulating traces add 1",
     "traces_kept": "the traces are kept from one episode to the next. They are 0 at the start of each",
@@ -113,4 +113,4 @@ MISTAKES: Mapping[str, str] = {
     "one_sweep_more": "there is one sweep too many: stop after the first one in which no value changes by tolerance",
     "average_not_max": "a value is the mean of the action values. It must be the largest",
 }
-"""What is wrong and how to mend it, by the key of the mistake."""
+"""What is wrong and how to fix it, by the key of the mistake."""
