@@ -186,6 +186,9 @@ def _matrix(scope: "Expressions", node: ast.AST, value: Value, dtype: str | None
         raise scope.refuse(node, "np.array of lists of different lengths", "use rows of one length")
     name = dtype or result_dtype(scope, node, kinds)
     _check_conversion(scope, node, kinds, name)
+    for row in [scope.element(value, i) for i in range(len(rows))] if width != 1 else []:
+        if row.parts is None:
+            scope.no_effects(row, node, "a call whose result is used several times")
     flat = [scope.element(scope.element(value, i), j).code for i in range(len(rows)) for j in range(width)]
     code = f"{_maker(scope, kinds, name)}({', '.join(flat)}).reshape({len(rows)}, {width})"
     return Value(Array(name, 2, (len(rows), width)), code, fresh=True, effects=value.effects)

@@ -38,6 +38,7 @@ def assign(scope: "Statements", node: ast.stmt, targets: list[ast.expr], value_n
     unpacked = isinstance(value_node, ast.Tuple | ast.List) and isinstance(targets[0], ast.Tuple | ast.List)
     sources = value_node.elts if unpacked else [value_node]  # type: ignore[attr-defined]
     scope.is_shared = any(map(_is_reference, sources))
+    scope.whole = value_node
     value = scope.expression(value_node)
     if value.is_fixed and value.code and value.effects:
         scope.emit(value.code, node)

@@ -98,10 +98,14 @@ def _len(scope: "Expressions", node: ast.Call, values: list[Value], named: dict[
     if value.is_fixed:
         return scope.folded(node, len, value.fixed)
     if isinstance(value.kind, TupleKind | DictKind):
+        scope.no_effects(value, node)
         return constant(len(value.kind.items))
     if isinstance(value.kind, Array):
         shape = value.kind.shape
-        return constant(shape[0]) if shape is not None else Value(INT, f"{value.code}.shape[0]")
+        if shape is not None:
+            scope.no_effects(value, node)
+            return constant(shape[0])
+        return Value(INT, f"{value.code}.shape[0]")
     raise scope.refuse(node, f"len of {in_words(value.kind)}", "use a tuple or an array")
 
 
@@ -128,7 +132,11 @@ def _any_or_all(symbol: str, empty: bool) -> Handler:
 
         value = _one(scope, node, values, named)
         codes = []
-        for part in containers.elements(scope, node, value):
+        parts = containers.elements(scope, node, value)
+        if not isinstance(node.args[0], ast.GeneratorExp):  # Python evaluates all elements of others
+            for part in parts[1:]:
+                scope.no_effects(part, node, "a call that is left out if an element before it decides")
+        for part in parts:
             if part.is_fixed:
                 if bool(part.fixed) != empty:
                     codes.append(repr(not empty))
@@ -139,7 +147,7 @@ def _any_or_all(symbol: str, empty: bool) -> Handler:
             codes.append(f"bool({part.code})")
         if not codes:
             return constant(empty)
-        return Value(BOOL, "(" + f" {symbol} ".join(codes) + ")")
+        return Value(BOOL, "(" + f" {symbol} ".join(codes) + ")", effects=any(part.effects for part in parts))
 
     return handler
 
@@ -197,6 +205,9 @@ def _lazy(scope: "Expressions", node: ast.Call, function: Any, values: list[Valu
     from qtab.compilation.rewriting import containers
 
     many = [containers.elements(scope, node, value) for value in values[:1] + (values[1:] if function is zip else [])]
+    if function is not enumerate:  # the elements change their order, or are left out
+        for one in (one for row in many for one in row):
+            scope.no_effects(one, node)
     if function is reversed:
         return scope.tuple_of(many[0][::-1], node)
     rows = [[constant(i), one] for i, one in enumerate(many[0])] if function is enumerate else [
@@ -225,6 +236,7 @@ def _isinstance(scope: "Expressions", node: ast.Call, values: list[Value], named
     if len(values) == 2 and values[1].is_fixed and values[0].kind == INT:
         kinds = values[1].fixed if isinstance(values[1].fixed, tuple) else (values[1].fixed,)
         if any(kind in (int, np.integer) for kind in kinds) and int in kinds and np.integer in kinds:
+            scope.no_effects(values[0], node)
             return constant(True)
     raise scope.refuse(node, "the type of a value is tested", "convert it instead: int(...) or float(...)")
 

@@ -18,6 +18,7 @@ from qtab.compilation.rewriting import (
     numpy_functions,
     specials,
 )
+from qtab.compilation.rewriting.effects import check_pure
 from qtab.compilation.rewriting.scan import CHANGING
 from qtab.compilation.rewriting.sources import source_of
 from qtab.compilation.rewriting.values import Array, DictKind, InfoKind, Value, constant, in_words
@@ -91,6 +92,9 @@ def arguments(scope: "Expressions", node: ast.Call) -> tuple[list[Value], dict[s
         if keyword.arg is None:
             raise scope.refuse(node, "arguments are unpacked from a dict", "write the arguments")
         named[keyword.arg] = scope.expression(keyword.value)
+    if named and len(values) + len(named) > 1:  # compiled code evaluates them in the order of the parameters
+        for value in (*values, *named.values()):
+            scope.no_effects(value, node, "a call among arguments with names")
     return values, named
 
 
@@ -113,6 +117,8 @@ def _known(scope: "Expressions", node: ast.Call, callee: Any) -> Value:
     ):
         raise scope.refuse(node, *MODULE_ADVICE["numpy.random"])
     if module == "gymnasium.logger":
+        for argument in (*node.args, *[keyword.value for keyword in node.keywords]):
+            check_pure(scope, argument)
         return constant(None)
     for table in (builtin_functions.TABLE, math_functions.TABLE, numpy_functions.TABLE):
         handler = table.get(callee) if _hashable(callee) else None

@@ -46,12 +46,17 @@ def subscript(scope: "Expressions", node: ast.Subscript) -> Value:
     if isinstance(base.kind, DictKind | TupleKind) and key.is_fixed:
         keys = base.kind.keys if isinstance(base.kind, DictKind) else range(len(base.kind.items))
         if isinstance(base.kind, TupleKind) and isinstance(key.fixed, slice):
+            for one in base.parts or (base,):
+                scope.no_effects(one, node)
             chosen = keys[key.fixed]
             return tuple_value(tuple(scope.element(base, i) for i in chosen))
         try:
             position = keys.index(key.fixed) if isinstance(base.kind, DictKind) else keys[key.fixed]
         except (ValueError, IndexError, TypeError):
             raise scope.refuse(node, f"there is no element {key.fixed!r}", "correct the index") from None
+        for i, one in enumerate(base.parts or ()):
+            if i != position % len(keys):
+                scope.no_effects(one, node)
         return scope.element(base, position)
     if isinstance(base.kind, TupleKind) and key.kind == INT and len(set(base.kind.items)) == 1:
         return Value(base.kind.items[0], f"{base.code}[{key.code}]", effects=base.effects or key.effects)
@@ -132,8 +137,8 @@ def elements(scope: "Expressions", node: ast.AST, value: Value) -> list[Value]:
     if value.parts is not None:
         return list(value.parts)
     if isinstance(value.kind, TupleKind):
-        if value.effects and len(value.kind.items) > 1:
-            raise scope.refuse(node, "a call whose result is used several times", "assign it to a variable first")
+        if len(value.kind.items) != 1:
+            scope.no_effects(value, node, "a call whose result is used several times")
         return [scope.element(value, i) for i in range(len(value.kind.items))]
     if isinstance(value.kind, Array):
         return elements(scope, node, as_tuple(scope, node, value))

@@ -39,6 +39,10 @@ class Expressions(Scope):
             advice = {"JoinedStr": "use numbers: strings cannot be compiled"}.get(type(node).__name__)
             raise self.refuse(node, f"{name} cannot be compiled", advice or "write it with statements and numbers")
         value: Value = method(node)
+        if value.is_fixed and node is not self.whole:  # its code would be left out
+            self.no_effects(value, node)
+        if not value.effects and self.has_effects(value):
+            value = replace(value, effects=True)
         return value
 
     def lifted(self, node: ast.expr) -> Value:
@@ -238,6 +242,8 @@ class Expressions(Scope):
             if left.fixed is None or right.fixed is None or isinstance(left.fixed, bool | enum.Enum):
                 return left.fixed is right.fixed
         elif any(value.is_fixed and value.fixed is None for value in (left, right)):
+            self.no_effects(left, node)
+            self.no_effects(right, node)
             return False
         raise self.refuse(node, "`is` compares objects", "write ==")
 

@@ -35,6 +35,7 @@ def attribute(scope: "Expressions", node: ast.Attribute, base: Value) -> Value:
     if base.is_fixed and not specials.is_special(base.fixed):
         return _of_constant(scope, node, base.fixed, name)
     if isinstance(base.kind, Array):
+        scope.no_effects(base, node)
         if name == "ndim":
             return constant(base.kind.ndim)
         if name in ("shape", "size") and base.kind.shape is not None:

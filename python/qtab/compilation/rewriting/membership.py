@@ -68,6 +68,8 @@ def comprehension(scope: "Expressions", node: ast.ListComp | ast.GeneratorExp) -
         raise scope.refuse(node, "a comprehension with several loops", "write the loops as statements")
     generator = node.generators[0]
     items = elements(scope, node, scope.expression(generator.iter))
+    for item in items:
+        scope.no_effects(item, generator.iter, "a call whose result may be used several times")
     if calls_own_functions(node.elt) and not all(item.is_fixed for item in items):
         raise scope.refuse(node, "a comprehension that calls functions with values that change", "write a loop")
     if len(items) > MAX_UNROLLED:

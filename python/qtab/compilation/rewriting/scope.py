@@ -1,6 +1,7 @@
 """The names of a function that is rewritten, and its errors."""
 
 import ast
+import re
 from types import FunctionType
 
 from qtab.compilation.not_compilable import NotCompilable
@@ -63,6 +64,8 @@ class Scope:
         self.unstable = False
         self.copies_state = False
         """Whether arrays of the record are copied where they are read, as the statement may change them."""
+        self.whole: ast.expr | None = None
+        """The expression that is all of a statement, or all of what a statement assigns or returns."""
         self.is_shared = False
         """Whether the value that is assigned may be an object with another name."""
 
@@ -79,6 +82,18 @@ class Scope:
         text = ast.unparse(node).splitlines()[0]
         shown = text if len(text) <= MAX_SHOWN else text[: MAX_SHOWN - 3] + "..."
         return NotCompilable(f"{reason} in `{shown}`", self.source.file, node.lineno, advice)
+
+    def has_effects(self, value: Value) -> bool:
+        """Returns whether evaluating the code of a value may change the state or draw random numbers."""
+        if value.effects or "rng." in value.code:
+            return True
+        called = [self.program.named.get(name) for name in re.findall(r"\bf_\d+_\w+", value.code)]
+        return any(one is not None and (one.changes or one.draws) for one in called)
+
+    def no_effects(self, value: Value, node: ast.AST, reason: str = "a call whose result is not used") -> None:
+        """Refuses a value whose code is left out, evaluated under a condition, or moved, if it has effects."""
+        if self.has_effects(value):
+            raise self.refuse(node, reason, "assign it to a variable first")
 
     def local(self, name: str) -> Value:
         """Returns a local variable."""

@@ -77,6 +77,7 @@ class Statements(Displays):
             return False
         if self._is_info_update(node.value):
             return False
+        self.whole = node.value
         value = self.expression(node.value)
         if value.code and (value.effects or not value.is_fixed):
             self.emit(value.code, node)
@@ -210,6 +211,7 @@ class Statements(Displays):
         return True
 
     def _do_return(self, node: ast.Return) -> bool:
+        self.whole = node.value
         value = constant(None) if node.value is None else self._returned(node.value)
         if value.is_fixed and value.code and value.effects:
             self.emit(value.code, node)
