@@ -6,6 +6,7 @@ import linecache
 import textwrap
 from dataclasses import dataclass
 from types import CodeType, FunctionType
+from typing import Any
 
 from qtab.compilation.not_compilable import NotCompilable
 
@@ -58,11 +59,13 @@ def _read(function: FunctionType) -> Source:
 
 
 def _is_current(function: FunctionType, node: ast.FunctionDef) -> bool:
-    """Returns whether the file still has the code that runs; functions with assertions are not compared.
+    """Returns whether the file still has the code that runs.
 
-    pytest rewrites assertions.
+    Functions with assertions are not compared if pytest imported their module, as pytest rewrites assertions.
     """
-    if any(isinstance(one, ast.Assert) for one in ast.walk(node)):
+    loader = type(function.__globals__.get("__loader__"))
+    is_rewritten = (loader.__module__, loader.__name__) == ("_pytest.assertion.rewrite", "AssertionRewritingHook")
+    if is_rewritten and any(isinstance(one, ast.Assert) for one in ast.walk(node)):
         return node.name == function.__name__
     code = function.__code__
     try:
@@ -70,7 +73,18 @@ def _is_current(function: FunctionType, node: ast.FunctionDef) -> bool:
     except (SyntaxError, ValueError):
         return node.name == function.__name__  # a cell of a notebook with commands of IPython
     same = [one for one in _nested(module) if (one.co_name, one.co_firstlineno) == (code.co_name, code.co_firstlineno)]
-    return not same or any((one.co_code, one.co_names) == (code.co_code, code.co_names) for one in same)
+    return any(_form(one) == _form(code) for one in same)
+
+
+def _form(value: Any) -> Any:
+    """Returns what distinguishes code or a constant of it: 1, 1.0 and True differ, and so do 0.0 and -0.0."""
+    if isinstance(value, CodeType):
+        return value.co_code, value.co_names, value.co_varnames, value.co_freevars, _form(value.co_consts)
+    if isinstance(value, tuple):
+        return tuple(map(_form, value))
+    if isinstance(value, frozenset):
+        return frozenset(map(_form, value))
+    return type(value), repr(value)
 
 
 def _nested(code: CodeType) -> list[CodeType]:
