@@ -12,6 +12,7 @@ import pytest
 import qtab
 from qtab.compilation.compiled_env import Stepper
 from qtab.compilation.ordinary import ClassTwin, OrdinaryEnv
+from qtab.compilation.rewriting import runtime
 from support.gym_classes import control, failing, games, grids, operations
 
 pytest.importorskip("numba")
@@ -88,7 +89,14 @@ def test_an_index_out_of_bounds_raises_pythons_error() -> None:
         qtab.train(failing.LeavesArray(), episodes=200, backend="numba", max_episode_steps=100, seed=1)
 
 
-def test_different_numbers_are_found_before_training() -> None:
+def test_integers_that_leave_64_bits_are_found_before_training() -> None:
+    with pytest.raises(ValueError, match=r"failing\.py.*'an error' in compiled code.*integers beyond 64 bits"):
+        qtab.train(failing.BigIntegers(), episodes=10, backend="numba")
+
+
+def test_different_numbers_are_found_before_training(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name, unchecked in (("h_add", lambda one, other: one + other), ("h_mul", lambda one, other: one * other)):
+        monkeypatch.setitem(runtime.HELPERS, name, unchecked)
     with pytest.raises(ValueError, match=r"failing\.py.*self\.cell is .* in compiled code and .* in Python"):
         qtab.train(failing.BigIntegers(), episodes=10, backend="numba")
 

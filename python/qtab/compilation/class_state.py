@@ -42,7 +42,12 @@ def state_bytes(record: np.dtype[Any], env: Any, observation: NDArray[Any]) -> N
         if name == OBSERVATION:
             state[name] = observation
         elif name != "unused":
-            state[name] = _attribute(env, name)
+            value = _attribute(env, name)
+            try:
+                state[name] = value
+            except OverflowError:
+                reason = f"self.{name} is {value}, which does not fit 64 bits"
+                raise OverflowError(f"{reason}; use smaller integers, floats, or backend='gymnasium'") from None
     return state.view(np.uint8).reshape(-1)
 
 

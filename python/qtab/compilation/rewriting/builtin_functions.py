@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from qtab.compilation.rewriting import integers
 from qtab.compilation.rewriting.program import as_float, tuple_value
 from qtab.compilation.rewriting.values import (
     BOOL,
@@ -51,6 +52,9 @@ def _convert(scope: "Expressions", node: ast.Call, values: list[Value], named: d
     if made is int and value.kind == INT:
         return value
     code = as_float(value) if made is float else f"{name}({value.code})"
+    if made is int and value.kind.name.startswith("uint"):  # Numba subtracts unsigned integers without a sign
+        scope.compiled.uses.add("h_within")
+        code = f"int(np.int64(h_within({value.code}, 0, {2**63 - 1})))"
     return Value(kind, code, effects=value.effects)
 
 
@@ -62,7 +66,9 @@ def _abs(scope: "Expressions", node: ast.Call, values: list[Value], named: dict[
     value = _one(scope, node, values, named)
     if value.is_fixed:
         return scope.folded(node, abs, value.fixed)
-    if value.kind in (INT, FLOAT, MIXED, Scalar("float32")):
+    if value.kind == INT:
+        return Value(INT, integers.called(scope, "h_abs", value), effects=value.effects)
+    if value.kind in (FLOAT, MIXED, Scalar("float32")):
         return Value(value.kind, f"abs({value.code})", effects=value.effects)
     if isinstance(value.kind, Array) and value.kind.dtype in ("int64", "float64", "float32"):
         return Value(value.kind, f"np.abs({value.code})", fresh=True, effects=value.effects)
@@ -122,8 +128,10 @@ def _sum(scope: "Expressions", node: ast.Call, values: list[Value], named: dict[
         floats = wrong.kind in (FLOAT, MIXED)
         advice = "add them with + or in a loop" if floats else "convert each: int(...)"
         raise scope.refuse(node, f"the sum of numbers, one of which is {in_words(wrong.kind)}", advice)
-    code = " + ".join(f"int({part.code})" for part in lifted)
-    return Value(INT, f"({code})", effects=any(part.effects for part in lifted))
+    total = Value(INT, f"int({lifted[0].code})")
+    for part in lifted[1:]:
+        total = Value(INT, integers.called(scope, "h_add", total, part))
+    return Value(INT, total.code, effects=any(part.effects for part in lifted))
 
 
 def _any_or_all(symbol: str, empty: bool) -> Handler:

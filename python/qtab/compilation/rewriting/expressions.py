@@ -7,12 +7,14 @@ import operator
 from dataclasses import replace
 from typing import Any
 
-from qtab.compilation.rewriting import calls, containers, members, membership, specials, vectors
+from qtab.compilation.rewriting import calls, containers, integers, members, membership, specials, vectors
 from qtab.compilation.rewriting.operators import COMPARISONS, SYMBOLS, binary, comparison, unary
 from qtab.compilation.rewriting.program import converted, tuple_value
 from qtab.compilation.rewriting.scope import Scope
 from qtab.compilation.rewriting.values import (
     BOOL,
+    FLOAT,
+    INT,
     Array,
     Scalar,
     TupleKind,
@@ -136,7 +138,8 @@ class Expressions(Scope):
         parts = left.parts + right.parts if left.parts and right.parts and isinstance(kind, TupleKind) else None
         if parts:
             return tuple_value(parts)
-        code = vectors.code(self, symbol, left, right, kind) or f"({left.code} {symbol} {right.code})"
+        code = integers.arithmetic(self, symbol, left, right) or vectors.code(self, symbol, left, right, kind)
+        code = code or f"({left.code} {symbol} {right.code})"
         return Value(kind, code, fresh=True, effects=left.effects or right.effects)
 
     def folded(self, node: ast.AST, function: Any, *values: Any) -> Value:
@@ -162,6 +165,8 @@ class Expressions(Scope):
         kind = unary(symbol, value)
         if isinstance(kind, tuple):
             raise self.refuse(node, *kind)
+        if symbol == "-" and kind == INT:
+            return Value(kind, integers.called(self, "h_neg", value), effects=value.effects)
         return Value(kind, f"({symbol}{value.code})", fresh=True, effects=value.effects)
 
     def _boolop(self, node: ast.BoolOp, is_test: bool = False) -> Value:
@@ -219,20 +224,23 @@ class Expressions(Scope):
         kind = comparison(symbol, left, right)
         if isinstance(kind, tuple):
             raise self.refuse(node, *kind)
-        code = vectors.code(self, symbol, left, right, kind) or f"({left.code} {symbol} {right.code})"
+        one, other = integers.compared(self, left, right), integers.compared(self, right, left)
+        code = vectors.code(self, symbol, left, right, kind) or f"({one} {symbol} {other})"
         return Value(kind, code, fresh=True, effects=left.effects or right.effects)
 
     def _chain(self, node: ast.Compare, operands: list[Value]) -> Value:
         lifted = [self.lift(value, node) for value in operands]
-        text = lifted[0].code
-        for op, left, right in zip(node.ops, lifted, lifted[1:], strict=False):
+        number = next((value for value in lifted if value.kind == FLOAT), None)
+        codes = [value.code if number is None else integers.compared(self, value, number) for value in lifted]
+        text = codes[0]
+        for op, left, right, code in zip(node.ops, lifted, lifted[1:], codes[1:], strict=False):
             symbol = COMPARISONS[type(op)][0]
             kind = comparison(symbol, left, right)
             if isinstance(kind, tuple):
                 raise self.refuse(node, *kind)
             if kind != BOOL:
                 raise self.refuse(node, "a chain of comparisons of arrays", "write two comparisons with &")
-            text += f" {symbol} {right.code}"
+            text += f" {symbol} {code}"
         return Value(BOOL, f"({text})", effects=any(one.effects for one in lifted))
 
     def _identical(self, node: ast.Compare, left: Value, right: Value) -> bool:

@@ -187,6 +187,8 @@ def literal(value: Any) -> str:
     if isinstance(value, bool | np.bool_):
         return repr(bool(value))
     if isinstance(value, int | np.int64):
+        if value == -(2**63):  # Numba takes it for a number without a sign
+            return "(-9223372036854775807 + np.int64(-1))"
         return repr(int(value)) if value >= 0 else f"({int(value)!r})"
     if isinstance(value, np.generic) and not isinstance(value, np.float64):
         return f"np.{value.dtype.name}({literal(value.item())})"

@@ -157,6 +157,105 @@ def h_round(value: Any) -> Any:
     return h_int(np.rint(value))
 
 
+def h_add(one: Any, other: Any) -> Any:
+    """``one + other`` of integers; raises an error outside 64 bits.
+
+    The tests come before the sum, as sums that overflow are undefined in compiled code, and do without -2**63, which
+    Numba takes for a number without a sign.
+    """
+    if one > 9223372036854775807 - other if other > 0 else one < (-9223372036854775807 - other) - 1:
+        raise OverflowError
+    return one + other
+
+
+def h_sub(one: Any, other: Any) -> Any:
+    """``one - other`` of integers; raises an error outside 64 bits."""
+    if one > 9223372036854775807 + other if other < 0 else one < (-9223372036854775807 + other) - 1:
+        raise OverflowError
+    return one - other
+
+
+def h_mul(one: Any, other: Any) -> Any:
+    """``one * other`` of integers; raises an error outside 64 bits."""
+    if -2147483648 <= one <= 2147483647 and -2147483648 <= other <= 2147483647:
+        return one * other
+    if one > 0 and other > 0:
+        fits = one <= 9223372036854775807 // other
+    elif one > 0:
+        fits = other >= (-9223372036854775807 + (one - 2)) // one
+    elif other > 0:
+        fits = one >= (-9223372036854775807 + (other - 2)) // other
+    elif one == 0 or other == 0:
+        fits = True
+    else:
+        fits = one >= -9223372036854775807 and other >= -9223372036854775807 and -one <= 9223372036854775807 // -other
+    if not fits:
+        raise OverflowError
+    return one * other
+
+
+def h_neg(value: Any) -> Any:
+    """``-value`` of an integer; raises an error outside 64 bits."""
+    if value < -9223372036854775807:
+        raise OverflowError
+    return -value
+
+
+def h_abs(value: Any) -> Any:
+    """``abs`` of an integer; raises an error outside 64 bits."""
+    return h_neg(value) if value < 0 else value
+
+
+def h_floordiv(one: Any, other: Any) -> Any:
+    """``one // other`` of integers; raises an error outside 64 bits."""
+    return h_neg(one) if other == -1 else one // other
+
+
+def h_truediv(one: Any, other: Any) -> Any:
+    """``one / other`` of integers; raises an error for those that no float holds exactly."""
+    return h_exact(one) / h_exact(other)
+
+
+def h_exact(value: Any) -> Any:
+    """Returns an integer that a float holds exactly; raises an error for others."""
+    if value < -9007199254740992 or value > 9007199254740992:
+        raise OverflowError
+    return value
+
+
+def h_ipow(base: Any, exponent: Any) -> Any:
+    """``base ** exponent`` of integers, the exponent not negative; raises an error outside 64 bits."""
+    result = 1
+    while exponent > 0:
+        if exponent & 1:
+            result = h_mul(result, base)
+        exponent = exponent >> 1
+        if exponent > 0:
+            base = h_mul(base, base)
+    return result
+
+
+def h_shl(value: Any, count: Any) -> Any:
+    """``value << count``; raises an error outside 64 bits."""
+    if count < 0:
+        raise ValueError
+    if value == 0:
+        return value
+    if count > 63:
+        raise OverflowError
+    most = 9223372036854775807 >> count
+    if value > most or value < -most - 1:
+        raise OverflowError
+    return value << count
+
+
+def h_shr(value: Any, count: Any) -> Any:
+    """``value >> count`` for any count that is not negative."""
+    if count < 0:
+        raise ValueError
+    return value >> (count if count < 63 else 63)
+
+
 def h_equal(one: Any, other: Any) -> Any:
     """``np.array_equal``."""
     return one.shape == other.shape and np.all(one == other)
