@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from qtab.compilation.rewriting.draw_checks import HELPERS
+from qtab.compilation.rewriting.program import as_float
 from qtab.compilation.rewriting.values import FLOAT, INT, WIDE, Array, Scalar, TupleKind, Value, constant, in_words
 
 if TYPE_CHECKING:
@@ -36,6 +38,27 @@ PARAMETERS: dict[str, tuple[tuple[str, float | None], ...]] = {
     "rayleigh": (("scale", 1.0),),
 }
 """The methods, with the names and defaults of their parameters before ``size``."""
+NOT_NEGATIVE, POSITIVE, PROBABILITY = "h_not_negative", "h_positive", "h_probability"
+CONSTRAINTS: dict[tuple[str, str], str] = {
+    **{(name, "scale"): NOT_NEGATIVE for name in ("normal", "exponential", "gamma", "laplace", "logistic", "rayleigh")},
+    ("lognormal", "sigma"): NOT_NEGATIVE,
+    ("gamma", "shape"): NOT_NEGATIVE,
+    ("weibull", "a"): NOT_NEGATIVE,
+    ("pareto", "a"): POSITIVE,
+    ("beta", "a"): POSITIVE,
+    ("beta", "b"): POSITIVE,
+    ("chisquare", "df"): POSITIVE,
+    ("standard_t", "df"): POSITIVE,
+    ("poisson", "lam"): "h_poisson",
+    ("binomial", "n"): NOT_NEGATIVE,
+    ("binomial", "p"): PROBABILITY,
+    ("negative_binomial", "n"): "h_count",
+    ("negative_binomial", "p"): "h_positive_probability",
+    ("geometric", "p"): "h_positive_probability",
+}
+"""What NumPy demands of an argument, by method and parameter: the helper that raises an error for other values."""
+TOGETHER = {"uniform": "h_uniform", "triangular": "h_triangular"}
+"""The methods whose arguments NumPy checks together, with helpers that return the last of them."""
 INTEGERS = ("poisson", "binomial", "negative_binomial", "geometric")
 
 
@@ -68,9 +91,47 @@ def draw(scope: "Expressions", node: ast.Call, name: str) -> Value:
         value = chosen.get(parameter, constant(default))
         if value.is_fixed and value.fixed is None:
             raise scope.refuse(node, f"Generator.{name} without {parameter}", "give all arguments")
-        codes.append(_number(scope, node, value, parameter).code)
+        number = _number(scope, node, value, parameter)
+        if name == "binomial" and parameter == "n" and number.kind != INT:
+            raise scope.refuse(node, f"Generator.{name} with n as {in_words(number.kind)}", "write int(...)")
+        codes.append(_allowed(scope, node, name, parameter, number))
+    if name in TOGETHER:
+        codes[-1] = _together(
+            scope, node, name, [chosen.get(one, constant(default)) for one, default in PARAMETERS[name]]
+        )
     kind = INT if name in INTEGERS else FLOAT
     return _sized(scope, node, f"rng.{name}", codes, chosen.get("size"), kind)
+
+
+def _allowed(scope: "Expressions", node: ast.AST, name: str, parameter: str, number: Value) -> str:
+    """Returns the code of an argument, which raises an error where NumPy does; a constant is checked now."""
+    helper = CONSTRAINTS.get((name, parameter))
+    if helper is None:
+        return number.code
+    if number.is_fixed:
+        _check_constants(scope, node, helper, [number.fixed])
+        return number.code
+    scope.compiled.uses.add(helper)
+    return f"{helper}({number.code if number.kind == INT else as_float(number)})"
+
+
+def _together(scope: "Expressions", node: ast.AST, name: str, given: list[Value]) -> str:
+    """Returns the code of the last argument of a method whose arguments NumPy checks together."""
+    helper = TOGETHER[name]
+    if all(value.is_fixed for value in given):
+        _check_constants(scope, node, helper, [value.fixed for value in given])
+        return scope.lift(given[-1], node).code
+    for value in given[:-1]:
+        scope.no_effects(value, node, "a call whose result is used several times")
+    scope.compiled.uses.add(helper)
+    return f"{helper}({', '.join(scope.lift(value, node).code for value in given)})"
+
+
+def _check_constants(scope: "Expressions", node: ast.AST, helper: str, values: list[Any]) -> None:
+    try:
+        HELPERS[helper](*values)
+    except (ValueError, OverflowError):
+        raise scope.refuse(node, "arguments that NumPy does not allow", "correct them") from None
 
 
 def bound(

@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from qtab.compilation.rewriting import draw_checks
+
 
 def h_clip(value: Any, low: Any, high: Any) -> Any:
     """Does what ``np.clip`` does with numbers, also with zeros of either sign and with NaN."""
@@ -279,5 +281,5 @@ def h_argmin(values: Any) -> Any:
     return best
 
 
-HELPERS = {name: value for name, value in list(globals().items()) if name.startswith("h_")}
+HELPERS = {name: value for name, value in list(globals().items()) if name.startswith("h_")} | draw_checks.HELPERS
 """All of them by name."""
