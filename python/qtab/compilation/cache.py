@@ -83,7 +83,7 @@ def _parse(content: bytes) -> tuple[MachineCode | None, dict[str, Any]] | None:
 
 
 def _name(digest: str) -> str:
-    return f"qtab-{digest}.compiled"
+    return f"qtab-{digest}.{'proofs' if digest.endswith('-proofs') else 'compiled'}"
 
 
 def _folders(source_file: str) -> Iterator[Path]:

@@ -1,9 +1,7 @@
 """The compilation of functional environments, with its proof and its file."""
 
-import contextlib
 import logging
 import os
-import threading
 import time
 import warnings
 from importlib.util import find_spec
@@ -14,7 +12,7 @@ import numpy as np
 from gymnasium import spaces
 
 from qtab._utils.progress import ProgressBar
-from qtab.compilation import cache, machine_code
+from qtab.compilation import machine_code
 from qtab.compilation.compiled_env import FUNCTIONS, CompiledEnv
 from qtab.compilation.digest import Unknown, digest_of
 from qtab.compilation.functions import helper_methods, methods_of, names_of, plain, reachable
@@ -24,14 +22,13 @@ from qtab.compilation.observation import ObservationLayout
 from qtab.compilation.parameters import Parameters
 from qtab.compilation.proof import FunctionalTwin, prove
 from qtab.compilation.scan import refuse_constructs
+from qtab.compilation.store import Store
 
 SLOW_SECONDS = 1.0
 """The duration of a compilation above which it is reported."""
 
 _logger = logging.getLogger("qtab")
-_lock = threading.RLock()
-_compiled: dict[str, CompiledEnv | NotCompilable] = {}
-"""What this process has compiled or loaded, by its digest."""
+_store = Store()
 
 
 def capsule_of(env: Any) -> Any:
@@ -65,13 +62,22 @@ def compiled_env(env: Any) -> tuple[CompiledEnv, Parameters]:
     except Unknown as error:
         # Such code depends on objects that other processes do not have; it is compiled once for each class.
         digest, file = f"{id(type(env))} {error} {parameters.layout} {parameters.constants}", ""
-    with _lock:
-        found = _compiled.get(digest) or _load_or_compile(env, parameters, observation, digest, file)
-        if not isinstance(found, NotNow):
-            _compiled[digest] = found
-    if isinstance(found, NotCompilable):
-        raise NotCompilable(found.reason, found.file, found.line, found.advice)
-    return found, parameters
+    memory = parameters.memory()
+
+    def make() -> tuple[machine_code.MachineCode, dict[str, Any]]:
+        made, state = _compile(env, parameters, observation)
+        return made, {"state": _layout_to_json(state)}
+
+    def load(code: machine_code.MachineCode, description: dict[str, Any]) -> CompiledEnv:
+        loaded = machine_code.load(code, FUNCTIONS)
+        state = _layout_from_json(description["state"])
+        masked = "action_mask" in methods_of(env)
+        return CompiledEnv(loaded, state, observation, int(env.action_space.n), masked)
+
+    def compare(compiled: CompiledEnv) -> None:
+        prove(FunctionalTwin(env, compiled), compiled, memory, functions)
+
+    return _store.compiled(digest, file, memory, make, load, compare), parameters
 
 
 def is_installed() -> bool:
@@ -113,38 +119,6 @@ def _digest(env: Any, parameters: Parameters) -> str:
 def _bounds(space: Any) -> list[Any]:
     layout = ObservationLayout.of(space)
     return [layout.low, layout.high]
-
-
-def _load_or_compile(
-    env: Any, parameters: Parameters, observation: ObservationLayout, digest: str, file: str
-) -> CompiledEnv | NotCompilable:
-    stored = cache.read(file, digest) if file else None
-    if stored is not None:
-        code, description = stored
-        if code is None:
-            return NotCompilable(*description["refusal"])
-        with contextlib.suppress(machine_code.CannotLoad):
-            return _env_of(
-                env, machine_code.load(code, FUNCTIONS), _layout_from_json(description["state"]), observation
-            )
-    try:
-        made, state = _compile(env, parameters, observation)
-        compiled = _env_of(env, machine_code.load(made, FUNCTIONS), state, observation)
-        prove(FunctionalTwin(env, compiled), compiled, parameters.memory(), reachable(env))
-    except machine_code.CannotLoad as error:
-        return NotCompilable(str(error))
-    except NotCompilable as refusal:
-        if file and not isinstance(refusal, NotNow):
-            reasons = [refusal.reason, refusal.file, refusal.line, refusal.advice]
-            cache.write(file, digest, None, {"refusal": reasons})
-        return refusal
-    if file:
-        cache.write(file, digest, made, {"state": _layout_to_json(state)})
-    return compiled
-
-
-def _env_of(env: Any, code: machine_code.LoadedCode, state: Layout, observation: ObservationLayout) -> CompiledEnv:
-    return CompiledEnv(code, state, observation, int(env.action_space.n), "action_mask" in methods_of(env))
 
 
 def _compile(

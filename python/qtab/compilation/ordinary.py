@@ -1,9 +1,7 @@
 """The compilation of ordinary Gymnasium classes, with its proof and its file."""
 
-import contextlib
 import copy
 import logging
-import threading
 import time
 import warnings
 from itertools import count
@@ -14,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils.progress import ProgressBar
-from qtab.compilation import cache, machine_code
+from qtab.compilation import machine_code
 from qtab.compilation.class_state import layout_of_record, restore, state_bytes, with_observation
 from qtab.compilation.compiled_env import FUNCTIONS, CompiledEnv
 from qtab.compilation.digest import digest_of
@@ -23,11 +21,10 @@ from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.observation import ObservationLayout
 from qtab.compilation.proof import prove
 from qtab.compilation.rewriting import Rewritten, rewrite
+from qtab.compilation.store import Store
 
 _logger = logging.getLogger("qtab")
-_lock = threading.RLock()
-_known: dict[str, CompiledEnv | NotCompilable] = {}
-"""What this process has compiled or loaded, by its digest."""
+_store = Store()
 
 
 class OrdinaryEnv:
@@ -93,34 +90,13 @@ class OrdinaryEnv:
         bounds = [observation.low, observation.high, repr(space), repr(self.env.observation_space)]
         digest = digest_of(functions, [self.rewritten.source, str(self.record.descr), *bounds])
 
-        def env_of(code: machine_code.MachineCode) -> CompiledEnv:
+        def make() -> tuple[machine_code.MachineCode, dict[str, Any]]:
+            return self._make(observation), {}
+
+        def load(code: machine_code.MachineCode, _: dict[str, Any]) -> CompiledEnv:
             return CompiledEnv(machine_code.load(code, FUNCTIONS), layout, observation, int(space.n), masked)
 
-        with _lock:
-            if digest not in _known:
-                stored = cache.read(file, digest)
-                if stored is not None and stored[0] is None:
-                    _known[digest] = NotCompilable(*stored[1]["refusal"])
-                elif stored is not None and stored[0] is not None:
-                    with contextlib.suppress(machine_code.CannotLoad):
-                        _known[digest] = env_of(stored[0])
-            if digest not in _known:
-                try:
-                    made = self._make(observation)
-                    compiled = env_of(made)
-                    self._prove(compiled)
-                    cache.write(file, digest, made, {})
-                    _known[digest] = compiled
-                except machine_code.CannotLoad as error:
-                    _known[digest] = NotCompilable(str(error))
-                except NotCompilable as refusal:
-                    reasons = [refusal.reason, refusal.file, refusal.line, refusal.advice]
-                    cache.write(file, digest, None, {"refusal": reasons})
-                    _known[digest] = refusal
-            found = _known[digest]
-        if isinstance(found, NotCompilable):
-            raise NotCompilable(found.reason, found.file, found.line, found.advice)
-        return found
+        return _store.compiled(digest, file, self.parameters, make, load, self._prove)
 
     def _make(self, observation: ObservationLayout) -> machine_code.MachineCode:
         started = time.perf_counter()
@@ -172,7 +148,7 @@ class OrdinaryEnv:
             reason = refusal.reason
             for i, name in enumerate(self.record.names or ()):
                 reason = reason.replace(f"state[{i}]", f"self.{name}")
-            raise NotCompilable(reason, refusal.file, refusal.line, refusal.advice) from None
+            raise type(refusal)(reason, refusal.file, refusal.line, refusal.advice) from None
 
 
 def _check_episodes(env: gym.Env, rewritten: Rewritten) -> None:

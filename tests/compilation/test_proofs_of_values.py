@@ -1,0 +1,103 @@
+"""Compiled code is compared with Python for each value of the parameters, since a value may select a branch."""
+
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import pytest
+
+import qtab
+from qtab.compilation import NotCompilable, functional, ordinary
+from qtab.compilation.functional import compiled_env
+from qtab.compilation.ordinary import OrdinaryEnv
+from qtab.compilation.store import Store
+
+pytest.importorskip("numba")
+
+
+class Branch(qtab.FunctionalEnv):
+    """Its sums of float32 differ in compiled code, but are only reached if ``slip`` is positive."""
+
+    observation_space: gym.Space[Any] = gym.spaces.Box(-np.inf, np.inf, (1,), np.float64)
+    action_space: gym.Space[Any] = gym.spaces.Discrete(2)
+
+    def __init__(self, slip: float = 0.0) -> None:
+        self.slip = slip
+
+    def initial_state(self, rng: np.random.Generator) -> Any:
+        return rng.uniform(1.0, 2.0)
+
+    def transition(self, state: Any, action: int, rng: np.random.Generator) -> Any:
+        x = 1.0 + rng.random()
+        if self.slip > 0.0:
+            x = float(np.float32(x) * 1.1)
+        return x, x, rng.random() < 0.05
+
+    def observe(self, state: Any) -> Any:
+        return state
+
+
+class OrdinaryBranch(gym.Env[Any, Any]):
+    observation_space = gym.spaces.Discrete(1)
+    action_space = gym.spaces.Discrete(2)
+
+    def __init__(self, slip: float = 0.0) -> None:
+        self.slip = slip
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> Any:
+        super().reset(seed=seed)
+        return 0, {}
+
+    def step(self, action: Any) -> Any:
+        x = 1.0 + self.np_random.random()
+        if self.slip > 0.0:
+            x = 1.0 + float(np.exp(-x))
+        return 0, x, self.np_random.random() < 0.05, False, {}
+
+
+@pytest.fixture
+def proofs(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
+    """The proofs that are made, from empty memories."""
+    made: list[Any] = []
+    for module in (functional, ordinary):
+        prove: Any = module.prove
+
+        def counted(*arguments: Any, prove: Any = prove) -> None:
+            made.append(arguments)
+            prove(*arguments)
+
+        monkeypatch.setattr(module, "prove", counted)
+        monkeypatch.setattr(module, "_store", Store())
+    return made
+
+
+@pytest.mark.parametrize(("make", "compiled"), [(Branch, compiled_env), (OrdinaryBranch, OrdinaryEnv)])
+def test_another_value_is_compared_as_well(make: Any, compiled: Any, proofs: list[Any]) -> None:
+    compiled(make(0.0))
+    for slip in (0.3, 0.3, 0.4):
+        with pytest.raises(NotCompilable, match="in compiled code"):
+            compiled(make(slip))
+    compiled(make(0.0))
+
+
+def test_each_value_is_compared_once_by_all_processes(
+    proofs: list[Any], monkeypatch: pytest.MonkeyPatch, tmp_path: Any
+) -> None:
+    monkeypatch.setattr("qtab.compilation.cache._folders", lambda _: iter([tmp_path / "code"]))
+
+    def outcomes() -> list[str]:
+        found = []
+        for slip in (0.0, 0.3, -1.0, 0.3, 0.0):
+            try:
+                compiled_env(Branch(slip))
+                found.append("")
+            except NotCompilable as refusal:
+                found.append(str(refusal))
+        return found
+
+    first = outcomes()
+    assert [bool(one) for one in first] == [False, True, False, True, False]
+    assert len(proofs) == 3
+    monkeypatch.setattr(functional, "_store", Store())
+    assert outcomes() == first
+    assert len(proofs) == 3
