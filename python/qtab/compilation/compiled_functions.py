@@ -6,17 +6,12 @@ from typing import Any
 
 import numba
 
+from qtab.compilation.checked_code import CheckedCompiler
+from qtab.compilation.checked_operations import OPTIONS as OPTIONS
 from qtab.compilation.functions import codes, plain
 
-OPTIONS: dict[str, Any] = {
-    "boundscheck": True,
-    "error_model": "python",
-    "fastmath": False,
-    "no_cpython_wrapper": True,
-    "no_cfunc_wrapper": True,
-}
-"""An index out of bounds is an error, and so is a division by zero; floating-point operations keep their order. The
-functions are never called from Python, so that they need no wrappers."""
+CHECKED_OPTIONS: dict[str, Any] = {**OPTIONS, "pipeline_class": CheckedCompiler}
+"""The options for users' functions."""
 
 
 class FunctionCompiler:
@@ -34,7 +29,7 @@ class FunctionCompiler:
             copied.__kwdefaults__ = function.__kwdefaults__
             copied.__qualname__, copied.__module__ = function.__qualname__, function.__module__
             # First, so that functions may call each other and themselves.
-            self._dispatchers[function] = numba.njit(**OPTIONS)(copied)
+            self._dispatchers[function] = numba.njit(**CHECKED_OPTIONS)(copied)
             names = {name for code in codes(function.__code__) for name in code.co_names}
             for name in names & function.__globals__.keys():
                 used[name] = self._replaced(function.__globals__[name])

@@ -9,7 +9,7 @@ from numba.core.errors import TypingError
 from numba.core.typing.templates import AttributeTemplate
 from numba.extending import infer_getattr, intrinsic, lower_getattr_generic, models, overload_method, register_model
 
-from qtab.compilation.compiled_functions import OPTIONS
+from qtab.compilation.compiled_functions import CHECKED_OPTIONS
 from qtab.compilation.compiled_layout import load, type_of
 from qtab.compilation.layout import offsets
 from qtab.compilation.parameters import Parameters
@@ -35,7 +35,7 @@ def self_type(parameters: Parameters, methods: dict[str, FunctionType]) -> SelfT
     cls = type("SelfType", (SelfType,), {})
     register_model(cls)(models.OpaqueModel)
     for name, function in methods.items():
-        overload_method(cls, name, jit_options=OPTIONS)(_with_signature_of(function))
+        overload_method(cls, name, jit_options=CHECKED_OPTIONS)(_with_signature_of(function))
     made: SelfType = cls(parameters, methods)
     return made
 

@@ -8,6 +8,7 @@ import numba
 import numpy as np
 from numba.core import types
 
+from qtab.compilation.checked_code import refusals
 from qtab.compilation.compiled_functions import OPTIONS, FunctionCompiler
 from qtab.compilation.compiled_layout import layout_from, reader, type_of, united, writer
 from qtab.compilation.compiled_self import self_at, self_type
@@ -53,6 +54,7 @@ def compile_functional(
         NotCompilable: if a value has a type that compiled code cannot pass on.
         numba.core.errors.NumbaError: if Numba does not compile a function.
     """
+    refusals.clear()
     compiler = FunctionCompiler()
     own = methods_of(env)
     helpers = helper_methods(type(env), names_of(reachable(env)))
@@ -79,6 +81,8 @@ def compile_functional(
         mask = _returned(functions["action_mask"], (given, of_state))
         scope["write_mask"] = mask_writer(int(env.action_space.n), mask)
     report()
+    if refusals:
+        raise refusals[0]
     exec(_source("action_mask" in functions), scope)  # noqa: S102 - code of this module
     compiled = {}
     for name, letters in ARGUMENTS.items():

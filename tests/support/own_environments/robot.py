@@ -49,5 +49,5 @@ class Robot(qtab.FunctionalEnv):
         (place, battery), floor = state
         left = 0
         for one in floor:
-            left += one
+            left += np.int64(one)
         return place, battery, left

@@ -1,0 +1,336 @@
+"""Numba's compiler of users' functions, with checks where Python raises errors, and refusals where bits can differ."""
+
+import linecache
+import math
+import operator
+import random
+from typing import Any
+
+import numpy as np
+from numba.core import ir, types
+from numba.core.compiler import CompilerBase, DefaultPassBuilder
+from numba.core.compiler_machinery import FunctionPass, register_pass
+from numba.core.typed_passes import NopythonTypeInference
+
+from qtab.compilation.checked_operations import DRAW_CHECKS, INTEGER_OPERATIONS, MATH, rounded, to_int
+from qtab.compilation.not_compilable import NotCompilable
+from qtab.compilation.rewriting.numpy_functions import SAME_AS_MATH
+from qtab.compilation.scan import DIFFERENT, SUMS
+
+refusals: list[NotCompilable] = []
+"""The constructs that the compilation in progress has met and that are refused."""
+
+NUMPY_REFUSED = {
+    **{name: f"write math.{other}" for name, other in SAME_AS_MATH.items()},
+    **{name.removeprefix("np."): f"write {other}" for name, other in DIFFERENT.items()},
+    "power": "write products: x * x for x ** 2",
+    "float_power": "write products: x * x for x ** 2",
+    "hypot": "write math.sqrt(x * x + y * y)",
+    "radians": "write x * (math.pi / 180.0)",
+    "deg2rad": "write x * (math.pi / 180.0)",
+    "degrees": "write x * (180.0 / math.pi)",
+    "rad2deg": "write x * (180.0 / math.pi)",
+    **dict.fromkeys(
+        ("cbrt", "exp2", "logaddexp", "logaddexp2", "arcsinh", "arccosh", "arctanh", "sinc", "interp"),
+        "write it with functions of math, or a loop",
+    ),
+    **dict.fromkeys(("round", "around", "round_"), "leave out rounding, or write math.floor(x + 0.5)"),
+}
+"""Functions of NumPy whose results can differ, and what to write instead."""
+
+SUMS_REFUSED = {*SUMS, "cumprod", "vdot", "inner", "average", "median", "percentile", "quantile", "nansum", "nanmean",
+                "nanstd", "nanvar", "nanprod", "nancumsum", "nancumprod", "nanmedian", "trapz", "trapezoid", "norm",
+                "convolve", "correlate", "cov", "corrcoef"}  # fmt: skip
+"""Functions that may add or multiply floats in another order."""
+
+WRITES_REFUSED = {"fill_diagonal", "nditer", "ndenumerate", "copyto", "put", "place", "putmask"}
+"""Functions that may change an array of ``self`` without an error."""
+
+MATH_ADVICE = {
+    "pow": "write products, or math.exp(y * math.log(x))",
+    "hypot": "write math.sqrt(x * x + y * y)",
+    "radians": "write x * (math.pi / 180.0)",
+    "degrees": "write x * (180.0 / math.pi)",
+}
+INPLACE = {
+    getattr(operator, f"i{name}"): getattr(operator, name)
+    for name in ("add", "sub", "mul", "lshift", "rshift", "truediv", "floordiv", "mod", "pow", "matmul")
+}
+COMPARISONS = (operator.lt, operator.le, operator.gt, operator.ge, operator.eq, operator.ne)
+NUMBERS = (types.Integer, types.Float, types.Boolean)
+
+
+def _leaf(of: Any) -> Any:
+    of = types.unliteral(of)
+    return of.dtype if isinstance(of, types.Array) else of
+
+
+def _is_narrow(of: Any) -> bool:
+    return isinstance(of, types.Integer) and (of.bitwidth < 64 or not of.signed)
+
+
+def _mixed(kinds: list[Any]) -> str:
+    """Returns why the type of a result can differ from NumPy's; an empty text if it does not."""
+    narrow = next((kind for kind in kinds if _is_narrow(kind)), None)
+    if narrow is not None:
+        return f"arithmetic of {narrow}"
+    if any(kind == types.float32 for kind in kinds) and any(kind != types.float32 for kind in kinds):
+        return "arithmetic of float32 and wider numbers"
+    return ""
+
+
+class _Checks:
+    """The changes to the code of one function, whose types are known."""
+
+    def __init__(self, state: Any) -> None:
+        self.state, self.typemap, self.calltypes = state, state.typemap, state.calltypes
+        self.definitions: dict[str, Any] = {}
+        self.made = 0
+
+    def run(self) -> bool:
+        """Changes the code; returns whether there were changes."""
+        blocks = self.state.func_ir.blocks
+        for block in blocks.values():
+            for statement in block.body:
+                if isinstance(statement, ir.Assign):
+                    self.definitions[statement.target.name] = statement.value
+        for block in blocks.values():
+            body: list[Any] = []
+            for statement in block.body:
+                if isinstance(statement, ir.Assign) and isinstance(statement.value, ir.Expr):
+                    body += self._expression(statement, block.scope)
+                elif isinstance(statement, ir.SetItem | ir.StaticSetItem):
+                    of = self._type(statement.target)
+                    if isinstance(of, types.NumpyFlatType) and not of.array_type.mutable:
+                        self._refuse(statement, "array.flat changes an array of self", "copy the array first")
+                body.append(statement)
+            block.body = body
+        return self.made > 0
+
+    def _expression(self, statement: Any, scope: Any) -> list[Any]:
+        expression = statement.value
+        if expression.op in ("binop", "inplace_binop"):
+            return self._operation(statement, scope)
+        if expression.op == "call":
+            return self._call(statement, scope)
+        if expression.op == "unary" and _is_narrow(_leaf(self._type(expression.value))):
+            self._refuse(expression, _mixed([_leaf(self._type(expression.value))]), "convert it with np.int64(...)")
+        return []
+
+    def _operation(self, statement: Any, scope: Any) -> list[Any]:
+        expression = statement.value
+        function = INPLACE.get(expression.fn, expression.fn)
+        given = [self._type(expression.lhs), self._type(expression.rhs)]
+        kinds = [_leaf(one) for one in given]
+        if not all(isinstance(kind, NUMBERS) for kind in kinds):
+            return []
+        if function is operator.matmul:
+            self._refuse(expression, "a matrix product may add in another order", "add in a loop")
+            return []
+        if function not in INTEGER_OPERATIONS and function not in COMPARISONS:
+            return []
+        if function in COMPARISONS and all(_is_narrow(kind) <= (kind != types.uint64) for kind in kinds):
+            kinds = [kind for kind in kinds if not _is_narrow(kind)]  # which are compared exactly
+        if reason := _mixed(kinds):
+            self._refuse(expression, reason, "convert the numbers with np.int64(...) or np.float64(...)")
+            return []
+        scalars = not any(isinstance(one, types.Array) for one in given)
+        integers = scalars and all(isinstance(kind, types.Integer | types.Boolean) for kind in kinds)
+        if function is operator.pow:
+            exponent = getattr(given[1], "literal_value", None)
+            if not integers or not isinstance(exponent, int) or not 0 <= exponent <= 64:
+                self._refuse(expression, "a power can differ in the last bit", "write products: x * x for x ** 2")
+                return []
+        if function in COMPARISONS:
+            return []
+        if all(isinstance(kind, types.Boolean) for kind in kinds):
+            if scalars and self._compares_action(expression.lhs) and self._compares_action(expression.rhs):
+                return self._replace(
+                    statement, scope, INTEGER_OPERATIONS[function], [expression.lhs, expression.rhs], [types.int64] * 2
+                )
+            # Those of NumPy are not added as those of Python are, and have the same type here.
+            self._refuse(expression, "arithmetic of booleans", "convert them with int(...)")
+            return []
+        if not integers:
+            return []
+        helper = INTEGER_OPERATIONS[function]
+        return self._replace(statement, scope, helper, [expression.lhs, expression.rhs], [types.int64] * 2)
+
+    def _compares_action(self, variable: Any) -> bool:
+        """Returns whether a variable is a comparison of the action with a constant, which is a boolean of Python."""
+        found = self._definition(variable)
+        if not isinstance(found, ir.Expr) or found.op != "binop" or found.fn not in COMPARISONS:
+            return False
+        sides = [self._definition(side) for side in (found.lhs, found.rhs)]
+        return all(isinstance(one, ir.Const) or (isinstance(one, ir.Arg) and one.name == "action") for one in sides)
+
+    def _definition(self, value: Any) -> Any:
+        while isinstance(value, ir.Var):
+            value = self.definitions.get(value.name)
+        return value
+
+    def _call(self, statement: Any, scope: Any) -> list[Any]:
+        expression = statement.value
+        function = self.typemap[expression.func.name]
+        given = [self._type(one) for one in expression.args]
+        if isinstance(function, types.BoundFunction):
+            return self._method_call(statement, scope, given)
+        if isinstance(function, types.NumberClass):
+            if function.instance_type == types.int64 and given and isinstance(types.unliteral(given[0]), types.Float):
+                return self._replace(statement, scope, to_int, expression.args, [types.float64])
+            return []
+        if not isinstance(function, types.Function):
+            return []
+        key = function.typing_key
+        defined = self.definitions.get(expression.func.name)
+        called = getattr(defined, "value", None) if isinstance(defined, ir.Global | ir.FreeVar) else None
+        name = str(getattr(key, "__name__", key)).rpartition(".")[2]
+        if any(map(_draws_elsewhere, (key, called))):
+            self._refuse(expression, f"{name} does not draw from the generator of the environment", "draw from rng")
+        elif key in (int, float, round, sum, pow, divmod):
+            return self._builtin_call(statement, scope, key, given)
+        elif getattr(key, "__module__", None) == "math" or getattr(math, name, None) is key:
+            return self._math_call(statement, scope, key, name)
+        elif isinstance(key, np.ufunc) or str(getattr(key, "__module__", "")).partition(".")[0] == "numpy":
+            self._numpy_call(expression, key, name, given)
+        return []
+
+    def _builtin_call(self, statement: Any, scope: Any, key: Any, given: list[Any]) -> list[Any]:
+        expression = statement.value
+        kinds = [types.unliteral(one) for one in given]
+        if key is round and len(given) > 1:
+            self._refuse(expression, "round with digits can differ", "write math.floor(x + 0.5)")
+        elif key in (pow, divmod):
+            self._refuse(expression, f"{key.__name__} can differ", "write products, or a // b and a % b")
+        elif key is sum and not _of_integers(kinds[0]):
+            self._refuse(expression, "a sum of floats may be added in another order", "add in a loop")
+        elif key in (int, round) and len(kinds) == 1 and isinstance(kinds[0], types.Float):
+            return self._replace(statement, scope, to_int if key is int else rounded, expression.args, [types.float64])
+        return []
+
+    def _math_call(self, statement: Any, scope: Any, key: Any, name: str) -> list[Any]:
+        expression = statement.value
+        if key is math.gcd:
+            return []
+        if key not in MATH:
+            advice = MATH_ADVICE.get(name, "use sin, cos, tan, exp, log, sqrt, floor, ceil or their like")
+            self._refuse(expression, f"math.{name} may round differently in compiled code", advice)
+            return []
+        return self._replace(statement, scope, MATH[key], expression.args, None)
+
+    def _numpy_call(self, expression: Any, key: Any, name: str, given: list[Any]) -> None:
+        kinds = [kind for kind in map(_leaf, given) if isinstance(kind, NUMBERS)]
+        if name in NUMPY_REFUSED:
+            self._refuse(expression, f"np.{name} rounds differently in compiled code", NUMPY_REFUSED[name])
+        elif name in WRITES_REFUSED:
+            self._refuse(expression, f"np.{name} can change an array of self", "assign to the elements in a loop")
+        elif name in SUMS_REFUSED and not (given and _of_integers(given[0])):
+            self._refuse(expression, f"np.{name} may add in another order", "add in a loop")
+        elif isinstance(key, np.ufunc):
+            if len(given) > key.nin:
+                self._refuse(expression, f"np.{name} with an array for the result", "assign the result")
+            elif reason := _mixed(kinds):
+                advice = "convert the numbers with np.int64(...) or np.float64(...)"
+                self._refuse(expression, f"np.{name}: {reason}", advice)
+
+    def _method_call(self, statement: Any, scope: Any, given: list[Any]) -> list[Any]:
+        expression = statement.value
+        defined = self.definitions.get(expression.func.name)
+        if not isinstance(defined, ir.Expr) or defined.op != "getattr":
+            return []
+        of, name = self._type(defined.value), defined.attr
+        if isinstance(of, types.NumPyRandomGeneratorType):
+            if name in ("wald", "power"):
+                self._refuse(expression, f"{name} can draw other numbers", "draw from another distribution")
+            elif name == "shuffle" and not getattr(given[0], "mutable", True):
+                self._refuse(expression, "shuffle changes an array of self", "copy the array first")
+            elif name in DRAW_CHECKS:
+                return self._check_before(expression, scope, DRAW_CHECKS[name])
+        elif isinstance(of, types.Array):
+            if name in SUMS_REFUSED and not _of_integers(of):
+                self._refuse(expression, f"array.{name}() may add in another order", "add in a loop")
+            elif name in ("sort", "fill", "partition", "put", "itemset") and not of.mutable:
+                self._refuse(expression, f"array.{name}() changes an array of self", "copy the array first")
+        return []
+
+    def _type(self, variable: Any) -> Any:
+        return self.typemap[variable.name]
+
+    def _refuse(self, expression: Any, reason: str, advice: str) -> None:
+        file, line = expression.loc.filename, expression.loc.line
+        source = linecache.getline(file, line).strip()
+        refusals.append(NotCompilable(f"{reason}, in `{source[:80]}`", file, line, advice))
+
+    def _replace(
+        self, statement: Any, scope: Any, helper: Any, arguments: list[Any], of: list[Any] | None
+    ) -> list[Any]:
+        """Replaces an expression by a call of a helper; returns the statement that defines the helper."""
+        kinds = of or [types.unliteral(self._type(one)) for one in arguments]
+        define, call = self._call_of(helper, scope, list(arguments), (), tuple(kinds), {}, statement.value.loc)
+        statement.value = call
+        return [define]
+
+    def _check_before(self, expression: Any, scope: Any, helper: Any) -> list[Any]:
+        """Returns the statements that call a helper with the arguments of a call."""
+        kinds = tuple(types.unliteral(self._type(one)) for one in expression.args)
+        named = {name: types.unliteral(self._type(one)) for name, one in expression.kws}
+        define, call = self._call_of(
+            helper, scope, list(expression.args), tuple(expression.kws), kinds, named, expression.loc
+        )
+        return [define, ir.Assign(call, self._variable(scope, types.none, expression.loc), expression.loc)]
+
+    def _call_of(
+        self, helper: Any, scope: Any, arguments: list[Any], named: Any, kinds: Any, named_kinds: Any, loc: Any
+    ) -> tuple[Any, Any]:
+        of = types.Dispatcher(helper)
+        variable = self._variable(scope, of, loc)
+        call = ir.Expr.call(variable, arguments, named, loc)
+        self.calltypes[call] = of.get_call_type(self.state.typingctx, kinds, named_kinds)
+        return ir.Assign(ir.Global(variable.name, helper, loc), variable, loc), call
+
+    def _variable(self, scope: Any, of: Any, loc: Any) -> Any:
+        self.made += 1
+        variable = ir.Var(scope, f"$qtab{self.made}.{id(self)}", loc)
+        self.typemap[variable.name] = of
+        return variable
+
+
+def _of_integers(of: Any) -> bool:
+    """Returns whether a sum of an array or a sequence is one of int64 or booleans."""
+    if isinstance(of, types.BaseTuple):
+        return all(kind == types.int64 or isinstance(kind, types.Boolean) for kind in map(types.unliteral, of.types))
+    kind = types.unliteral(getattr(of, "dtype", of))
+    return kind == types.int64 or isinstance(kind, types.Boolean)
+
+
+def _draws_elsewhere(function: Any) -> bool:
+    if isinstance(function, str):
+        return function.startswith(("np.random", "numpy.random", "random."))
+    owner = getattr(function, "__self__", None)
+    module = str(getattr(function, "__module__", "") or "")
+    return isinstance(owner, np.random.RandomState | random.Random) or module.startswith(("numpy.random", "random"))
+
+
+@register_pass(mutates_CFG=False, analysis_only=False)
+class CheckedCode(FunctionPass):  # type: ignore[misc]
+    """Adds the checks after the types are known."""
+
+    _name = "qtab_checked_code"
+
+    def __init__(self) -> None:
+        FunctionPass.__init__(self)
+
+    def run_pass(self, state: Any) -> bool:
+        """Changes the code of a function; returns whether there were changes."""
+        return _Checks(state).run()
+
+
+class CheckedCompiler(CompilerBase):  # type: ignore[misc]
+    """Numba's pipeline with ``CheckedCode``."""
+
+    def define_pipelines(self) -> list[Any]:
+        """Returns the passes."""
+        passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
+        passes.add_pass_after(CheckedCode, NopythonTypeInference)
+        passes.finalize()
+        return [passes]
