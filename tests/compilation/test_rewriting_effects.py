@@ -27,6 +27,8 @@ def test_a_call_whose_result_is_left_out_is_refused(cls: Any) -> None:
     assert caught.value.advice == "assign it to a variable first"
 
 
-@pytest.mark.parametrize("cls", [left_out.Assigned, left_out.ShortCircuits], ids=lambda cls: cls.__name__)
+@pytest.mark.parametrize(
+    "cls", [left_out.Assigned, left_out.ShortCircuits, left_out.KeepsInDict], ids=lambda cls: cls.__name__
+)
 def test_calls_that_are_all_evaluated_compute_what_the_class_computes(cls: Any) -> None:
     assert_equal_steps(cls(), rewrite(cls()), 200, 3)

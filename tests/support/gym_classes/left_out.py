@@ -117,3 +117,11 @@ class ShortCircuits(Moves):
 
     def change(self, action):
         return float(any(self.move() for _ in range(3))) + float(self.x > 9.0 or self.move())
+
+
+class KeepsInDict(Moves):
+    """A dict of values that change, with its keys."""
+
+    def change(self, action):
+        found = {"first": self.move(), "second": self.x, 3: self.array()}
+        return float(found["first"]) + found["second"] + found[3][1] + len(found)

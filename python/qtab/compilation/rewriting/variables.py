@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from qtab.compilation.rewriting.arrays import copied
 from qtab.compilation.rewriting.program import tuple_value
-from qtab.compilation.rewriting.values import INFO, Array, Value
+from qtab.compilation.rewriting.values import INFO, Array, DictKind, Value
 
 if TYPE_CHECKING:
     from qtab.compilation.rewriting.statements import Statements
@@ -24,7 +24,7 @@ def in_variables(scope: "Statements", node: ast.stmt, value: Value) -> Value:
         for part in value.parts:
             fixed = part.is_fixed or part.kind == INFO
             parts.append(part if fixed else in_variables(scope, node, kept(part)))
-        return tuple_value(tuple(parts))
+        return _like(value, tuple_value(tuple(parts)))
     scope.temporaries += 1
     name = f"x_{scope.temporaries}"
     scope.emit(f"{name} = {kept(value).code}", node)
@@ -37,5 +37,10 @@ def kept(value: Value) -> Value:
         return Value(value.kind, copied(value).code, effects=value.effects, views=value.views)
     if value.parts is not None and any(part.kind != INFO for part in value.parts):
         made = tuple_value(tuple(kept(part) for part in value.parts))
-        return replace(made, views=made.views | value.views)
+        return _like(value, replace(made, views=made.views | value.views))
     return value
+
+
+def _like(value: Value, made: Value) -> Value:
+    """Returns the elements of a dict with its keys."""
+    return replace(made, kind=value.kind) if isinstance(value.kind, DictKind) else made
