@@ -52,6 +52,8 @@ REFUSALS = {
     refused.BigDict: ("a string is used as a value", "use an integer"),
     refused.Hypotenuse: ("math.hypot may round differently", "math.sqrt(x * x + y * y)"),
     refused.SometimesUnset: ("the variable bonus may not be set", "before the branch"),
+    refused.ChangesDict: ("something other than an array of self", "an attribute of the environment"),
+    refused.ArrayCondition: ("the truth value of an array", "write .any() or .all()"),
     refused.ListObservation: ("the observation is a tuple of 1", "return np.array"),
 }
 

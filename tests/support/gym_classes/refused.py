@@ -283,3 +283,15 @@ class SometimesUnset(Base):
         if self.x > 20:
             bonus = 5.0 + self.x
         return bonus if self.x > 20 else 0.0  # here
+
+
+class ChangesDict(Base):
+    def change(self, action):
+        found = {"first": self.x, "second": 1.0}
+        found["first"] = 2.0  # here
+        return found["first"]
+
+
+class ArrayCondition(Base):
+    def change(self, action):
+        return 1.0 if self.cells else 0.0  # here

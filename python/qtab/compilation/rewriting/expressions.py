@@ -69,11 +69,11 @@ class Expressions(Scope):
             try:
                 return constant(bool(value.fixed))
             except ValueError:
-                raise self.refuse(node, "the holds of an array", "write .any() or .all()") from None
+                raise self.refuse(node, "the truth value of an array", "write .any() or .all()") from None
         value = self.lift(value, node)
         if not isinstance(value.kind, Scalar):
             advice = "write .any() or .all()" if isinstance(value.kind, Array) else "write a comparison"
-            raise self.refuse(node, f"the holds of {in_words(value.kind)}", advice)
+            raise self.refuse(node, f"the truth value of {in_words(value.kind)}", advice)
         return value
 
     def _constant(self, node: ast.Constant) -> Value:

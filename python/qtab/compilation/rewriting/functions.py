@@ -90,7 +90,9 @@ def compiled_function(
         if not rewriter.unstable:
             break
     else:
-        raise rewriter.refuse(None, f"the types of the variables in {name} are not clear", "use one type a variable")
+        raise rewriter.refuse(
+            None, f"the types of the variables in {name} cannot be determined", "use one type a variable"
+        )
     program.depth = depth
     _finish(rewriter, parameters)
     program.functions[key] = compiled

@@ -54,7 +54,7 @@ def rewrite(env: gym.Env) -> Rewritten:
         except Exception as error:  # of this package; Python can step the environment
             reason = f"{type(env).__name__} is not understood ({type(error).__name__}: {error})"
             raise NotCompilable(reason, advice="train it with backend='gymnasium'") from error
-    raise NotCompilable("the types of the attributes are not clear", advice="give each attribute one type")
+    raise NotCompilable("the types of the attributes cannot be determined", advice="give each attribute one type")
 
 
 def _check(env: gym.Env) -> None:
