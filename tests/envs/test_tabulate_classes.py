@@ -326,7 +326,7 @@ def test_attributes_that_no_reset_uses_may_survive_an_episode():
     last = qtab.tabulate(corridor(step=remember))
     assert len(last.P) > len(expected.P)
     assert np.array_equal(last.initial_state_distrib[:2], [0.5, 0.5])
-    built = resetting(lambda env: vars(env).setdefault("walls", [1, 2]))
+    built = resetting(lambda env: setattr(env, "walls", getattr(env, "walls", [1, 2])))
     assert qtab.tabulate(built).P == expected.P
 
 
