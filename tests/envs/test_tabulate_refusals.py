@@ -1,5 +1,7 @@
 """qtab.tabulate refuses what it cannot list exactly. The message names the place, the draw and the remedy."""
 
+import math
+from collections import deque
 from functools import cached_property
 from typing import Any
 
@@ -332,7 +334,7 @@ def test_the_attributes_of_a_functional_environment_are_not_changed():
         qtab.tabulate(env)
     assert env.counts[0] == 0
     other: Any = Line()
-    other.items = (item for item in "ab")  # which cannot be copied
+    other.maths = math  # a module cannot be copied
     assert len(qtab.tabulate(other).P) == 5
 
 
@@ -373,3 +375,27 @@ def test_a_cached_property_is_no_change_unless_its_value_changes():
 
     with pytest.raises(ValueError, match=r"a method of Computed changed self\.lasts"):
         qtab.tabulate(type("Computed", (Computed,), {"transition": changing})())
+
+
+def test_attributes_of_a_functional_environment_that_cannot_be_compared_are_refused():
+    def hidden(self, state, action, rng):
+        self.history.append(state)
+        return min(state + action, 4), float(len(self.history) > 4), state + action >= 4
+
+    env: Any = line(transition=hidden)
+    env.history = deque()
+    with pytest.raises(ValueError, match=r"in Line, self\.history is a collections\.deque, which cannot be compared"):
+        qtab.tabulate(env)
+
+    def keeping(self, state, action, rng):
+        self.cache = object()
+        return min(state + action, 4), -1.0, state + action >= 4
+
+    with pytest.raises(ValueError, match=r"in Line, self\.cache is a builtins\.object"):
+        qtab.tabulate(line(transition=keeping))
+
+
+def test_functions_and_references_to_itself_are_no_changes():
+    env: Any = Line()
+    env.best, env.move, env.moves, env.this = math.nan, lambda state: env, {0: env.observe}, [env]
+    assert qtab.tabulate(env).P == qtab.tabulate(Line()).P

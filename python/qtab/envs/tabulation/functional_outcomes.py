@@ -3,11 +3,11 @@
 import copy
 import math
 from collections.abc import Callable, Hashable, Iterable, Sequence
-from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
 from inspect import getattr_static
+from types import BuiltinFunctionType, FunctionType, MethodType
 from typing import Any
 
 import numpy as np
@@ -18,7 +18,7 @@ from qtab.envs.functional import FunctionalEnv
 from qtab.envs.functional.observations import observation_in
 from qtab.envs.tabulation.branches import Branches, CannotListError
 from qtab.envs.tabulation.generator import ListingGenerator
-from qtab.envs.tabulation.state_keys import NotComparableError, state_key, state_text
+from qtab.envs.tabulation.state_keys import NotComparableError, attributes_key, state_key, state_text
 from qtab.envs.tabulation.walk import Outcome, Visit
 
 _SAMPLES = 2
@@ -35,6 +35,9 @@ class FunctionalOutcomes:
 
     Args:
         env: The environment. It is copied, and not stepped.
+
+    Raises:
+        ValueError: if it has an attribute that cannot be compared.
     """
 
     name_of_state = "state"
@@ -226,20 +229,29 @@ def _copied(env: FunctionalEnv) -> FunctionalEnv:
 
 
 def _attributes(env: FunctionalEnv) -> dict[str, Hashable]:
-    """Returns the attributes that can be compared, without those of Gymnasium and of the base class."""
-    found: dict[str, Hashable] = {}
-    for name, value in vars(env).items():
-        if name not in _OF_BASE:
-            with suppress(NotComparableError):
-                found[name] = _attribute_key(value)
-    return found
+    """Returns the keys of the attributes, without those of Gymnasium and of the base class.
+
+    Raises:
+        ValueError: for an attribute that cannot be compared, since methods could change it unseen.
+    """
+    return {name: _attribute_key(env, name, value) for name, value in vars(env).items() if name not in _OF_BASE}
 
 
-def _attribute_key(value: Any) -> Hashable:
+def _attribute_key(env: FunctionalEnv, name: str, value: Any) -> Hashable:
+    if isinstance(value, FunctionType | MethodType | BuiltinFunctionType):
+        return id(value)
+    if isinstance(value, float | np.floating) and math.isnan(value):
+        return "NaN"
     try:
-        return state_key(value)
+        return attributes_key(env, {name: value})
     except CannotListError:  # a random number, which differs from every other value
         return object()
+    except (NotComparableError, RecursionError) as error:
+        reason = f"self.{name} is nested too deeply" if isinstance(error, RecursionError) else error
+        raise ValueError(
+            f"env must have attributes that can be compared, but in {type(env).__name__}, {reason}; what changes in an "
+            "episode belongs in the state"
+        ) from None
 
 
 def _cached_properties(env: FunctionalEnv, names: Iterable[str]) -> dict[str, Hashable]:
@@ -248,8 +260,7 @@ def _cached_properties(env: FunctionalEnv, names: Iterable[str]) -> dict[str, Ha
     for name in names:
         cached = getattr_static(type(env), name, None)
         if isinstance(cached, cached_property):
-            with suppress(NotComparableError):
-                found[name] = _attribute_key(cached.func(env))
+            found[name] = _attribute_key(env, name, cached.func(env))
     return found
 
 
