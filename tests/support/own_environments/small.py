@@ -106,3 +106,25 @@ class NoisyWalk(qtab.FunctionalEnv):
 
     def observe(self, state: Any) -> Any:
         return state
+
+
+class Line(qtab.FunctionalEnv):
+    """Places 0 to 4, of which the last ends the episode."""
+
+    action_space: Any = gym.spaces.Discrete(2)
+    observation_space = gym.spaces.Box(-np.inf, np.inf, (1,), np.float64)
+
+    def initial_state(self, rng: np.random.Generator) -> Any:
+        return 0
+
+    def transition(self, state: Any, action: int, rng: np.random.Generator) -> Any:
+        state = min(state + action, 4)
+        return state, -1.0, state == 4
+
+    def observe(self, state: Any) -> Any:
+        return float(state)
+
+
+def line(**methods: Any) -> Any:
+    """A Line with other methods."""
+    return type("Line", (Line,), methods)()
