@@ -160,6 +160,18 @@ def test_the_first_difference_has_its_episode_step_and_numbers() -> None:
     assert f"q[{at[0]}, {at[1]}]: before 0, yours -0.25, reference -0.5" in str(difference)
 
 
+def test_the_difference_of_a_solution_that_stops_early_has_a_field() -> None:
+    (one, *_) = find("sarsa").checks
+    reference = Record()
+    one.run(SARSA, reference, 60.0)
+    early = Record(reference.events[:-1])
+    shorter, longer = first_difference(early, reference), first_difference(reference, early)
+    assert shorter is not None
+    assert longer is not None
+    assert (shorter.stopped_early, longer.stopped_early) == (True, False)
+    assert "only the reference goes that far" in str(shorter)
+
+
 def test_rounding_counts_unless_it_is_allowed() -> None:
     def average(estimates, counts, action, reward):
         counts[action] += 1

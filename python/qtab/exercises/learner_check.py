@@ -64,9 +64,7 @@ class LearnerCheck:
 
     def _arrays(self, given: Mapping[str, Any]) -> dict[str, NDArray[Any]]:
         """Returns the arrays among the arguments that a learner must not change."""
-        return {
-            name: value for name, value in given.items() if isinstance(value, np.ndarray) and name != self.table
-        }
+        return {name: value for name, value in given.items() if isinstance(value, np.ndarray) and name != self.table}
 
     def initial_table(self, env: gym.Env) -> Table:
         """Returns the values before the first episode."""

@@ -1,7 +1,7 @@
 """What a function does in a check, event by event: what it changes, draws, chooses and returns."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 MAX_ENTRIES = 3
 """The maximum number of differing entries of an array that a message lists."""
-ROUNDING = 1e-9
+TOLERANCE = 1e-9
 """The relative difference up to which two numbers differ only by rounding."""
 
 
@@ -58,6 +58,8 @@ class Difference:
     """One line for each of the first differing entries."""
     only_rounding: bool
     """Whether everything in the check is equal except for rounding."""
+    stopped_early: bool = False
+    """Whether everything is equal up to the end of the solution's record, and only the reference's continues."""
 
     def __str__(self) -> str:
         lines = [f"first difference: {self.place}, {self.quantity} (counted from 0)"]
@@ -86,7 +88,8 @@ def first_difference(yours: Record, reference: Record, exact: bool = True) -> Di
         longer = yours if len(yours.events) > count else reference
         whose = "your function" if longer is yours else "the reference"
         event = longer.events[count]
-        return _difference(event, event, (f"only {whose} goes that far",), False)
+        difference = _difference(event, event, (f"only {whose} goes that far",), False)
+        return replace(difference, stopped_early=longer is reference)
     return None
 
 
@@ -114,7 +117,7 @@ def equal(mine: Any, other: Any, exact: bool) -> bool:
         return bool(mine == other)
     if exact:
         return np.array_equal(mine, other, equal_nan=True)
-    return np.allclose(mine, other, rtol=ROUNDING, atol=ROUNDING, equal_nan=True)
+    return np.allclose(mine, other, rtol=TOLERANCE, atol=TOLERANCE, equal_nan=True)
 
 
 def _entries(quantity: str, mine: Any, other: Any, before: Any) -> Iterator[str]:
