@@ -1,0 +1,178 @@
+"""The grader reports what a solution must not do, and continues with the next check."""
+
+import random
+import threading
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from qtab.exercises import EXERCISES, check, find, time_limit
+
+SARSA = find("sarsa").model
+
+
+def epsilon_greedy(values, epsilon, rng):
+    return np.argmax(values) if rng.random() < 1 - epsilon else rng.integers(len(values))
+
+
+def broken(function: Callable[..., Any], message: str, name: str = "sarsa", seconds: float = 10.0) -> None:
+    """Checks that every check of a function fails with a message, and none is left out."""
+    report = check(name, function, seconds=seconds)
+    assert len(report.results) == len(EXERCISES[name].checks)
+    for result in report.results:
+        assert not result.passed
+        assert any(message in fault for fault in result.faults), result.faults
+
+
+def raises(env, q, *others):
+    q[0, 99] = 1.0
+
+
+def returns_late(env, *others):
+    while True:
+        try:
+            env.reset()
+        except BaseException:  # noqa: S112 - as careless as can be
+            continue
+
+
+@pytest.mark.parametrize(
+    ("function", "message"),
+    [
+        (raises, "it raised IndexError: index 99 is out of bounds for axis 1 with size 4, in line"),
+        (lambda *_: exit(), "it raised SystemExit"),
+        (lambda env, q: None, "it must take 7 arguments in the order of the exercise, but takes (env, q)"),
+        (lambda env, *_: env.reset(seed=1), "it calls env.reset with a seed"),
+        (lambda env, *_: env.step(0), "it calls env.step before env.reset()"),
+        (lambda env, *_: (env.reset(), env.step(4)), "an action must be an integer from 0 to 3, got 4"),
+        (lambda env, *_: (env.reset(), env.step(1.0)), "an action must be an integer from 0 to 3, got 1.0"),
+        (lambda env, *_: [env.reset() for _ in range(50)], "but episodes is"),
+        (lambda env, *_: (env.reset(), [env.step(0) for _ in range(2000)]), "env.step after the end of the episode"),
+    ],
+)
+def test_misuse_is_reported_and_the_next_check_follows(function: Callable[..., Any], message: str) -> None:
+    broken(function, message)
+
+
+@pytest.mark.parametrize("in_thread", [False, True])
+def test_a_loop_without_an_end_is_stopped(in_thread: bool) -> None:
+    done = []
+
+    def checked() -> None:
+        broken(returns_late, "it was stopped after 0.2 seconds", seconds=0.2)
+        assert check("sarsa", returns_late, seconds=0.2).advice == ()
+        assert check("sarsa", SARSA).passed
+        done.append(True)
+
+    if in_thread:
+        thread = threading.Thread(target=checked)
+        thread.start()
+        thread.join()
+    else:
+        checked()
+    assert done == [True]
+
+
+def test_without_signals_a_second_thread_stops_a_loop() -> None:
+    def loop() -> None:
+        while True:
+            pass
+
+    with pytest.raises(time_limit.TimeIsUp):
+        time_limit._by_thread(0.1, loop, ())
+    assert time_limit._by_thread(10.0, max, (1, 2)) == 2
+
+
+@pytest.mark.parametrize(
+    ("function", "message"),
+    [
+        (lambda values, epsilon, rng: 1.5, "call 0: action must be an integer, got 1.5 (float)"),
+        (lambda values, epsilon, rng: None, "call 0: action must be an integer, got None"),
+        (lambda values, epsilon, rng: int(values.sort() is None), "call 0: it changes its argument values"),
+    ],
+)
+def test_results_of_the_wrong_type_and_changed_arguments_are_reported(function: Any, message: str) -> None:
+    broken(function, message, "epsilon_greedy")
+
+
+def test_results_of_the_wrong_shape_are_reported() -> None:
+    broken(lambda *_: (np.zeros(3), np.zeros(3)), "values must be an array of shape (", "value_iteration")
+    broken(lambda *_: np.zeros(3), "it must return values, policy, got an array of shape (3,)", "value_iteration")
+    broken(lambda P, policy, values, discount: values.tolist(), "values must be an array of", "policy_evaluation")  # noqa: N803
+
+
+def test_global_generators_are_reported_and_left_as_they_were() -> None:
+    def legacy(env, q, episodes, learning_rate, discount, epsilon, rng):
+        np.random.seed(1)  # noqa: NPY002
+        SARSA(env, q, episodes, learning_rate, discount, epsilon, rng)
+
+    def python(env, q, episodes, learning_rate, discount, epsilon, rng):
+        random.random()  # noqa: S311
+        SARSA(env, q, episodes, learning_rate, discount, epsilon, rng)
+
+    numpy_before, python_before = np.random.get_state()[1].copy(), random.getstate()  # type: ignore[index]  # noqa: NPY002
+    broken(legacy, "it uses NumPy's global generator")
+    broken(python, "it uses Python's global generator")
+    assert np.array_equal(np.random.get_state()[1], numpy_before)  # type: ignore[index]  # noqa: NPY002
+    assert random.getstate() == python_before
+    report = check("epsilon_greedy", lambda values, epsilon, rng: np.random.randint(5))  # noqa: NPY002
+    assert str(report).count("NumPy's global generator") == len(report.results)  # once in each check
+
+
+def test_the_error_handling_of_numpy_is_left_as_it_was() -> None:
+    def strict(*arguments):
+        np.seterr(all="raise")
+        SARSA(*arguments)
+
+    before = np.geterr()
+    check("sarsa", strict)
+    assert np.geterr() == before
+
+
+def resets_after_each_episode(more_steps: int, more_resets: int) -> Callable[..., None]:
+    """Returns a Q-learning that resets after each episode, the last one included, and then goes too far."""
+
+    def q_learning(env, q, episodes, learning_rate, discount, epsilon, rng):
+        state, _ = env.reset()
+        for _ in range(episodes):
+            over = False
+            while not over:
+                action = epsilon_greedy(q[state], epsilon, rng)
+                next_state, reward, terminated, truncated, _ = env.step(action)
+                target = reward if terminated else reward + discount * q[next_state].max()
+                q[state, action] += learning_rate * (target - q[state, action])
+                state, over = next_state, terminated or truncated
+            state, _ = env.reset()
+        for _ in range(more_resets):
+            env.reset()
+        for _ in range(more_steps):
+            env.step(0)
+
+    return q_learning
+
+
+def test_a_reset_after_the_last_episode_is_ignored() -> None:
+    assert check("q_learning", resets_after_each_episode(0, 0)).passed
+    broken(resets_after_each_episode(1, 0), "but episodes is", "q_learning")
+    broken(resets_after_each_episode(0, 1), "but episodes is", "q_learning")
+
+
+def test_a_generator_function_is_reported() -> None:
+    def sarsa(env, q, episodes, learning_rate, discount, epsilon, rng):
+        yield
+
+    broken(sarsa, "it contains yield")
+
+
+def test_a_changed_policy_is_reported() -> None:
+    def changes(env, values, policy, episodes, learning_rate, discount):
+        find("td_prediction").model(env, values, policy, episodes, learning_rate, discount)
+        policy[:] = 0
+
+    broken(changes, "it changes its argument policy", "td_prediction")
+
+
+def test_stopped_functions_are_not_compared_with_mistakes() -> None:
+    assert check("sarsa", raises).mistakes == ()
