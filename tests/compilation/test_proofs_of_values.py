@@ -101,3 +101,29 @@ def test_each_value_is_compared_once_by_all_processes(
     monkeypatch.setattr(functional, "_store", Store())
     assert outcomes() == first
     assert len(proofs) == 3
+
+
+class Bins(qtab.FunctionalEnv):
+    """The shape of its states depends on the value of an attribute."""
+
+    observation_space = gym.spaces.Discrete(5)
+    action_space = gym.spaces.Discrete(2)
+
+    def __init__(self, n: int) -> None:
+        self.n = n
+
+    def initial_state(self, rng: np.random.Generator) -> Any:
+        return np.zeros(self.n)
+
+    def transition(self, state: Any, action: int, rng: np.random.Generator) -> Any:
+        after = state.copy()
+        after[0] = min(after[0] + 1.0, 4.0)
+        return after, 1.0, after[0] >= 4.0
+
+    def observe(self, state: Any) -> Any:
+        return int(state[0])
+
+
+def test_states_of_another_shape_need_other_code() -> None:
+    for n in (3, 5, 2):
+        assert compiled_env(Bins(n))[0].state_size == 8 * n

@@ -61,7 +61,9 @@ def compiled_env(env: Any) -> tuple[CompiledEnv, Parameters]:
         digest = _digest(env, parameters)
     except Unknown as error:
         # Such code depends on objects that other processes do not have; it is compiled once for each class.
-        digest, file = f"{id(type(env))} {error} {parameters.layout} {parameters.constants}", ""
+        values = f"{parameters.layout} {parameters.constants} {_state_layout(env)}"
+        spaces_of = f"{env.observation_space!r} {env.action_space!r} {_bounds(env.observation_space)}"
+        digest, file = f"{id(type(env))} {error} {values} {spaces_of}", ""
     memory = parameters.memory()
 
     def make() -> tuple[machine_code.MachineCode, dict[str, Any]]:
@@ -112,8 +114,16 @@ def _digest(env: Any, parameters: Parameters) -> str:
     helpers = {name: function for name, (function, _) in helper_methods(type(env), names_of(reachable(env))).items()}
     kinds = {name: repr(layout_of(value)) for name, value in parameters.values.items()}
     spaces_of = [repr(env.observation_space), repr(env.action_space), _bounds(env.observation_space)]
-    others = [kinds, parameters.constants, parameters.refused, spaces_of]
+    others = [kinds, parameters.constants, parameters.refused, spaces_of, _state_layout(env)]
     return digest_of({**methods_of(env), **helpers}, others)
+
+
+def _state_layout(env: Any) -> str:
+    """Returns the layout of states, which may depend on values of attributes; a description of the error without it."""
+    try:
+        return repr(layout_of(env.initial_state(np.random.default_rng(0))))
+    except Exception as error:  # the compilation refuses it, or Python raises it at the reset
+        return f"{type(error).__name__}: {error}"
 
 
 def _bounds(space: Any) -> list[Any]:
