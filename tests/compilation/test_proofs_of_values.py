@@ -127,3 +127,22 @@ class Bins(qtab.FunctionalEnv):
 def test_states_of_another_shape_need_other_code() -> None:
     for n in (3, 5, 2):
         assert compiled_env(Bins(n))[0].state_size == 8 * n
+
+
+def test_a_failure_of_numba_is_not_remembered(
+    proofs: list[Any], monkeypatch: pytest.MonkeyPatch, tmp_path: Any
+) -> None:
+    monkeypatch.setattr("qtab.compilation.cache._folders", lambda _: iter([tmp_path / "code"]))
+    monkeypatch.setenv("NUMBA_DISABLE_JIT", "1")
+    with pytest.raises(NotCompilable, match=r"^NUMBA_DISABLE_JIT is set$"):
+        OrdinaryEnv(OrdinaryBranch())
+    monkeypatch.setenv("NUMBA_DISABLE_JIT", "0")
+    with monkeypatch.context() as failing:
+        failing.setattr("qtab.compilation.machine_code.make", _no_memory)
+        with pytest.raises(NotCompilable, match="Numba failed with MemoryError"):
+            OrdinaryEnv(OrdinaryBranch())
+    OrdinaryEnv(OrdinaryBranch())
+
+
+def _no_memory(*_: Any) -> None:
+    raise MemoryError

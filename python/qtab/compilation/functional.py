@@ -47,10 +47,7 @@ def capsule_of(env: Any) -> Any:
 
 def compiled_env(env: Any) -> tuple[CompiledEnv, Parameters]:
     """Returns the compiled environment, and its parameters; see :func:`capsule_of`."""
-    if not is_installed():
-        raise NotCompilable("Numba is not installed", advice="pip install numba")
-    if os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
-        raise NotCompilable("NUMBA_DISABLE_JIT is set")
+    require_numba()
     if not isinstance(env.action_space, spaces.Discrete):
         raise NotCompilable("the action space is not Discrete", advice="number the actions, with spaces.Discrete(n)")
     observation = ObservationLayout.of(env.observation_space)
@@ -80,6 +77,18 @@ def compiled_env(env: Any) -> tuple[CompiledEnv, Parameters]:
         prove(FunctionalTwin(env, compiled), compiled, memory, functions)
 
     return _store.compiled(digest, file, memory, make, load, compare), parameters
+
+
+def require_numba() -> None:
+    """Refuses a compilation now if Numba is not installed or disabled.
+
+    Raises:
+        NotNow: if Numba is not installed or disabled.
+    """
+    if not is_installed():
+        raise NotNow("Numba is not installed", advice="pip install numba")
+    if os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
+        raise NotNow("NUMBA_DISABLE_JIT is set")
 
 
 def is_installed() -> bool:

@@ -16,8 +16,8 @@ from qtab.compilation import machine_code
 from qtab.compilation.class_state import layout_of_record, restore, state_bytes, with_observation
 from qtab.compilation.compiled_env import FUNCTIONS, CompiledEnv
 from qtab.compilation.digest import digest_of
-from qtab.compilation.functional import SLOW_SECONDS, is_installed
-from qtab.compilation.not_compilable import NotCompilable
+from qtab.compilation.functional import SLOW_SECONDS, require_numba
+from qtab.compilation.not_compilable import NotCompilable, NotNow
 from qtab.compilation.observation import ObservationLayout
 from qtab.compilation.proof import prove
 from qtab.compilation.rewriting import Rewritten, rewrite
@@ -39,8 +39,7 @@ class OrdinaryEnv:
     """
 
     def __init__(self, env: gym.Env) -> None:
-        if not is_installed():
-            raise NotCompilable("Numba is not installed", advice="pip install numba")
+        require_numba()
         observation = ObservationLayout.of(env.observation_space)
         self.env = env
         self.rewritten = rewrite(env)
@@ -127,7 +126,7 @@ class OrdinaryEnv:
             except (NotCompilable, machine_code.CannotLoad):
                 raise
             except Exception as error:  # an internal error of Numba; Python can step the environment
-                raise NotCompilable(f"Numba failed with {type(error).__name__}: {error}") from None
+                raise NotNow(f"Numba failed with {type(error).__name__}: {error}") from None
         seconds = time.perf_counter() - started
         if seconds > SLOW_SECONDS:
             _logger.info("compiled %s in %.1f s", name, seconds)
