@@ -77,7 +77,7 @@ def _value(value: Any, visited: dict[int, int]) -> Any:
         return _function(function, visited)
     if isinstance(value, type):
         return _class(value, visited)
-    if isinstance(value, ModuleType):
+    if isinstance(value, ModuleType) and _root(value) in (*_KNOWN, *sys.stdlib_module_names):
         return ["module", value.__name__]
     if callable(value) and getattr(value, "__module__", None) is not None and hasattr(value, "__name__"):
         root = str(value.__module__).partition(".")[0]
@@ -94,16 +94,25 @@ def _function(function: FunctionType, visited: dict[int, int]) -> Any:
     visited[id(function)] = len(visited)
     defaults = [_value(function.__defaults__, visited), _value(function.__kwdefaults__, visited)]
     used: list[Any] = [function.__qualname__, _code(function.__code__), defaults]
+    attributes = frozenset(name for code in codes(function.__code__) for name in code.co_names)
     for name, value in used_values(function):
-        if isinstance(value, ModuleType) and value.__name__.partition(".")[0] not in (
-            *_KNOWN,
-            *sys.stdlib_module_names,
-        ):
-            attributes = {name for code in codes(function.__code__) for name in code.co_names} & vars(value).keys()
-            used.append([name, [[one, _value(vars(value)[one], visited)] for one in sorted(attributes)]])
-        else:
-            used.append([name, _value(value, visited)])
+        used.append([name, _used(value, attributes, visited, ())])
     return used
+
+
+def _used(value: Any, attributes: frozenset[str], visited: dict[int, int], inside: tuple[str, ...]) -> Any:
+    """Returns a value; of modules that may change without a new version, the attributes with these names."""
+    if not isinstance(value, ModuleType) or _root(value) in (*_KNOWN, *sys.stdlib_module_names):
+        return _value(value, visited)
+    name = value.__name__
+    if name in inside:
+        return ["module", name]
+    found = sorted(attributes & vars(value).keys())
+    return ["module", name, [[one, _used(vars(value)[one], attributes, visited, (*inside, name))] for one in found]]
+
+
+def _root(module: ModuleType) -> str:
+    return module.__name__.partition(".")[0]
 
 
 def _class(cls: type, visited: dict[int, int]) -> Any:

@@ -1,5 +1,7 @@
 """The functions that an environment's methods call, and the names that they use."""
 
+import dis
+import functools
 from collections.abc import Iterator
 from types import CodeType, FunctionType
 from typing import Any
@@ -58,7 +60,7 @@ def helper_methods(cls: type, names: set[str]) -> dict[str, tuple[FunctionType, 
 def used_values(function: FunctionType) -> Iterator[tuple[str, Any]]:
     """Yields the globals and closed-over variables that a function uses, with their names."""
     for code in codes(function.__code__):
-        for name in code.co_names:
+        for name in _globals_of(code):
             if name in function.__globals__:
                 yield name, function.__globals__[name]
     for name, cell in zip(function.__code__.co_freevars, function.__closure__ or (), strict=True):
@@ -66,6 +68,13 @@ def used_values(function: FunctionType) -> Iterator[tuple[str, Any]]:
             yield name, cell.cell_contents
         except ValueError:  # it is empty
             continue
+
+
+@functools.cache
+def _globals_of(code: CodeType) -> tuple[str, ...]:
+    """Returns the names that are read as globals, in the order of their first use, without those of attributes."""
+    read = [one for one in dis.get_instructions(code) if "GLOBAL" in one.opname or one.opname == "LOAD_NAME"]
+    return tuple(dict.fromkeys(one.argval for one in read))
 
 
 def plain(function: Any) -> FunctionType | None:
