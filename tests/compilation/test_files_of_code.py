@@ -10,6 +10,8 @@ from typing import Any
 
 import pytest
 
+from qtab.compilation import cache
+
 pytest.importorskip("numba")
 
 SOURCE = """
@@ -136,3 +138,36 @@ def test_a_folder_that_cannot_be_made_leads_to_the_users_cache(run: Callable[...
     answer(run(0.25))
     assert answer(run(0.25))["numba"] is False
     assert len(files(tmp_path / "cache" / "qtab" / "compiled")) == 1
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such modes")
+def test_files_that_other_users_can_write_are_not_loaded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = tmp_path / "code"
+    monkeypatch.setattr(cache, "_folders", lambda _: iter([folder]))
+    path = cache.write("", "0", None, {"refusal": []})
+    assert path is not None
+    folder.chmod(0o755)
+    assert cache.read("", "0") is not None
+    path.chmod(0o666)
+    assert cache.read("", "0") is None
+    path.chmod(0o600)
+    folder.chmod(0o777)
+    assert cache.read("", "0") is None
+    folder.chmod(0o755)
+    path.rename(tmp_path / "moved")
+    path.symlink_to(tmp_path / "moved")
+    assert cache.read("", "0") is None
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such modes")
+def test_beside_a_folder_of_a_group_the_users_cache_is_used(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cache, "_cache", lambda: tmp_path / "cache")
+    source = tmp_path / "source.py"
+    source.write_text("")
+    (tmp_path / "__pycache__").mkdir()
+    (tmp_path / "__pycache__").chmod(0o775)
+    path = cache.write(str(source), "0", None, {"refusal": []})
+    assert path is not None
+    assert path.parent == tmp_path / "cache" / "qtab" / "compiled"
+    assert path.parent.stat().st_mode & 0o777 == 0o700
+    assert cache.read(str(source), "0") is not None

@@ -27,7 +27,7 @@ def read(source_file: str, digest: str) -> tuple[MachineCode | None, dict[str, A
     """
     for folder in _folders(source_file):
         try:
-            content = (folder / _name(digest)).read_bytes()
+            content = _content(folder / _name(digest))
         except OSError:
             continue
         if (found := _parse(content)) is not None:
@@ -56,7 +56,11 @@ def write(source_file: str, digest: str, code: MachineCode | None, description: 
     content = _MAGIC + hashlib.sha256(body).hexdigest().encode() + b"\n" + body
     for folder in _folders(source_file):
         with contextlib.suppress(OSError):
-            folder.mkdir(parents=True, exist_ok=True)
+            private = folder.name != "__pycache__"  # the user's cache
+            folder.mkdir(0o700 if private else 0o777, parents=True, exist_ok=True)
+            if private and sys.platform != "win32" and folder.stat().st_uid == os.geteuid():
+                folder.chmod(0o700)
+            _require_own(folder.stat())
             handle, temporary = tempfile.mkstemp(dir=folder, prefix=".qtab-")
             try:
                 with os.fdopen(handle, "wb") as file:
@@ -67,6 +71,25 @@ def write(source_file: str, digest: str, code: MachineCode | None, description: 
                 raise
             return folder / _name(digest)
     return None
+
+
+def _content(path: Path) -> bytes:
+    """Returns the bytes of a file that nobody else can have written.
+
+    Raises:
+        OSError: if there is no such file, or other users than this one and the administrator can write it.
+    """
+    if sys.platform == "win32":
+        return path.read_bytes()
+    _require_own(path.parent.stat())
+    with os.fdopen(os.open(path, os.O_RDONLY | os.O_NOFOLLOW), "rb") as file:
+        _require_own(os.fstat(file.fileno()))
+        return file.read()
+
+
+def _require_own(status: os.stat_result) -> None:
+    if sys.platform != "win32" and (status.st_uid not in (os.geteuid(), 0) or status.st_mode & 0o022):
+        raise PermissionError("other users can write it")
 
 
 def _parse(content: bytes) -> tuple[MachineCode | None, dict[str, Any]] | None:
