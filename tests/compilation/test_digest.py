@@ -3,6 +3,7 @@
 import logging
 import math
 from types import ModuleType
+from typing import Any
 
 import pytest
 
@@ -10,13 +11,14 @@ from qtab.compilation.digest import Unknown, digest_of
 
 pytest.importorskip("numba")
 
-outer, settings = ModuleType("outer"), ModuleType("outer.settings")
-outer.settings, settings.outer, settings.SLIP = settings, outer, 0.1  # type: ignore[attr-defined]
+outer: Any = ModuleType("outer")
+settings: Any = ModuleType("outer.settings")
+outer.settings, settings.outer, settings.SLIP = settings, outer, 0.1
 log = logging.getLogger(__name__)
 
 
-def nested() -> float:
-    return outer.settings.SLIP  # type: ignore[no-any-return]
+def nested() -> Any:
+    return outer.settings.SLIP
 
 
 def logarithm() -> float:
@@ -27,14 +29,18 @@ def logs() -> None:
     log.info("a step")
 
 
+def _digest(function: Any) -> str:
+    return digest_of({"f": function}, [])
+
+
 def test_values_of_nested_modules(monkeypatch: pytest.MonkeyPatch) -> None:
-    before = digest_of({"f": nested}, [])
-    assert digest_of({"f": nested}, []) == before
+    before = _digest(nested)
+    assert _digest(nested) == before
     monkeypatch.setattr(settings, "SLIP", 0.5)
-    assert digest_of({"f": nested}, []) != before
+    assert _digest(nested) != before
 
 
 def test_a_global_with_the_name_of_an_attribute_is_not_used() -> None:
-    assert digest_of({"f": logarithm}, [])
+    assert _digest(logarithm)
     with pytest.raises(Unknown):
-        digest_of({"f": logs}, [])
+        _digest(logs)
