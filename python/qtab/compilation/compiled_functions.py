@@ -15,9 +15,14 @@ CHECKED_OPTIONS: dict[str, Any] = {**OPTIONS, "pipeline_class": CheckedCompiler}
 
 
 class FunctionCompiler:
-    """Gives Numba's dispatchers of functions. Plain functions that they use are replaced by dispatchers as well."""
+    """Gives Numba's dispatchers of functions. Plain functions that they use are replaced by dispatchers as well.
 
-    def __init__(self) -> None:
+    Args:
+        options: Numba's options.
+    """
+
+    def __init__(self, options: dict[str, Any] = OPTIONS) -> None:
+        self._options = options
         self._dispatchers: dict[FunctionType, Any] = {}
 
     def dispatcher(self, function: FunctionType) -> Any:
@@ -29,7 +34,7 @@ class FunctionCompiler:
             copied.__kwdefaults__ = function.__kwdefaults__
             copied.__qualname__, copied.__module__ = function.__qualname__, function.__module__
             # First, so that functions may call each other and themselves.
-            self._dispatchers[function] = numba.njit(**CHECKED_OPTIONS)(copied)
+            self._dispatchers[function] = numba.njit(**self._options)(copied)
             names = {name for code in codes(function.__code__) for name in code.co_names}
             for name in names & function.__globals__.keys():
                 used[name] = self._replaced(function.__globals__[name])

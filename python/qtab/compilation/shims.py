@@ -9,7 +9,7 @@ import numpy as np
 from numba.core import types
 
 from qtab.compilation.checked_code import refusals
-from qtab.compilation.compiled_functions import OPTIONS, FunctionCompiler
+from qtab.compilation.compiled_functions import CHECKED_OPTIONS, OPTIONS, FunctionCompiler
 from qtab.compilation.compiled_layout import layout_from, reader, type_of, united, writer
 from qtab.compilation.compiled_self import self_at, self_type
 from qtab.compilation.functions import helper_methods, methods_of, names_of, reachable
@@ -55,7 +55,7 @@ def compile_functional(
         numba.core.errors.NumbaError: if Numba does not compile a function.
     """
     refusals.clear()
-    compiler = FunctionCompiler()
+    compiler = FunctionCompiler(CHECKED_OPTIONS)
     own = methods_of(env)
     helpers = helper_methods(type(env), names_of(reachable(env)))
     bound = {name: compiler.method(function, static) for name, (function, static) in helpers.items()}

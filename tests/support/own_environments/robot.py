@@ -47,7 +47,7 @@ class Robot(qtab.FunctionalEnv):
 
     def observe(self, state: Any) -> Any:
         (place, battery), floor = state
-        left = 0
+        left = np.int64(0)
         for one in floor:
             left += np.int64(one)
         return place, battery, left
