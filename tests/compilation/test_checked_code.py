@@ -227,3 +227,17 @@ class Shuffles(FillsDiagonal):
 def test_arrays_of_the_environment_are_not_changed(made: Any) -> None:
     with pytest.raises(NotCompilable, match="chang"):
         compiled_env(made())
+
+
+class ReadsAProperty(FillsDiagonal):
+    @property
+    def bonus(self) -> float:
+        return float(self.values[0, 0])
+
+    def transition(self, state: Any, action: int, rng: np.random.Generator) -> Any:
+        return state, self.bonus, False
+
+
+def test_properties_are_refused() -> None:
+    with pytest.raises(NotCompilable, match=r"self.bonus is a property.*write a method"):
+        compiled_env(ReadsAProperty())

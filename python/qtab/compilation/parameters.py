@@ -28,6 +28,9 @@ class Parameters:
         """Returns the attributes of an environment that have these names and are not methods."""
         values, constants, refused = {}, {}, {}
         for name in sorted(names):
+            if isinstance(getattr(type(env), name, None), property):
+                refused[name] = f"self.{name} is a property, which would be read once only: write a method"
+                continue
             try:
                 value = getattr(env, name)
             except Exception:  # noqa: S112 - a property that needs a state, for one: its use is refused
