@@ -241,3 +241,16 @@ class ReadsAProperty(FillsDiagonal):
 def test_properties_are_refused() -> None:
     with pytest.raises(NotCompilable, match=r"self.bonus is a property.*write a method"):
         compiled_env(ReadsAProperty())
+
+
+class CatchesErrors(Base):
+    def transition(self, state: Any, action: int, rng: np.random.Generator) -> Any:
+        try:
+            return state * 2**62, 0.0, False
+        except Exception:
+            return 0, 0.0, False
+
+
+def test_errors_are_not_caught() -> None:
+    with pytest.raises(NotCompilable, match=r"try: cannot be compiled; write the condition with if"):
+        compiled_env(CatchesErrors())

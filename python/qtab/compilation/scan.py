@@ -93,6 +93,9 @@ def _refused(node: ast.AST) -> tuple[str, str] | None:
         name = _dotted(node)
         if isinstance(node.ctx, ast.Store | ast.Del) and name.startswith("self."):
             return "changes the environment", "keep in the state what changes"
+    if isinstance(node, ast.Try):
+        # It would catch the errors of integers of more than 64 bits, which Python does not raise.
+        return "cannot be compiled", "write the condition with if"
     if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "super":
         return "cannot be compiled", "call a method of another name"
     if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
