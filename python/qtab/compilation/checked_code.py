@@ -12,46 +12,13 @@ from numba.core.compiler import CompilerBase, DefaultPassBuilder
 from numba.core.compiler_machinery import FunctionPass, register_pass
 from numba.core.typed_passes import NopythonTypeInference
 
+from qtab.compilation.checked_names import MATH_ADVICE, NUMPY_REFUSED, SUMS_REFUSED, WRITES_REFUSED
 from qtab.compilation.checked_operations import DRAW_CHECKS, INTEGER_OPERATIONS, MATH, rounded, to_int
 from qtab.compilation.not_compilable import NotCompilable
-from qtab.compilation.rewriting.numpy_functions import SAME_AS_MATH
-from qtab.compilation.scan import DIFFERENT, SUMS
 
 refusals: list[NotCompilable] = []
 """The constructs that the compilation in progress has met and that are refused."""
 
-NUMPY_REFUSED = {
-    **{name: f"write math.{other}" for name, other in SAME_AS_MATH.items()},
-    **{name.removeprefix("np."): f"write {other}" for name, other in DIFFERENT.items()},
-    "power": "write products: x * x for x ** 2",
-    "float_power": "write products: x * x for x ** 2",
-    "hypot": "write math.sqrt(x * x + y * y)",
-    "radians": "write x * (math.pi / 180.0)",
-    "deg2rad": "write x * (math.pi / 180.0)",
-    "degrees": "write x * (180.0 / math.pi)",
-    "rad2deg": "write x * (180.0 / math.pi)",
-    **dict.fromkeys(
-        ("cbrt", "exp2", "logaddexp", "logaddexp2", "arcsinh", "arccosh", "arctanh", "sinc", "interp"),
-        "write it with functions of math, or a loop",
-    ),
-    **dict.fromkeys(("round", "around", "round_"), "leave out rounding, or write math.floor(x + 0.5)"),
-}
-"""Functions of NumPy whose results can differ, and what to write instead."""
-
-SUMS_REFUSED = {*SUMS, "cumprod", "vdot", "inner", "average", "median", "percentile", "quantile", "nansum", "nanmean",
-                "nanstd", "nanvar", "nanprod", "nancumsum", "nancumprod", "nanmedian", "trapz", "trapezoid", "norm",
-                "convolve", "correlate", "cov", "corrcoef"}  # fmt: skip
-"""Functions that may add or multiply floats in another order."""
-
-WRITES_REFUSED = {"fill_diagonal", "nditer", "ndenumerate", "copyto", "put", "place", "putmask"}
-"""Functions that may change an array of ``self`` without an error."""
-
-MATH_ADVICE = {
-    "pow": "write products, or math.exp(y * math.log(x))",
-    "hypot": "write math.sqrt(x * x + y * y)",
-    "radians": "write x * (math.pi / 180.0)",
-    "degrees": "write x * (180.0 / math.pi)",
-}
 INPLACE = {
     getattr(operator, f"i{name}"): getattr(operator, name)
     for name in ("add", "sub", "mul", "lshift", "rshift", "truediv", "floordiv", "mod", "pow", "matmul")
