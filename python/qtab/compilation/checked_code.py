@@ -92,15 +92,13 @@ class _Checks:
         if not all(isinstance(kind, NUMBERS) for kind in kinds):
             return []
         if function is operator.matmul:
-            self._refuse(expression, "a matrix product may add in another order", "add in a loop")
-            return []
+            return self._refuse(expression, "a matrix product may add in another order", "add in a loop")
         if function not in INTEGER_OPERATIONS and function not in COMPARISONS:
             return []
         if function in COMPARISONS and all(_is_narrow(kind) <= (kind != types.uint64) for kind in kinds):
             kinds = [kind for kind in kinds if not _is_narrow(kind)]  # which are compared exactly
         if reason := _mixed(kinds):
-            self._refuse(expression, reason, "convert the numbers with np.int64(...) or np.float64(...)")
-            return []
+            return self._refuse(expression, reason, "convert the numbers with np.int64(...) or np.float64(...)")
         scalars = not any(isinstance(one, types.Array) for one in given)
         integers = scalars and all(isinstance(kind, types.Integer | types.Boolean) for kind in kinds)
         if function is operator.pow:
@@ -181,8 +179,7 @@ class _Checks:
             return []
         if key not in MATH:
             advice = MATH_ADVICE.get(name, "use sin, cos, tan, exp, log, sqrt, floor, ceil or their like")
-            self._refuse(expression, f"math.{name} may round differently in compiled code", advice)
-            return []
+            return self._refuse(expression, f"math.{name} may round differently in compiled code", advice)
         return self._replace(statement, scope, MATH[key], expression.args, None)
 
     def _numpy_call(self, expression: Any, key: Any, name: str, given: list[Any]) -> None:
@@ -223,10 +220,11 @@ class _Checks:
     def _type(self, variable: Any) -> Any:
         return self.typemap[variable.name]
 
-    def _refuse(self, expression: Any, reason: str, advice: str) -> None:
+    def _refuse(self, expression: Any, reason: str, advice: str) -> list[Any]:
         file, line = expression.loc.filename, expression.loc.line
         source = linecache.getline(file, line).strip()
         refusals.append(NotCompilable(f"{reason}, in `{source[:80]}`", file, line, advice))
+        return []
 
     def _replace(
         self, statement: Any, scope: Any, helper: Any, arguments: list[Any], of: list[Any] | None
