@@ -16,7 +16,7 @@ PARAMETERS: dict[Any, dict[str, st.SearchStrategy[Any]]] = {
     own.AccessControl: {"free": PROBABILITY},
     own.CartPole: {"force": st.floats(-20.0, 20.0), "mass": st.floats(0.01, 2.0)},
     own.Epidemic: {"people": st.integers(100, 1000), "recovery": PROBABILITY},
-    own.Inventory: {"demand": st.floats(0.0, 20.0), "prices": st.tuples(*[st.floats(-5.0, 5.0)] * 3)},
+    own.Inventory: {"demand": st.floats(0.0, 9.9), "prices": st.tuples(*[st.floats(-5.0, 5.0)] * 3)},
     own.KeyAndDoor: {"slip": PROBABILITY},
     own.MineField: {"mines": st.integers(1, 8)},
     own.MountainCar: {"force": st.floats(-0.01, 0.01), "gravity": st.floats(-0.01, 0.01)},

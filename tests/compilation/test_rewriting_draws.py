@@ -27,7 +27,6 @@ CALLS = {
     "poisson": "poisson(self.x)",
     "binomial": "binomial(5, self.x)",
     "binomial with a count": "binomial(int(2.0 * self.x), 0.5)",
-    "negative_binomial": "negative_binomial(3, self.x)",
     "geometric": "geometric(self.x)",
     "uniform": "uniform(0.0, self.x)",
     "uniform to infinity": "uniform(0.0, 1.0 if self.x < 1.5 else math.inf)",

@@ -1,5 +1,6 @@
 """Integers never wrap: outside of 64 bits compiled code raises an error, and the step is repeated in Python."""
 
+from types import FunctionType
 from typing import Any
 
 import numpy as np
@@ -67,7 +68,7 @@ def test_helpers_compute_exact_integers_or_raise(name: str) -> None:
     namespace: dict[str, Any] = {"np": np}
     for helper in ("h_neg", "h_mul", name):
         code = getattr(runtime, helper).__code__
-        namespace[helper] = numba.njit(error_model="python")(type(outcome)(code, namespace, helper))
+        namespace[helper] = numba.njit(error_model="python")(FunctionType(code, namespace, helper))
     for one in EDGES:
         for other in EDGES:
             if name == "h_ipow" and other < 0:

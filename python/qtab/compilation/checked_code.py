@@ -15,6 +15,7 @@ from numba.core.typed_passes import NopythonTypeInference
 from qtab.compilation.checked_names import MATH_ADVICE, NUMPY_REFUSED, SUMS_REFUSED, WRITES_REFUSED
 from qtab.compilation.checked_operations import DRAW_CHECKS, INTEGER_OPERATIONS, MATH, rounded, to_int
 from qtab.compilation.not_compilable import NotCompilable
+from qtab.compilation.scan import DRAWS_REFUSED
 
 refusals: list[NotCompilable] = []
 """The constructs that the compilation in progress has met and that are refused."""
@@ -204,7 +205,7 @@ class _Checks:
             return []
         of, name = self._type(defined.value), defined.attr
         if isinstance(of, types.NumPyRandomGeneratorType):
-            if name in ("wald", "power"):
+            if name in DRAWS_REFUSED:
                 self._refuse(expression, f"{name} can draw other numbers", "draw from another distribution")
             elif name == "shuffle" and not getattr(given[0], "mutable", True):
                 self._refuse(expression, "shuffle changes an array of self", "copy the array first")
@@ -281,9 +282,6 @@ class CheckedCode(FunctionPass):  # type: ignore[misc]
     """Adds the checks after the types are known."""
 
     _name = "qtab_checked_code"
-
-    def __init__(self) -> None:
-        FunctionPass.__init__(self)
 
     def run_pass(self, state: Any) -> bool:
         """Changes the code of a function; returns whether there were changes."""

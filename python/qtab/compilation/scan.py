@@ -20,11 +20,14 @@ MISSING_DRAWS = {
 }
 """Methods of generators that Numba does not have, and what to write instead. The draws then differ."""
 
+DRAWS_REFUSED = ("wald", "power", "negative_binomial")
+"""Draws whose numbers can differ from NumPy's."""
+
 DIFFERENT = {
     "np.exp": "math.exp",
     "np.tanh": "math.tanh",
     "np.log": "math.log",
-    "np.power": "products, or math.pow",
+    "np.power": "products",
     "np.sinh": "math.sinh",
     "np.cosh": "math.cosh",
     "np.exp2": "math.exp",
@@ -120,7 +123,7 @@ def _suspect(node: ast.AST) -> str | None:
         if (instead := DIFFERENT.get(name.replace("numpy.", "np."))) is not None:
             return f"write {instead}"
         last = name.rpartition(".")[2]
-        if last in ("wald", "power") and not name.startswith(("np.", "math.")):
+        if last in DRAWS_REFUSED and not name.startswith(("np.", "math.")):
             return "draw from another distribution"
         if last in SUMS or name == "sum":
             return "add in a loop"

@@ -27,7 +27,6 @@ PARAMETERS: dict[str, tuple[tuple[str, float | None], ...]] = {
     "standard_cauchy": (),
     "poisson": (("lam", 1.0),),
     "binomial": (("n", None), ("p", None)),
-    "negative_binomial": (("n", None), ("p", None)),
     "geometric": (("p", None),),
     "triangular": (("left", None), ("mode", None), ("right", None)),
     "laplace": (("loc", 0.0), ("scale", 1.0)),
@@ -52,14 +51,12 @@ CONSTRAINTS: dict[tuple[str, str], str] = {
     ("poisson", "lam"): "h_poisson",
     ("binomial", "n"): NOT_NEGATIVE,
     ("binomial", "p"): PROBABILITY,
-    ("negative_binomial", "n"): "h_count",
-    ("negative_binomial", "p"): "h_positive_probability",
     ("geometric", "p"): "h_positive_probability",
 }
 """What NumPy demands of an argument, by method and parameter: the helper that raises an error for other values."""
 TOGETHER = {"uniform": "h_uniform", "triangular": "h_triangular"}
 """The methods whose arguments NumPy checks together, with helpers that return the last of them."""
-INTEGERS = ("poisson", "binomial", "negative_binomial", "geometric")
+INTEGERS = ("poisson", "binomial", "geometric")
 
 
 def draw(scope: "Expressions", node: ast.Call, name: str) -> Value:
