@@ -131,7 +131,7 @@ SAME = [
     "-n % 7",
     "math.log(x) + math.log2(x) + math.log1p(x) + math.expm1(-x) + math.atan2(n, x)",
     "math.floor(-x / 7) + math.ceil(x / 7) + math.trunc(-x / 7) + round(x / 8) + int(-x / 7)",
-    "rng.normal(1.0, x) + rng.gamma(x, 2.0) + rng.poisson(x) + rng.uniform(-x, x) + rng.exponential(scale=x)",
+    "rng.normal(1.0, x) + rng.gamma(x, 2.0) + rng.poisson(x / 60) + rng.uniform(-x, x) + rng.exponential(scale=x)",
     "rng.binomial(n, 0.25) + rng.geometric(0.5) + rng.integers(0, n)",
     "np.arange(n).sum() + np.sqrt(x)",
     "int(n > 1) + int(n > 2)",

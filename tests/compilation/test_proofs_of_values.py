@@ -16,7 +16,7 @@ pytest.importorskip("numba")
 
 
 class Branch(qtab.FunctionalEnv):
-    """Its sums of float32 differ in compiled code, but are only reached if ``slip`` is positive."""
+    """Its Poisson numbers are not drawn in compiled code, but are only reached if ``slip`` is positive."""
 
     observation_space: gym.Space[Any] = gym.spaces.Box(-np.inf, np.inf, (1,), np.float64)
     action_space: gym.Space[Any] = gym.spaces.Discrete(2)
@@ -30,7 +30,7 @@ class Branch(qtab.FunctionalEnv):
     def transition(self, state: Any, action: int, rng: np.random.Generator) -> Any:
         x = 1.0 + rng.random()
         if self.slip > 0.0:
-            x = float(np.float32(x) * 1.1)
+            x = float(rng.poisson(12.0))
         return x, x, rng.random() < 0.05
 
     def observe(self, state: Any) -> Any:

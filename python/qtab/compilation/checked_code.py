@@ -13,17 +13,13 @@ from numba.core.compiler_machinery import FunctionPass, register_pass
 from numba.core.typed_passes import NopythonTypeInference
 
 from qtab.compilation.checked_names import MATH_ADVICE, NUMPY_REFUSED, SUMS_REFUSED, WRITES_REFUSED
-from qtab.compilation.checked_operations import DRAW_CHECKS, INTEGER_OPERATIONS, MATH, rounded, to_int
+from qtab.compilation.checked_operations import DRAW_CHECKS, INPLACE, INTEGER_OPERATIONS, MATH, rounded, to_int
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.scan import DRAWS_REFUSED
 
 refusals: list[NotCompilable] = []
 """The constructs that the compilation in progress has met and that are refused."""
 
-INPLACE = {
-    getattr(operator, f"i{name}"): getattr(operator, name)
-    for name in ("add", "sub", "mul", "lshift", "rshift", "truediv", "floordiv", "mod", "pow", "matmul")
-}
 COMPARISONS = (operator.lt, operator.le, operator.gt, operator.ge, operator.eq, operator.ne)
 NUMBERS = (types.Integer, types.Float, types.Boolean)
 
@@ -282,6 +278,9 @@ class CheckedCode(FunctionPass):  # type: ignore[misc]
     """Adds the checks after the types are known."""
 
     _name = "qtab_checked_code"
+
+    def __init__(self) -> None:
+        FunctionPass.__init__(self)
 
     def run_pass(self, state: Any) -> bool:
         """Changes the code of a function; returns whether there were changes."""

@@ -193,6 +193,13 @@ DRAWS: dict[str, tuple[str, str]] = {
 """The parameters of methods of generators, and the condition for which NumPy draws."""
 
 
+INPLACE = {
+    getattr(operator, f"i{name}"): getattr(operator, name)
+    for name in ("add", "sub", "mul", "lshift", "rshift", "truediv", "floordiv", "mod", "pow", "matmul")
+}
+"""The operators of augmented assignments, and those that they stand for."""
+
+
 def _draw_check(parameters: str, condition: str) -> Any:
     scope: dict[str, Any] = {"math": math}
     exec(f"def check({parameters}):\n    if not ({condition}):\n        raise ValueError\n", scope)  # noqa: S102

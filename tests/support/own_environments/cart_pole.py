@@ -17,7 +17,7 @@ class Motion(NamedTuple):
 
 
 class CartPole(qtab.FunctionalEnv):
-    """The state is a named tuple. A property computes the total mass."""
+    """The state is a named tuple. A method computes the total mass."""
 
     observation_space = gym.spaces.Box(-10.0, 10.0, (4,))
     action_space = gym.spaces.Discrete(2)
@@ -25,7 +25,6 @@ class CartPole(qtab.FunctionalEnv):
     def __init__(self, force: float = 10.0, mass: float = 0.1) -> None:
         self.force, self.mass = force, mass
 
-    @property
     def total_mass(self) -> float:
         return self.mass + 1.0
 
@@ -35,9 +34,9 @@ class CartPole(qtab.FunctionalEnv):
     def transition(self, state: Motion, action: int, rng: np.random.Generator) -> Any:
         force = self.force if action == 1 else -self.force
         cosine, sine = math.cos(state.angle), math.sin(state.angle)
-        pushed = (force + 0.5 * self.mass * state.rate * state.rate * sine) / self.total_mass
-        angular = (9.8 * sine - cosine * pushed) / (0.5 * (4.0 / 3.0 - self.mass * cosine * cosine / self.total_mass))
-        linear = pushed - 0.5 * self.mass * angular * cosine / self.total_mass
+        pushed = (force + 0.5 * self.mass * state.rate * state.rate * sine) / self.total_mass()
+        angular = (9.8 * sine - cosine * pushed) / (0.5 * (4.0 / 3.0 - self.mass * cosine * cosine / self.total_mass()))
+        linear = pushed - 0.5 * self.mass * angular * cosine / self.total_mass()
         following = Motion(
             state.position + 0.02 * state.velocity,
             state.velocity + 0.02 * linear,
