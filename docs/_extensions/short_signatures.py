@@ -27,7 +27,7 @@ SHORTER = (
     (re.compile(r"\bfloating\[[^\]]*\]"), "floating"),
     (
         re.compile(
-            r"\b(?:typing|collections\.abc|concurrent\.futures\._base|gymnasium(?:\.\w+)+|np|numpy|os|qtab(?:\.\w+)+|gym|pd|pandas)\.(?=\w)"
+            r"\b(?:typing|collections\.abc|concurrent\.futures\._base|gymnasium(?:\.\w+)+|np(?:\.random)?|numpy(?:\.random\._generator)?|os|qtab(?:\.\w+)+|gym|pd|pandas)\.(?=\w)"
         ),
         "",
     ),

@@ -115,6 +115,9 @@ LARGE = [
     "int(x * 1e300)",
     "round(x * 1e300)",
     "math.floor(x * 1e300)",
+    "math.floor(n * 2**54)",
+    "np.uint8(n + 250)",
+    "1.0 if n * 2**54 > 1e18 else 0.0",
 ]
 
 
@@ -138,6 +141,9 @@ SAME = [
     "(action == 1) - (action == 0)",
     "np.int64(np.int8(n)) * 100",
     "1.0 if np.int8(n) < 61 else 2.0",
+    "1.0 if not np.int8(n) else 2.0",
+    "1.0 if n > 59.5 else 2.0",
+    "math.floor(n)",
 ]
 
 
@@ -149,6 +155,9 @@ def test_other_results_are_those_of_python(expression: str, tmp_path: Any) -> No
 
 
 REFUSED = {
+    "max(np.int8(n), 0) + 200": "convert the numbers",
+    "-(n > 1)": "write not x",
+    "~(n > 1)": "write not x",
     "x**2": "write products",
     "2**n": "write products",
     "x**0.5": "write products",

@@ -1,4 +1,4 @@
-"""Numba's compiler of users' functions, with checks where Python raises errors, and refusals where bits can differ."""
+"""Checks where Python raises errors, and refusals where bits can differ, in the code of users' functions."""
 
 import linecache
 import math
@@ -8,12 +8,19 @@ from typing import Any
 
 import numpy as np
 from numba.core import ir, types
-from numba.core.compiler import CompilerBase, DefaultPassBuilder
-from numba.core.compiler_machinery import FunctionPass, register_pass
-from numba.core.typed_passes import NopythonTypeInference
 
 from qtab.compilation.checked_names import MATH_ADVICE, NUMPY_REFUSED, SUMS_REFUSED, WRITES_REFUSED
-from qtab.compilation.checked_operations import DRAW_CHECKS, INPLACE, INTEGER_OPERATIONS, MATH, rounded, to_int
+from qtab.compilation.checked_operations import (
+    DRAW_CHECKS,
+    INPLACE,
+    INTEGER_OPERATIONS,
+    MATH,
+    RANGE_CHECKS,
+    exact_integer,
+    rounded,
+    to_int,
+)
+from qtab.compilation.checked_types import NUMBERS, is_narrow, leaf, mixed, of_integers
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.scan import DRAWS_REFUSED
 
@@ -21,29 +28,9 @@ refusals: list[NotCompilable] = []
 """The constructs that the compilation in progress has met and that are refused."""
 
 COMPARISONS = (operator.lt, operator.le, operator.gt, operator.ge, operator.eq, operator.ne)
-NUMBERS = (types.Integer, types.Float, types.Boolean)
 
 
-def _leaf(of: Any) -> Any:
-    of = types.unliteral(of)
-    return of.dtype if isinstance(of, types.Array) else of
-
-
-def _is_narrow(of: Any) -> bool:
-    return isinstance(of, types.Integer) and (of.bitwidth < 64 or not of.signed)
-
-
-def _mixed(kinds: list[Any]) -> str:
-    """Returns why the type of a result can differ from NumPy's; an empty text if it does not."""
-    narrow = next((kind for kind in kinds if _is_narrow(kind)), None)
-    if narrow is not None:
-        return f"arithmetic of {narrow}"
-    if any(kind == types.float32 for kind in kinds) and any(kind != types.float32 for kind in kinds):
-        return "arithmetic of float32 and wider numbers"
-    return ""
-
-
-class _Checks:
+class Checks:
     """The changes to the code of one function, whose types are known."""
 
     def __init__(self, state: Any) -> None:
@@ -63,13 +50,28 @@ class _Checks:
             for statement in block.body:
                 if isinstance(statement, ir.Assign) and isinstance(statement.value, ir.Expr):
                     body += self._expression(statement, block.scope)
+                elif isinstance(statement, ir.Assign) and isinstance(statement.value, ir.Var):
+                    self._widening(statement, [statement.value])
                 elif isinstance(statement, ir.SetItem | ir.StaticSetItem):
-                    of = self._type(statement.target)
-                    if isinstance(of, types.NumpyFlatType) and not of.array_type.mutable:
-                        self._refuse(statement, "array.flat changes an array of self", "copy the array first")
+                    body += self._store(statement, block.scope)
                 body.append(statement)
             block.body = body
         return self.made > 0
+
+    def _store(self, statement: Any, scope: Any) -> list[Any]:
+        of, value = self._type(statement.target), types.unliteral(self._type(statement.value))
+        if isinstance(of, types.NumpyFlatType) and not of.array_type.mutable:
+            self._refuse(statement, "array.flat changes an array of self", "copy the array first")
+        elif isinstance(of, types.Array) and is_narrow(of.dtype) and isinstance(value, types.Integer):
+            return self._check(RANGE_CHECKS[of.dtype], scope, [statement.value], statement.loc)
+        return []
+
+    def _widening(self, statement: Any, sources: list[Any]) -> None:
+        """Refuses a number whose type is another one in Python, where it comes from another branch."""
+        kinds = [leaf(self._type(source)) for source in sources]
+        target = leaf(self._type(statement.target))
+        if any((is_narrow(kind) or kind == types.float32) and kind != target for kind in kinds):
+            self._refuse(statement, "numbers of several types", "convert them with np.int64(...) or np.float64(...)")
 
     def _expression(self, statement: Any, scope: Any) -> list[Any]:
         expression = statement.value
@@ -77,24 +79,32 @@ class _Checks:
             return self._operation(statement, scope)
         if expression.op == "call":
             return self._call(statement, scope)
-        if expression.op == "unary" and _is_narrow(_leaf(self._type(expression.value))):
-            self._refuse(expression, _mixed([_leaf(self._type(expression.value))]), "convert it with np.int64(...)")
+        if expression.op == "phi":
+            self._widening(statement, [one for one in expression.incoming_values if isinstance(one, ir.Var)])
+        if expression.op == "cast":
+            self._widening(statement, [expression.value])
+        if expression.op == "unary" and expression.fn is not operator.not_:
+            of = types.unliteral(self._type(expression.value))
+            if isinstance(of, types.Boolean):
+                self._refuse(expression, "arithmetic of booleans", "write not x, or convert it with int(...)")
+            elif is_narrow(leaf(of)):
+                self._refuse(expression, mixed([leaf(of)]), "convert it with np.int64(...)")
         return []
 
     def _operation(self, statement: Any, scope: Any) -> list[Any]:
         expression = statement.value
         function = INPLACE.get(expression.fn, expression.fn)
         given = [self._type(expression.lhs), self._type(expression.rhs)]
-        kinds = [_leaf(one) for one in given]
+        kinds = [leaf(one) for one in given]
         if not all(isinstance(kind, NUMBERS) for kind in kinds):
             return []
         if function is operator.matmul:
             return self._refuse(expression, "a matrix product may add in another order", "add in a loop")
         if function not in INTEGER_OPERATIONS and function not in COMPARISONS:
             return []
-        if function in COMPARISONS and all(_is_narrow(kind) <= (kind != types.uint64) for kind in kinds):
-            kinds = [kind for kind in kinds if not _is_narrow(kind)]  # which are compared exactly
-        if reason := _mixed(kinds):
+        if function in COMPARISONS and all(is_narrow(kind) <= (kind != types.uint64) for kind in kinds):
+            kinds = [kind for kind in kinds if not is_narrow(kind)]  # which are compared exactly
+        if reason := mixed(kinds):
             return self._refuse(expression, reason, "convert the numbers with np.int64(...) or np.float64(...)")
         scalars = not any(isinstance(one, types.Array) for one in given)
         integers = scalars and all(isinstance(kind, types.Integer | types.Boolean) for kind in kinds)
@@ -104,7 +114,7 @@ class _Checks:
                 self._refuse(expression, "a power can differ in the last bit", "write products: x * x for x ** 2")
                 return []
         if function in COMPARISONS:
-            return []
+            return self._comparison(expression, scope, kinds) if scalars else []
         if all(isinstance(kind, types.Boolean) for kind in kinds):
             if scalars and self._compares_action(expression.lhs) and self._compares_action(expression.rhs):
                 return self._replace(
@@ -117,6 +127,13 @@ class _Checks:
             return []
         helper = INTEGER_OPERATIONS[function]
         return self._replace(statement, scope, helper, [expression.lhs, expression.rhs], [types.int64] * 2)
+
+    def _comparison(self, expression: Any, scope: Any, kinds: list[Any]) -> list[Any]:
+        """Returns the check of an integer that is compared with a float, which compiled code rounds."""
+        for kind, other, side in zip(kinds, reversed(kinds), (expression.lhs, expression.rhs), strict=False):
+            if isinstance(kind, types.Integer) and isinstance(other, types.Float):
+                return self._check(exact_integer, scope, [side], expression.loc)
+        return []
 
     def _compares_action(self, variable: Any) -> bool:
         """Returns whether a variable is a comparison of the action with a constant, which is a boolean of Python."""
@@ -140,6 +157,8 @@ class _Checks:
         if isinstance(function, types.NumberClass):
             if function.instance_type == types.int64 and given and isinstance(types.unliteral(given[0]), types.Float):
                 return self._replace(statement, scope, to_int, expression.args, [types.float64])
+            if is_narrow(function.instance_type) and given and isinstance(types.unliteral(given[0]), types.Integer):
+                return self._check_before(expression, scope, RANGE_CHECKS[function.instance_type])
             return []
         if not isinstance(function, types.Function):
             return []
@@ -149,7 +168,7 @@ class _Checks:
         name = str(getattr(key, "__name__", key)).rpartition(".")[2]
         if any(map(_draws_elsewhere, (key, called))):
             self._refuse(expression, f"{name} does not draw from the generator of the environment", "draw from rng")
-        elif key in (int, float, round, sum, pow, divmod):
+        elif key in (int, float, round, sum, pow, divmod, min, max, abs):
             return self._builtin_call(statement, scope, key, given)
         elif getattr(key, "__module__", None) == "math" or getattr(math, name, None) is key:
             return self._math_call(statement, scope, key, name)
@@ -164,7 +183,9 @@ class _Checks:
             self._refuse(expression, "round with digits can differ", "write math.floor(x + 0.5)")
         elif key in (pow, divmod):
             self._refuse(expression, f"{key.__name__} can differ", "write products, or a // b and a % b")
-        elif key is sum and not _of_integers(kinds[0]):
+        elif key in (min, max, abs) and (reason := mixed([leaf(kind) for kind in kinds])):
+            self._refuse(expression, reason, "convert the numbers with np.int64(...) or np.float64(...)")
+        elif key is sum and not of_integers(kinds[0]):
             self._refuse(expression, "a sum of floats may be added in another order", "add in a loop")
         elif key in (int, round) and len(kinds) == 1 and isinstance(kinds[0], types.Float):
             return self._replace(statement, scope, to_int if key is int else rounded, expression.args, [types.float64])
@@ -180,17 +201,17 @@ class _Checks:
         return self._replace(statement, scope, MATH[key], expression.args, None)
 
     def _numpy_call(self, expression: Any, key: Any, name: str, given: list[Any]) -> None:
-        kinds = [kind for kind in map(_leaf, given) if isinstance(kind, NUMBERS)]
+        kinds = [kind for kind in map(leaf, given) if isinstance(kind, NUMBERS)]
         if name in NUMPY_REFUSED:
             self._refuse(expression, f"np.{name} rounds differently in compiled code", NUMPY_REFUSED[name])
         elif name in WRITES_REFUSED:
             self._refuse(expression, f"np.{name} can change an array of self", "assign to the elements in a loop")
-        elif name in SUMS_REFUSED and not (given and _of_integers(given[0])):
+        elif name in SUMS_REFUSED and not (given and of_integers(given[0])):
             self._refuse(expression, f"np.{name} may add in another order", "add in a loop")
         elif isinstance(key, np.ufunc):
             if len(given) > key.nin:
                 self._refuse(expression, f"np.{name} with an array for the result", "assign the result")
-            elif reason := _mixed(kinds):
+            elif reason := mixed(kinds):
                 advice = "convert the numbers with np.int64(...) or np.float64(...)"
                 self._refuse(expression, f"np.{name}: {reason}", advice)
 
@@ -208,7 +229,7 @@ class _Checks:
             elif name in DRAW_CHECKS:
                 return self._check_before(expression, scope, DRAW_CHECKS[name])
         elif isinstance(of, types.Array):
-            if name in SUMS_REFUSED and not _of_integers(of):
+            if name in SUMS_REFUSED and not of_integers(of):
                 self._refuse(expression, f"array.{name}() may add in another order", "add in a loop")
             elif name in ("sort", "fill", "partition", "put", "itemset") and not of.mutable:
                 self._refuse(expression, f"array.{name}() changes an array of self", "copy the array first")
@@ -241,6 +262,12 @@ class _Checks:
         )
         return [define, ir.Assign(call, self._variable(scope, types.none, expression.loc), expression.loc)]
 
+    def _check(self, helper: Any, scope: Any, arguments: list[Any], loc: Any) -> list[Any]:
+        """Returns the statements that call a helper."""
+        kinds = tuple(types.unliteral(self._type(one)) for one in arguments)
+        define, call = self._call_of(helper, scope, arguments, (), kinds, {}, loc)
+        return [define, ir.Assign(call, self._variable(scope, types.none, loc), loc)]
+
     def _call_of(
         self, helper: Any, scope: Any, arguments: list[Any], named: Any, kinds: Any, named_kinds: Any, loc: Any
     ) -> tuple[Any, Any]:
@@ -257,42 +284,9 @@ class _Checks:
         return variable
 
 
-def _of_integers(of: Any) -> bool:
-    """Returns whether a sum of an array or a sequence is one of int64 or booleans."""
-    if isinstance(of, types.BaseTuple):
-        return all(kind == types.int64 or isinstance(kind, types.Boolean) for kind in map(types.unliteral, of.types))
-    kind = types.unliteral(getattr(of, "dtype", of))
-    return kind == types.int64 or isinstance(kind, types.Boolean)
-
-
 def _draws_elsewhere(function: Any) -> bool:
     if isinstance(function, str):
         return function.startswith(("np.random", "numpy.random", "random."))
     owner = getattr(function, "__self__", None)
     module = str(getattr(function, "__module__", "") or "")
     return isinstance(owner, np.random.RandomState | random.Random) or module.startswith(("numpy.random", "random"))
-
-
-@register_pass(mutates_CFG=False, analysis_only=False)
-class CheckedCode(FunctionPass):  # type: ignore[misc]
-    """Adds the checks after the types are known."""
-
-    _name = "qtab_checked_code"
-
-    def __init__(self) -> None:
-        FunctionPass.__init__(self)
-
-    def run_pass(self, state: Any) -> bool:
-        """Changes the code of a function; returns whether there were changes."""
-        return _Checks(state).run()
-
-
-class CheckedCompiler(CompilerBase):  # type: ignore[misc]
-    """Numba's pipeline with ``CheckedCode``."""
-
-    def define_pipelines(self) -> list[Any]:
-        """Returns the passes."""
-        passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
-        passes.add_pass_after(CheckedCode, NopythonTypeInference)
-        passes.finalize()
-        return [passes]

@@ -26,7 +26,7 @@ SUMS_REFUSED = {*SUMS, "cumprod", "vdot", "inner", "average", "median", "percent
                 "convolve", "correlate", "cov", "corrcoef"}  # fmt: skip
 """Functions that may add or multiply floats in another order."""
 
-WRITES_REFUSED = {"fill_diagonal", "nditer", "ndenumerate", "copyto", "put", "place", "putmask"}
+WRITES_REFUSED = {"nan_to_num", "fill_diagonal", "nditer", "ndenumerate", "copyto", "put", "place", "putmask"}
 """Functions that may change an array of ``self`` without an error."""
 
 MATH_ADVICE = {

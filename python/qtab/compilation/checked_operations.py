@@ -119,6 +119,22 @@ INTEGER_OPERATIONS: dict[Any, Any] = {
 """Operations of two int64 by their operators."""
 
 
+def _range_check(low: int, high: int) -> Any:
+    source = f"def check(value):\n    if value < {low} or value > {high}:\n        raise OverflowError\n"
+    scope: dict[str, Any] = {}
+    exec(source, scope)  # noqa: S102 - code of this module
+    return _compiled(scope["check"])
+
+
+exact_integer: Any = _range_check(-LARGEST_EXACT, LARGEST_EXACT)
+"""Raises an error for an integer that is no float."""
+RANGE_CHECKS: dict[Any, Any] = {
+    numba.from_dtype(np.dtype(name)): _range_check(int(np.iinfo(name).min), min(int(np.iinfo(name).max), 2**63 - 1))
+    for name in ("int8", "int16", "int32", "uint8", "uint16", "uint32", "uint64")
+}
+"""Functions that raise an error for integers outside the range of a type."""
+
+
 def _to_int(value: Any) -> Any:
     if not (-9.2e18 < value < 9.2e18):
         raise ValueError
@@ -127,6 +143,13 @@ def _to_int(value: Any) -> Any:
 
 to_int: Any = _compiled(_to_int)
 """``int`` of a float."""
+
+
+def _exact_int(value: Any) -> Any:
+    """Returns a float as an integer; an integer beyond 2**53 has been rounded before."""
+    if not (-9007199254740992.0 <= value <= 9007199254740992.0):
+        raise OverflowError
+    return np.int64(value)
 
 
 def _round(value: Any) -> Any:
@@ -138,14 +161,14 @@ rounded: Any = _compiled(_round)
 
 
 def _math_function(name: str) -> Any:
-    scope: dict[str, Any] = {"math": math, "np": np, "checked": _checked, "to_int": to_int}
+    scope: dict[str, Any] = {"math": math, "np": np, "checked": _checked, "exact": _compiled(_exact_int)}
     conditions = {"log": "x <= 0.0", "log10": "x <= 0.0", "log2": "x <= 0.0", "log1p": "x <= -1.0", "sqrt": "x < 0.0"}
     if name in TWO:
         source = f"def f(x, y):\n    return math.{name}(np.float64(x), np.float64(y))\n"
     else:
         result = f"math.{name}(z)"
         if name in ROUNDED:
-            result = "to_int(z)" if name == "trunc" else f"to_int(np.{name}(z))"
+            result = "exact(z)" if name == "trunc" else f"exact(np.{name}(z))"
         elif name not in (*TESTS, "fabs", *conditions):
             result = f"checked(z, {result})"
         check = (
@@ -163,7 +186,7 @@ MATH: dict[Any, Any] = {
 """Functions of ``math`` whose results have the same bits, with checks."""
 
 _POSITIVE = "{} > 0.0"
-_NOT_NEGATIVE = "{} >= 0.0"
+_NOT_NEGATIVE = "({0} >= 0.0 and math.copysign(1.0, {0}) > 0.0)"
 _SHARE = "0.0 < {} <= 1.0"
 DRAWS: dict[str, tuple[str, str]] = {
     "normal": ("loc=0.0, scale=1.0, size=None", _NOT_NEGATIVE.format("scale")),
@@ -185,7 +208,7 @@ DRAWS: dict[str, tuple[str, str]] = {
     "triangular": ("left, mode, right, size=None", "left <= mode <= right and left < right"),
     "uniform": ("low=0.0, high=1.0, size=None", "0.0 <= high - low < math.inf"),
     "poisson": ("lam=1.0, size=None", "0.0 <= lam < 10.0"),  # beyond that, Numba's own algorithm differs
-    "geometric": ("p, size=None", _SHARE.format("p")),
+    "geometric": ("p, size=None", "1e-9 <= p <= 1.0"),  # below, the numbers may not fit 64 bits
     "binomial": ("n, p, size=None", "n >= 0 and 0.0 <= p <= 1.0"),
     "logseries": ("p, size=None", "0.0 < p < 1.0"),
     "zipf": ("a, size=None", "1.0 < a < 1e9"),

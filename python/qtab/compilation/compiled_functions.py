@@ -6,7 +6,7 @@ from typing import Any
 
 import numba
 
-from qtab.compilation.checked_code import CheckedCompiler
+from qtab.compilation.checked_compiler import CheckedCompiler
 from qtab.compilation.checked_operations import OPTIONS as OPTIONS
 from qtab.compilation.functions import codes, plain
 

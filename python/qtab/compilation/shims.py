@@ -91,6 +91,8 @@ def compile_functional(
         _returned(shim, signature)
         compiled[name] = shim.overloads[signature]
         report()
+    if refusals:
+        raise refusals[0]
     return Compiled(compiled, state)
 
 

@@ -71,8 +71,8 @@ class FunctionalEnv(gym.Env[Any, Any], ABC):
             cls.render = _of_current_state(own)  # type: ignore[method-assign]
 
     def __repr__(self) -> str:
-        """Returns the name of the class; Gymnasium would show an environment without an id by its address."""
-        return super().__repr__() if self.spec is not None else f"<{type(self).__name__}>"
+        """Returns the name of the class, and the id if there is one."""
+        return str(self) if self.spec is not None else f"<{type(self).__name__}>"
 
     @abstractmethod
     def initial_state(self, rng: np.random.Generator) -> Any:

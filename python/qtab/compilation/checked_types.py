@@ -1,0 +1,36 @@
+"""The types of numbers in users' functions: those that compiled code computes with as Python does, and others."""
+
+from typing import Any
+
+from numba.core import types
+
+NUMBERS = (types.Integer, types.Float, types.Boolean)
+
+
+def leaf(of: Any) -> Any:
+    """Returns the type of a number, or of the numbers in an array."""
+    of = types.unliteral(of)
+    return of.dtype if isinstance(of, types.Array) else of
+
+
+def is_narrow(of: Any) -> bool:
+    """Returns whether a type is that of integers other than int64."""
+    return isinstance(of, types.Integer) and (of.bitwidth < 64 or not of.signed)
+
+
+def mixed(kinds: list[Any]) -> str:
+    """Returns why the type of a result can differ from NumPy's; an empty text if it does not."""
+    narrow = next((kind for kind in kinds if is_narrow(kind)), None)
+    if narrow is not None:
+        return f"arithmetic of {narrow}"
+    if any(kind == types.float32 for kind in kinds) and any(kind != types.float32 for kind in kinds):
+        return "arithmetic of float32 and wider numbers"
+    return ""
+
+
+def of_integers(of: Any) -> bool:
+    """Returns whether a sum of an array or a sequence is one of int64 or booleans."""
+    if isinstance(of, types.BaseTuple):
+        return all(kind == types.int64 or isinstance(kind, types.Boolean) for kind in map(types.unliteral, of.types))
+    kind = types.unliteral(getattr(of, "dtype", of))
+    return kind == types.int64 or isinstance(kind, types.Boolean)
