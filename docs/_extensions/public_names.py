@@ -33,6 +33,7 @@ SHORT = {
         "numpy.float64",
         "numpy.floating",
         "numpy.int64",
+        "numpy.int8",
         "numpy.integer",
         "numpy.ndarray",
         "numpy.typing.ArrayLike",
