@@ -1,6 +1,7 @@
 """Training on compiled environments gives what training in Python gives, to the last bit."""
 
 import logging
+from pathlib import Path
 from typing import Any
 
 import gymnasium as gym
@@ -150,7 +151,7 @@ def test_what_cannot_be_compiled_is_stepped_in_python_with_one_message(caplog: p
     assert runs[0].config.backend == "gymnasium"
     (message,) = [record.getMessage() for record in caplog.records if "Choosing" in record.getMessage()]
     assert "stepped in Python" in message
-    assert f"{__file__}:" in message
+    assert f"{Path(__file__).name}:" in message  # a stored refusal has no folders
     assert "rng.choice(self.states) cannot be compiled; draw an index with rng.integers(0, n)" in message
     with pytest.raises(
         ValueError, match=r"^backend must be .* got 'numba': .*rng.choice.* cannot be compiled; draw an"
