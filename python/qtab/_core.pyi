@@ -184,11 +184,6 @@ class MdpSolver:
 @final
 class NativeEnv:
     def __new__(cls, name: str, env: Any, actions: Sequence[float] = ...) -> NativeEnv: ...
-    @staticmethod
-    def from_capsule(
-        capsule: Any,
-        on_failure: Callable[[bytes | None, int, int | None, int | None, int], object] | None = None,
-    ) -> NativeEnv: ...
 
 class Taxi:
     def __new__(cls, *_args: Any, **_kwargs: Any) -> Taxi: ...

@@ -119,7 +119,7 @@ def test_what_is_no_capsule(compiled: CompiledBoard, monkeypatch: pytest.MonkeyP
     with pytest.raises(
         TypeError, match=r"__qtab_env__\(\) must return a capsule named 'qtab.env.1', got <class 'int'>"
     ):
-        _core.NativeEnv.from_capsule(1)
+        _core.ExternalEnv(1)
     generator: Any = np.random.PCG64(0)
     with pytest.raises(ValueError, match="got one of another name"):
         _core.ExternalEnv(generator.capsule)

@@ -107,3 +107,10 @@ def test_an_action_is_an_integer_of_its_space(tmp_path: Path) -> None:
             env.step(action)
     with pytest.raises(TypeError):
         env.step(0.5)
+
+
+def test_the_states_count_towards_the_memory_limit(tmp_path: Path) -> None:
+    env = qtab.NativeEnv(days(tmp_path, STATE_SIZE=2**20))
+    qtab.train(env, episodes=3, memory_limit=2**22)
+    with pytest.raises(MemoryError):
+        qtab.train(env, episodes=3, memory_limit=2**21)

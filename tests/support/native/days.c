@@ -4,6 +4,9 @@
 #ifndef TERMINATES_AT
 #define TERMINATES_AT 1
 #endif
+#ifndef STATE_SIZE
+#define STATE_SIZE sizeof(int64_t)
+#endif
 #ifndef LIMIT
 #define LIMIT 0
 #endif
@@ -40,7 +43,7 @@ static int32_t observe(const void *parameters, const void *state, void *observat
 }
 static const double low[] = {0}, high[] = {10};
 static const qtab_env env = {
-    QTAB_ENV_VERSION, sizeof(qtab_env), sizeof(int64_t), QTAB_INT64, 1, low, high, 2, LIMIT, 1, 0, 0,
+    QTAB_ENV_VERSION, sizeof(qtab_env), STATE_SIZE, QTAB_INT64, 1, low, high, 2, LIMIT, 1, 0, 0,
     reset, step, observe,
 };
 const qtab_env *qtab_env_1(void);

@@ -8,7 +8,7 @@ from qtab._utils.shown import shown
 from qtab.config.options import n_tables
 from qtab.results.run import Run
 from qtab.training.callbacks import TrainingOptions
-from qtab.training.setup.environment import PythonEnvironment, mask_bytes
+from qtab.training.setup.environment import NativeEnvironment, PythonEnvironment, mask_bytes
 from qtab.training.setup.resolved_run import ResolvedRun
 
 BYTES_PER_VALUE = {
@@ -38,7 +38,7 @@ def tables_shape(resolved: ResolvedRun, runs: int) -> tuple[int, int, int, int]:
 
 
 def bytes_in_progress(resolved: ResolvedRun) -> int:
-    """Returns the memory of a run while it trains, without its environment, in bytes."""
+    """Returns the memory of a run while it trains, in bytes: without an environment in Python."""
     values = math.prod(tables_shape(resolved, 1))
     per_value = 8 + BYTES_PER_VALUE.get(resolved.config.algorithm, 0)
     if resolved.config.learning_rate_schedule == "visits":
@@ -46,7 +46,9 @@ def bytes_in_progress(resolved: ResolvedRun) -> int:
     if resolved.config.exploration == "ucb":
         per_value += BYTES_PER_VISIT_COUNT
     masks = mask_bytes(resolved.masks, resolved.discretizer, len(resolved.actions))
-    return resolved.config.episodes * BYTES_PER_EPISODE + values * per_value + masks
+    external = resolved.environment.external if isinstance(resolved.environment, NativeEnvironment) else None
+    states = 0 if external is None else 2 * external.state_size  # that before a step and that after it
+    return resolved.config.episodes * BYTES_PER_EPISODE + values * per_value + masks + states
 
 
 def bytes_of_run(resolved: ResolvedRun) -> int:

@@ -5,7 +5,6 @@ use std::sync::Arc;
 use pyo3::prelude::*;
 use qtab_core::planning::Mdp;
 
-use super::external::PyExternalEnv;
 use super::registry::{Entry, entry};
 use crate::error::invalid;
 use crate::runs::RunFactory;
@@ -49,13 +48,6 @@ impl PyNativeEnv {
             Entry::FromGymnasium(read) => read(env)?,
         };
         Ok(Self(env))
-    }
-
-    /// An environment of another library, whose `__qtab_env__()` returned the capsule; see `ExternalEnv`.
-    #[staticmethod]
-    #[pyo3(signature = (capsule, on_failure = None))]
-    fn from_capsule(capsule: &Bound<'_, PyAny>, on_failure: Option<Py<PyAny>>) -> PyResult<Self> {
-        Ok(PyExternalEnv::new(capsule, on_failure)?.native_env(Vec::new()))
     }
 }
 
