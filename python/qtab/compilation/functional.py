@@ -14,7 +14,7 @@ from gymnasium import spaces
 from qtab._utils.progress import ProgressBar
 from qtab.compilation import machine_code
 from qtab.compilation.compiled_env import FUNCTIONS, CompiledEnv
-from qtab.compilation.digest import Unknown, digest_of
+from qtab.compilation.digest import Digest, digest_of
 from qtab.compilation.functions import helper_methods, methods_of, names_of, plain, reachable
 from qtab.compilation.layout import Array, Layout, Number, Tuple, decode, layout_of
 from qtab.compilation.not_compilable import NotCompilable, NotNow
@@ -54,13 +54,6 @@ def compiled_env(env: Any) -> tuple[CompiledEnv, Parameters]:
     functions = reachable(env)
     parameters = _parameters(env, functions)
     file = methods_of(env)["transition"].__code__.co_filename
-    try:
-        digest = _digest(env, parameters)
-    except Unknown as error:
-        # Such code depends on objects that other processes do not have; it is compiled once for each class.
-        values = f"{parameters.layout} {parameters.constants} {_state_layout(env)}"
-        spaces_of = f"{env.observation_space!r} {env.action_space!r} {_bounds(env.observation_space)}"
-        digest, file = f"{id(type(env))} {error} {values} {spaces_of}", ""
     memory = parameters.memory()
 
     def make() -> tuple[machine_code.MachineCode, dict[str, Any]]:
@@ -76,7 +69,7 @@ def compiled_env(env: Any) -> tuple[CompiledEnv, Parameters]:
     def compare(compiled: CompiledEnv) -> None:
         prove(FunctionalTwin(env, compiled), compiled, memory, functions)
 
-    return _store.compiled(digest, file, memory, make, load, compare), parameters
+    return _store.compiled(_digest(env, parameters), file, memory, make, load, compare), parameters
 
 
 def require_numba() -> None:
@@ -119,7 +112,7 @@ def _parameters(env: Any, functions: list[Any]) -> Parameters:
     return Parameters.of(env, own - {"observation_space", "action_space", "np_random", "state", "metadata", "spec"})
 
 
-def _digest(env: Any, parameters: Parameters) -> str:
+def _digest(env: Any, parameters: Parameters) -> Digest:
     helpers = {name: function for name, (function, _) in helper_methods(type(env), names_of(reachable(env))).items()}
     kinds = {name: repr(layout_of(value)) for name, value in parameters.values.items()}
     spaces_of = [repr(env.observation_space), repr(env.action_space), _bounds(env.observation_space)]

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from qtab.compilation import cache, machine_code
 from qtab.compilation.compiled_env import CompiledEnv
+from qtab.compilation.digest import Digest
 from qtab.compilation.machine_code import MachineCode
 from qtab.compilation.not_compilable import NotCompilable, NotNow
 
@@ -33,10 +34,12 @@ class Store:
         self._lock = threading.RLock()
         self._found: dict[str, CompiledEnv | NotCompilable] = {}
         self._proofs: dict[str, dict[str, Outcome]] = {}
+        self._unknown: dict[str, tuple[Any, ...]] = {}
+        """The values that digests identify by their addresses, which no other values may get."""
 
     def compiled(
         self,
-        digest: str,
+        of: Digest,
         file: str,
         parameters: NDArray[np.uint8],
         make: Callable[[], tuple[MachineCode, dict[str, Any]]],
@@ -46,8 +49,9 @@ class Store:
         """Returns the code for a digest, after its proof for these parameters.
 
         Args:
-            digest: The digest of everything that the code depends on.
-            file: The user's file, beside which the code is stored; an empty text if it cannot be stored.
+            of: The digest of everything that the code depends on. With values that have no digest, nothing is stored
+                in files, since other processes do not have these values.
+            file: The user's file, beside which the code is stored.
             parameters: The parameters, as bytes.
             make: Compiles the environment; returns the code and what describes it, as values of JSON.
             load: Loads the code.
@@ -56,9 +60,10 @@ class Store:
         Raises:
             NotCompilable: if the environment cannot be compiled, or a number differs with these parameters.
         """
+        digest, file = of.text, "" if of.unknown else file
         with self._lock:
             found = self._found.get(digest) or self._stored(digest, file, load) or self._made(digest, file, make, load)
-            self._found[digest] = found
+            self._found[digest], self._unknown[digest] = found, of.unknown
             outcome = found if isinstance(found, NotCompilable) else self._proof(digest, file, parameters, found, prove)
         if outcome is not None:
             raise NotCompilable(outcome.reason, outcome.file, outcome.line, outcome.advice)
