@@ -146,3 +146,24 @@ def test_a_failure_of_numba_is_not_remembered(
 
 def _no_memory(*_: Any) -> None:
     raise MemoryError
+
+
+class Counting(Branch):
+    """Changes an array of ``self`` through a function whose result is that array."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.counts = np.zeros(3)
+
+    def transition(self, state: Any, action: int, rng: np.random.Generator) -> Any:
+        counts = np.ascontiguousarray(self.counts)
+        counts[action] += 1.0
+        return state, counts[action], rng.random() < 0.05
+
+
+def test_changed_parameters_are_found_without_a_change_of_the_environment(proofs: list[Any]) -> None:
+    env = Counting()
+    with pytest.raises(NotCompilable, match=r"an array of self is changed.*copy the array first"):
+        compiled_env(env)
+    assert len(proofs) == 1
+    assert not env.counts.any()

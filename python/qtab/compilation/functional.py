@@ -67,7 +67,7 @@ def compiled_env(env: Any) -> tuple[CompiledEnv, Parameters]:
         return CompiledEnv(loaded, state, observation, int(env.action_space.n), masked)
 
     def compare(compiled: CompiledEnv) -> None:
-        prove(FunctionalTwin(env, compiled), compiled, memory, functions)
+        prove(FunctionalTwin(env, compiled, parameters.values), compiled, memory, functions)
 
     return _store.compiled(_digest(env, parameters), file, memory, make, load, compare), parameters
 

@@ -1,5 +1,6 @@
 """The comparison of an environment's compiled functions with the same functions in Python, before the first run."""
 
+import copy
 import warnings
 from dataclasses import dataclass
 from types import FunctionType
@@ -50,9 +51,11 @@ def prove(twin: Any, compiled: CompiledEnv, parameters: NDArray[np.uint8], funct
         functions: The functions of the environment, for the message.
 
     Raises:
-        NotCompilable: at the first difference; it names the numbers, the likely line and what to write instead.
+        NotCompilable: at the first difference; it names the numbers, the likely line and what to write instead. Also
+            if compiled code changes the parameters, which several runs may share.
         NotNow: if a reset fails, so that nothing can be compared.
     """
+    before = parameters.tobytes()
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")
         for seed in SEEDS:
@@ -62,6 +65,9 @@ def prove(twin: Any, compiled: CompiledEnv, parameters: NDArray[np.uint8], funct
                 raise NotNow(f"no episode can begin, because {name} is raised: {difference}")
             if difference is not None:
                 raise _refusal(difference, functions)
+            if parameters.tobytes() != before:
+                reason, advice = "an array of self is changed", "copy the array first, and return the copy"
+                raise NotCompilable(reason, *_place_of_step(functions), advice)
 
 
 class FunctionalTwin:
@@ -70,10 +76,12 @@ class FunctionalTwin:
     Args:
         env: The environment.
         compiled: The compiled environment, whose layouts the numbers are given in.
+        values: The attributes that the functions read.
     """
 
-    def __init__(self, env: Any, compiled: CompiledEnv) -> None:
-        self._env, self._compiled = env, compiled
+    def __init__(self, env: Any, compiled: CompiledEnv, values: dict[str, Any]) -> None:
+        self._env, self._compiled = object.__new__(type(env)), compiled
+        vars(self._env).update({**vars(env), **copy.deepcopy(values)})
         self._first = int(env.action_space.start)
         self._state: Any = None
 
@@ -192,6 +200,10 @@ def _refusal(difference: Difference, functions: list[FunctionType]) -> NotCompil
         return NotCompilable(
             f"{difference}, probably by {likely.text}", likely.file, likely.line, likely.advice + others
         )
-    file, line = place_of(next(one for one in functions if one.__name__ in ("transition", "step")))
+    file, line = _place_of_step(functions)
     advice = "integers beyond 64 bits, float32 and the order of sums can differ"
     return NotCompilable(str(difference), file, line, advice)
+
+
+def _place_of_step(functions: list[FunctionType]) -> tuple[str, int]:
+    return place_of(next(one for one in functions if one.__name__ in ("transition", "step")))
