@@ -31,7 +31,7 @@ OPTIMUM = "Report how far the run is from the optimum, and draw it. Always done 
 
 def backend_words(config: Config) -> str:
     """Returns the environment and the backend that steps it, as text."""
-    return f"{config.env} {'in Rust' if config.backend == 'rust' else 'stepped by Gymnasium in Python'}"
+    return f"{config.env} {'stepped by Gymnasium in Python' if config.backend == 'gymnasium' else 'in Rust'}"
 
 
 def optimum_of(resolved: ResolvedRun, always: bool, progress: bool | None) -> "Optimum | None":

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from qtab._utils.memory import memory_limit
 from qtab.config import Config
+from qtab.config.choices import IN_PYTHON
 from qtab.config.options import AVERAGE_REWARD, MONTE_CARLO, PREFERENCES
 from qtab.diagnosis.sample import Sample, repeat, sample_steps, shortest_best_episode
 from qtab.envs.goals import BEST_KNOWN_MOUNTAIN_CAR, is_usual_mountain_car
@@ -51,7 +52,7 @@ class Facts:
     @cached_property
     def why_not_repeated(self) -> str:
         """The reason why the run cannot be repeated quickly, to follow the word "as"; empty if it can."""
-        if self.config.backend != "rust":
+        if self.config.backend in IN_PYTHON:
             return "Rust cannot repeat this run"
         if not can_be_made(self.config):
             return "its environment cannot be made again"

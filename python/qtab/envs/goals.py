@@ -9,6 +9,7 @@ import gymnasium as gym
 from gymnasium.envs.registration import EnvSpec, load_env_creator
 
 from qtab.config import Config
+from qtab.config.choices import IN_PYTHON
 from qtab.config.origin import trained_on
 from qtab.envs.class_code import LIBRARY
 from qtab.envs.origin.describe import describe
@@ -84,7 +85,7 @@ def has_quick_optimum(config: Config, n_rows: int, n_actions: int) -> bool:
         n_actions: The number of actions.
     """
     entry = entry_for_id(config.env)
-    if config.backend != "rust" or entry is None or not entry.knows_transitions or not is_registered(config.env):
+    if config.backend in IN_PYTHON or entry is None or not entry.knows_transitions or not is_registered(config.env):
         return False
     steps = 1 if config.time_aware else config.max_episode_steps or 0  # a time-aware table has rows for each step
     return n_rows * n_actions * steps <= MAX_QUICK_UPDATES

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab import _core
+from qtab.config.choices import IN_PYTHON
 from qtab.config.options import AVERAGE_REWARD, PREFERENCES, TABLES_ONLY, WITH_STATE_VALUES, n_tables
 from qtab.reference.parts.schedules import epsilon_schedule
 from qtab.reference.parts.streams import AgentStream, agent_stream
@@ -48,7 +49,7 @@ def start_of(run: Run, episode: int) -> Start | None:
         or config.action_mask is not False
         or (isinstance(config.initial_q, np.ndarray) and np.isneginf(config.initial_q).any())
     )
-    if config.backend != "rust" or config.algorithm in (*TABLES_ONLY, *AVERAGE_REWARD) or by_values:
+    if config.backend in IN_PYTHON or config.algorithm in (*TABLES_ONLY, *AVERAGE_REWARD) or by_values:
         return None
     if episode == 0 or config.learning_rate_schedule == "visits":
         return None

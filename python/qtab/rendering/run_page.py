@@ -15,7 +15,7 @@ from qtab._utils.files import check_writable, replacing
 from qtab._utils.page import page, paragraph, picture, section, table
 from qtab._utils.shown import shown
 from qtab.config import Config
-from qtab.config.choices import ALGORITHM_NAMES
+from qtab.config.choices import ALGORITHM_NAMES, IN_PYTHON
 from qtab.diagnosis.diagnose import diagnose
 from qtab.diagnosis.diagnosis import Diagnosis
 from qtab.envs.goals import threshold_of
@@ -143,7 +143,7 @@ def _episode(run: Run, env: Any) -> str:
 
 def _diagnosis(run: Run, optimum: Optimum | float | None) -> Diagnosis | None:
     """Returns the diagnosis if it takes about a second, else None."""
-    if run.config.backend != "rust" or not len(run.episode_returns):
+    if run.config.backend in IN_PYTHON or not len(run.episode_returns):
         return None
     return diagnose(run, optimum if isinstance(optimum, Optimum) else None)
 

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from qtab.config import Config
+from qtab.config.choices import IN_PYTHON
 from qtab.config.options import PREFERENCES
 from qtab.envs.goals import (
     BEST_KNOWN_MOUNTAIN_CAR,
@@ -124,7 +125,7 @@ def _greedy_return(run: Run, optimum: KnownOptimum | None) -> tuple[float | None
     if optimum is not None and optimum.exact and run.config.algorithm not in PREFERENCES:
         with suppress(ValueError):  # the rows of the table are not the states
             return float(optimum.solver.greedy_return(run)[0]), True
-    if run.config.backend != "rust" or not can_be_made(run.config):
+    if run.config.backend in IN_PYTHON or not can_be_made(run.config):
         return None, False
     return evaluate(run, EVALUATION_EPISODES, seed=0, progress=False).mean_return, False
 

@@ -13,7 +13,7 @@ from gymnasium.envs.registration import EnvSpec
 from qtab import _core, discretizers
 from qtab._utils.shown import shown
 from qtab.config import DEFAULTS, Config
-from qtab.config.choices import IN_PYTHON, INSISTING
+from qtab.config.choices import IN_PYTHON, INSISTING, Backend
 from qtab.config.config import replace_checked
 from qtab.config.merge import config_of, merge_layers, naming_preset
 from qtab.config.options import WITH_STATE_VALUES, n_tables
@@ -23,7 +23,7 @@ from qtab.config.validation import defaults
 from qtab.discretizers import AssignedRows, Discretizer
 from qtab.envs.actions import Actions, choose_actions
 from qtab.envs.class_code import LIBRARY, is_of_library
-from qtab.envs.external.capsule import external_env
+from qtab.envs.external.capsule import external_env, has_capsule
 from qtab.envs.goals import UNLIMITED_MAX_EPISODE_STEPS
 from qtab.envs.matching import NotInRustError, changed_entry_code, entry_for_env, rust_unavailable, time_limit
 from qtab.envs.native import KnownTable, check_not_shown, known_table, native_env
@@ -227,7 +227,7 @@ def _fill_defaults(request: _Request, owns_env: bool) -> ResolvedRun:
         **discretizer.settings(),
         initial_q=_fit_initial_q(config, discretizer, len(actions)),
         seed=seed,
-        backend="rust" if in_rust else "gymnasium",
+        backend=_backend_of(request) if in_rust else "gymnasium",
     )
     origin = Origin(description, derived_settings(request.config, config, discretizer))
     return ResolvedRun(
@@ -256,6 +256,12 @@ def _environment(request: _Request, actions: Actions, owns_env: bool) -> tuple[E
                 raise rust_unavailable(str(error), backend) from None
             reason = str(error)
     return PythonEnvironment(request.env, actions, owns_env), reason
+
+
+def _backend_of(request: _Request) -> Backend:
+    """Returns the backend that steps an environment in Rust: Numba for an ordinary class, which it has compiled."""
+    of_numba = isinstance(request.entry, _core.ExternalEnv) and not has_capsule(request.env)
+    return "numba" if of_numba else "rust"
 
 
 def _fit_initial_q(config: Config, discretizer: Discretizer, n_actions: int) -> Any:
