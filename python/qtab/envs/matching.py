@@ -95,7 +95,7 @@ def _entry_for_class(unwrapped: Any) -> EnvEntry:
             f"Rust does not implement {name}{made}",
             "pass the environment that gymnasium.make returns for the id"
             if made
-            else "an environment whose transition table is known can be a qtab.TabularEnv",
+            else "an environment whose transition table is known can be a qtab.TabularEnv, others a qtab.FunctionalEnv",
         )
     return entry
 
