@@ -121,3 +121,60 @@ def test_a_changed_attribute_changes_the_compiled_code() -> None:
     windy = qtab.train(env, backend="numba", **shared)
     assert windy.tables.tobytes() == qtab.train(env, backend="gymnasium", **shared).tables.tobytes()
     assert not np.array_equal(calm.tables, windy.tables)
+
+
+STRIDE = 2
+
+
+def reward_of(cell: Any) -> Any:
+    return float(cell)
+
+
+def other_reward_of(cell: Any) -> Any:
+    return -float(cell)
+
+
+class ConstantsEnv(gym.Env):
+    """Reads constants from an attribute, the class and the module, and calls a function of the module."""
+
+    STRIDES = (0, 1)
+    observation_space = gym.spaces.Discrete(1000)
+    action_space = gym.spaces.Discrete(2)
+
+    def __init__(self) -> None:
+        self.offset = 1
+
+    def reset(self, *, seed=None, options=None):
+        super().reset(seed=seed)
+        self.cell = 0
+        return self.cell, {}
+
+    def step(self, action):
+        self.cell += self.STRIDES[action] * STRIDE + self.offset
+        return self.cell, reward_of(self.cell), self.cell >= 50, False, {}
+
+
+@pytest.mark.parametrize("changed", ["attribute", "class attribute", "global variable", "global function"])
+def test_a_changed_constant_is_compiled_again(changed: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    env = ConstantsEnv()
+    before = OrdinaryEnv(env).compiled
+    assert OrdinaryEnv(env).compiled is before
+    if changed == "attribute":
+        env.offset = 3
+    elif changed == "class attribute":
+        monkeypatch.setattr(ConstantsEnv, "STRIDES", (1, 2))
+    elif changed == "global variable":
+        monkeypatch.setitem(globals(), "STRIDE", 5)
+    else:
+        monkeypatch.setitem(globals(), "reward_of", other_reward_of)
+    after = OrdinaryEnv(env)
+    assert after.compiled is not before
+    stepper = Stepper(after.compiled, after.parameters, np.random.PCG64(0))
+    twin = ClassTwin(env, after.record, after.compiled.observation)
+    twin.reset(np.random.default_rng(0))
+    assert stepper.reset() >= 0
+    for action in (1, 0, 1):
+        assert stepper.step(action) >= 0
+        numbers = twin.step(action, np.random.default_rng(0))
+        assert stepper.reward[0] == numbers["reward"]
+        assert stepper.state.tobytes() == numbers["state"].tobytes()
