@@ -8,7 +8,7 @@ import pytest
 
 from qtab.compilation.rewriting import rewrite
 from support.gym_classes import control, games, grids, operations
-from support.lockstep_rewriting import assert_equal_steps
+from support.lockstep_rewriting import assert_equal_steps, transformed
 
 CLASSES: dict[str, Callable[[], gym.Env]] = {
     "grid world of the documentation": grids.GridWorldEnv,
@@ -55,5 +55,5 @@ QUICK = ("thermostat", "cliff with tuples and a set")
 def test_compiled_functions_equal_the_class(name: str) -> None:
     numba: Any = pytest.importorskip("numba")
     env = CLASSES[name]()
-    compiled = rewrite(env).transformed(numba.njit(error_model="python", boundscheck=True))
+    compiled = transformed(rewrite(env), numba.njit(error_model="python", boundscheck=True))
     assert_equal_steps(env, compiled, 3000, 11, MASKS.get(name))

@@ -9,6 +9,7 @@ from gymnasium.utils import seeding
 
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting import rewrite
+from support.lockstep_rewriting import transformed
 
 CALLS = {
     "normal": "normal(0.0, self.x)",
@@ -75,7 +76,7 @@ def test_an_invalid_argument_raises_an_error(name: str, tmp_path: Any) -> None:
     numba: Any = pytest.importorskip("numba")
     env: Any = made(tmp_path, CALLS[name])
     rewritten = rewrite(env)
-    compiled = rewritten.transformed(numba.njit(error_model="python", boundscheck=True))
+    compiled = transformed(rewritten, numba.njit(error_model="python", boundscheck=True))
     errors = 0
     for action in range(7):
 

@@ -8,6 +8,7 @@ import pytest
 
 from qtab.compilation.rewriting import rewrite, runtime
 from support.gym_classes import large_integers
+from support.lockstep_rewriting import transformed
 
 CLASSES = [
     value
@@ -34,7 +35,7 @@ def outcome(functions: Any, cls: Any, ups: int) -> float | None:
 @pytest.mark.parametrize("cls", CLASSES, ids=lambda cls: cls.__name__)
 def test_numbers_are_those_of_the_class_or_an_error(cls: Any) -> None:
     numba: Any = pytest.importorskip("numba")
-    compiled = rewrite(cls()).transformed(numba.njit(error_model="python", boundscheck=True))
+    compiled = transformed(rewrite(cls()), numba.njit(error_model="python", boundscheck=True))
     errors = 0
     for ups in (0, 1, 2, 3, 30, 34, 36, 61, 62, 63, 64, 65, 90, 130):
         env = cls()

@@ -8,7 +8,6 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 import pytest
-from gymnasium import spaces
 
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting import rewrite
@@ -159,33 +158,6 @@ def test_the_environment_is_not_changed() -> None:
     assert str(before["_np_random"].bit_generator.state) == str(env.np_random.bit_generator.state)
 
 
-def test_a_changed_constant_is_noticed() -> None:
-    env = control.ThermostatEnv()
-    rewritten = rewrite(env)
-    assert rewritten.changed() is None
-    env.gain = 2.0
-    assert rewritten.changed() == "self.gain"
-    again = rewrite(env)
-    assert_equal_steps(env, again, 100)
-
-
-def test_a_changed_array_and_a_changed_global_are_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
-    maze = grids.MazeEnv()
-    rewritten = rewrite(maze)
-    maze.walls[2, 2] ^= True
-    assert rewritten.changed() == "self.walls"
-    pendulum = control.PendulumEnv()
-    rewritten = rewrite(pendulum)
-    monkeypatch.setattr(control, "GRAVITY", 1.0)
-    assert rewritten.changed() == "GRAVITY"
-
-
-def test_a_replaced_method_of_the_class_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
-    rewritten = rewrite(games.RunningGame())
-    monkeypatch.setattr(games.BaseGame, "move", games.RunningGame.move)
-    assert rewritten.changed() is not None
-
-
 def test_lines_lead_to_the_users_file() -> None:
     rewritten = rewrite(control.ThermostatEnv())
     number = next(i for i, line in enumerate(rewritten.source.splitlines(), 1) if "rng.normal" in line)
@@ -222,13 +194,6 @@ def test_an_attribute_keeps_its_value_until_it_is_assigned() -> None:
     rewritten = rewrite(env)
     assert rewritten.initial["episodes"][0] == 41
     assert_equal_steps(env, rewritten, 200)
-
-
-def test_spaces_are_read_as_constants() -> None:
-    env = control.LanderEnv()
-    rewritten = rewrite(env)
-    env.observation_space = spaces.Box(env.low, env.high + 1, dtype=np.float64)
-    assert rewritten.changed() == "self.observation_space"
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,7 @@
 """Ordinary Gymnasium classes and their rewritten functions, step by step."""
 
 import copy
+import dataclasses
 from collections.abc import Callable
 from typing import Any
 
@@ -66,3 +67,20 @@ def assert_equal_steps(
             assert_equal_observation(env.observation_space, expected, rewritten.reset(record, rng))
     assert str(rng.bit_generator.state) == str(twin.np_random.bit_generator.state)
     return ended
+
+
+def transformed(rewritten: Rewritten, decorator: Callable[[Any], Any]) -> Rewritten:
+    """Returns the same functions after a decorator, such as ``numba.njit``, was applied to all of them."""
+    namespace = dict(rewritten.namespace)
+    exec(compile(rewritten.source, "<rewritten>", "exec"), namespace)  # noqa: S102
+    for name, value in list(namespace.items()):
+        if name.startswith(("h_", "f_", "t_")) or name in ("reset", "step", "action_mask"):
+            with_globals = type(value)(value.__code__, namespace, value.__name__, value.__defaults__)
+            namespace[name] = decorator(with_globals)
+    return dataclasses.replace(
+        rewritten,
+        reset=namespace["reset"],
+        step=namespace["step"],
+        action_mask=namespace.get("action_mask"),
+        namespace=namespace,
+    )

@@ -2,7 +2,7 @@
 
 import ast
 import inspect
-from types import BuiltinFunctionType, FunctionType, MethodType, ModuleType
+from types import BuiltinFunctionType, FunctionType, MethodType
 from typing import TYPE_CHECKING, Any
 
 import gymnasium as gym
@@ -45,11 +45,6 @@ MODULE_ADVICE = {
 }
 SIDE_EFFECTS = {print: ("print is called", "log in a wrapper or a callback"), open: MODULE_ADVICE["io"],
                 input: ("input is called", "read settings in __init__")}  # fmt: skip
-
-
-def is_library(module: ModuleType) -> bool:
-    """Returns whether a module is one whose values do not change."""
-    return module.__name__.partition(".")[0] in ("numpy", "math", "gymnasium")
 
 
 def call(scope: "Expressions", node: ast.Call) -> Value:

@@ -92,19 +92,12 @@ class Expressions(Scope):
         function = self.source.function
         free = function.__code__.co_freevars
         if name in free and function.__closure__:
-            cell = function.__closure__[free.index(name)]
-            read: Any = lambda: cell.cell_contents  # noqa: E731
-            owner: Any = cell
-        elif name in function.__globals__:
-            namespace = function.__globals__
-            read, owner = lambda: namespace[name], namespace
-        elif hasattr(builtins, name):
+            return constant(function.__closure__[free.index(name)].cell_contents)
+        if name in function.__globals__:
+            return constant(function.__globals__[name])
+        if hasattr(builtins, name):
             return constant(getattr(builtins, name))
-        else:
-            raise self.refuse(node, f"the name {name} is not defined", "define it before the environment is trained")
-        value = read()
-        self.program.reads.note(owner, name, name, read, value)
-        return constant(value)
+        raise self.refuse(node, f"the name {name} is not defined", "define it before the environment is trained")
 
     def _attribute(self, node: ast.Attribute) -> Value:
         return self.attribute_of(node, self.expression(node.value))

@@ -2,14 +2,14 @@
 
 import ast
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from qtab.compilation.rewriting import specials
 from qtab.compilation.rewriting.program import Compiled, Flow, Program
 from qtab.compilation.rewriting.scope import LOCAL, Scope
 from qtab.compilation.rewriting.sources import Source
 from qtab.compilation.rewriting.statements import Statements
-from qtab.compilation.rewriting.values import Array, InfoKind, TupleKind, Value, constant
+from qtab.compilation.rewriting.values import Array, InfoKind, Value, constant
 from qtab.compilation.rewriting.variables import kept
 
 if TYPE_CHECKING:
@@ -122,17 +122,10 @@ def _rewrite(rewriter: Statements, parameters: dict[str, Value]) -> None:
         else:
             rewriter.note_kind(name, value.kind, rewriter.source.node)
             rewriter.owned[rewriter.version(name)] = False
-    rewriter.program.reads.note(
-        rewriter.function, "__code__", rewriter.function.__qualname__, _reader(rewriter.function), rewriter.function
-    )
     ended = rewriter.block(rewriter.source.node.body)
     if not ended:
         rewriter.returns.append((constant(None), rewriter.source.node.body[-1], 0))
         rewriter.flows_at_return.append(set(rewriter.flow.assigned))
-
-
-def _reader(function: Any) -> Any:
-    return lambda: function
 
 
 def _finish(rewriter: Statements, parameters: dict[str, Value]) -> None:
@@ -159,6 +152,3 @@ def _finish(rewriter: Statements, parameters: dict[str, Value]) -> None:
     first = ["record", "rng"] if compiled.draws else ["record"]
     line = rewriter.source.node.lineno
     compiled.lines = [(f"def {compiled.name}({', '.join(first + names)}):", line), *body]
-
-
-__all__ = ["TupleKind", "called", "compiled_function"]

@@ -69,7 +69,6 @@ def of_environment(scope: "Expressions", node: ast.AST, name: str) -> Value:
     value = getattr(program.env, name, MISSING)
     if value is MISSING:
         raise scope.refuse(node, f"self.{name} does not exist", f"set self.{name} in __init__")
-    program.reads.note(program.env, name, f"self.{name}", lambda: getattr(program.env, name), value)
     return constant(value)
 
 
@@ -77,7 +76,6 @@ def _member(scope: "Expressions", node: ast.AST, name: str, member: Any, owner: 
     program = scope.program
     if member is MISSING or owner is None:
         raise scope.refuse(node, f"the attribute {name} of a base class does not exist", "correct the name")
-    program.reads.note(owner, name, f"{owner.__name__}.{name}", lambda: vars(owner)[name], member)
     if isinstance(member, property):
         if not isinstance(member.fget, FunctionType):
             raise scope.refuse(node, f"the property {name} has no function in Python", "write a method")
@@ -107,9 +105,4 @@ def _of_constant(scope: "Expressions", node: ast.Attribute, value: Any, name: st
         raise scope.refuse(
             node, f"the attribute {name} of an object of type {kind}", "copy the number to self in __init__"
         )
-    if isinstance(found, FunctionType) or callable(found):
-        return constant(found)
-    if not isinstance(value, ModuleType) or not calls.is_library(value):
-        shown = ast.unparse(node)
-        scope.program.reads.note(value, name, shown, lambda: getattr(value, name), found)
     return constant(found)

@@ -9,7 +9,6 @@ import gymnasium as gym
 import numpy as np
 
 from qtab.compilation.rewriting.attributes import Attributes
-from qtab.compilation.rewriting.reads import Reads, snapshot
 from qtab.compilation.rewriting.values import Array, Scalar, TupleKind, Value, kind_of
 
 MAX_INLINE = 64
@@ -64,7 +63,6 @@ class Program:
 
     def __init__(self, env: gym.Env, attributes: Attributes) -> None:
         self.env, self.attributes = env, attributes
-        self.reads = Reads()
         self.functions: dict[Any, Compiled | None] = {}
         self.constants: dict[Any, tuple[str, str]] = {}
         self.named: dict[str, Compiled] = {}
@@ -120,7 +118,7 @@ class Program:
 
     def array(self, value: np.ndarray[Any, Any]) -> str:
         """Returns the name of a constant array."""
-        key = snapshot(value)
+        key = value.dtype.str, value.shape, value.tobytes()
         if key not in self.constants:
             dtype = f"np.dtype({value.dtype.str!r})"
             if value.size <= MAX_INLINE and not np.any(np.isnan(value) | np.isinf(value)):

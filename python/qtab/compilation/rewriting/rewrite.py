@@ -112,7 +112,6 @@ def _attempt(env: gym.Env, attributes: Attributes) -> Rewritten:
         lines,
         source,
         namespace,
-        program.reads,
     )
 
 
@@ -140,7 +139,6 @@ def _method(program: Program, name: str) -> Compiled:
         values[arguments.vararg.arg] = constant(())
     if arguments.kwarg:
         values[arguments.kwarg.arg] = constant({})
-    program.reads.note(owner, name, f"{type(program.env).__name__}.{name}", lambda: vars(owner)[name], member)
     return compiled_function(program, source, owner, values)
 
 

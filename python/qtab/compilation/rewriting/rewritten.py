@@ -7,8 +7,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab.compilation.rewriting.reads import Reads
-
 
 @dataclass(frozen=True, eq=False)
 class Rewritten:
@@ -44,35 +42,3 @@ class Rewritten:
     """The functions as a module, without imports except of NumPy and ``math``."""
     namespace: dict[str, Any] = field(repr=False)
     """The globals of the functions."""
-    reads: Reads = field(repr=False)
-
-    def changed(self) -> str | None:
-        """Returns the name of a constant that has changed since; None if the functions are still those of the class."""
-        return self.reads.changed()
-
-    def transformed(self, decorator: Callable[[Any], Any]) -> "Rewritten":
-        """Returns the same functions after a decorator, such as ``numba.njit``, was applied to all of them."""
-        namespace = dict(self.namespace)
-        exec(compile(self.source, "<rewritten>", "exec"), namespace)  # noqa: S102
-        for name, value in list(namespace.items()):
-            if name.startswith(("h_", "f_", "t_")) or name in ("reset", "step", "action_mask"):
-                namespace[name] = decorator(_with_globals(value, namespace))
-        mask = namespace.get("action_mask")
-        return Rewritten(
-            namespace["reset"],
-            namespace["step"],
-            mask,
-            self.mask_refusal,
-            self.dtype,
-            self.initial,
-            self.kept_between_episodes,
-            self.lines,
-            self.source,
-            namespace,
-            self.reads,
-        )
-
-
-def _with_globals(function: Any, namespace: dict[str, Any]) -> Any:
-    """Returns a function that looks up names in another namespace."""
-    return type(function)(function.__code__, namespace, function.__name__, function.__defaults__)
