@@ -113,6 +113,26 @@ def test_a_refusal_names_the_users_line() -> None:
         qtab.train(refused.NumpyExp(), episodes=10, backend="numba")
 
 
+class LocalMaskEnv(grids.CliffEnv):
+    """Has action masks that depend on a local variable."""
+
+    def reset(self, *, seed=None, options=None):
+        observation, _ = super().reset(seed=seed)
+        return observation, {"action_mask": np.ones(4, dtype=np.int8)}
+
+    def step(self, action):
+        observation, reward, terminated, truncated, _ = super().step(action)
+        mask = np.ones(4, dtype=np.int8)
+        return observation, reward, terminated, truncated, {"action_mask": mask}
+
+
+def test_masks_that_cannot_be_compiled_are_refused_with_their_line_if_the_run_needs_them() -> None:
+    pattern = r"got 'numba': .*test_ordinary_classes\.py:\d+: the action mask.*write a method action_masks\(self\)"
+    with pytest.raises(ValueError, match=pattern):
+        qtab.train(LocalMaskEnv(), episodes=3, backend="numba", action_mask=True)
+    qtab.train(LocalMaskEnv(), episodes=3, max_episode_steps=20, backend="numba")
+
+
 def test_a_changed_attribute_changes_the_compiled_code() -> None:
     env = grids.CliffEnv(wind=0.0)
     shared: dict[str, Any] = {"episodes": 20, "max_episode_steps": 50, "seed": 2}

@@ -173,14 +173,14 @@ def test_masks_that_depend_on_local_variables_are_refused_by_name() -> None:
 
     rewritten = rewrite(Masked())
     assert rewritten.action_mask is None
-    assert "write a method action_masks(self)" in rewritten.mask_refusal
+    assert "write a method action_masks(self)" in str(rewritten.mask_refusal)
 
 
 @pytest.mark.parametrize("env", [grids.MaskedGridEnv(), games.TicTacToeEnv()], ids=lambda env: type(env).__name__)
 def test_masks_of_the_info_dict_and_of_the_method_are_found(env: gym.Env) -> None:
     rewritten = rewrite(env)
     assert rewritten.action_mask is not None
-    assert rewritten.mask_refusal == ""
+    assert rewritten.mask_refusal is None
 
 
 def test_attributes_that_are_never_read_are_left_out() -> None:

@@ -86,12 +86,12 @@ def _attempt(env: gym.Env, attributes: Attributes) -> Rewritten:
         file, line = reset.file, reset.lines[0][1]
         reason = "the environment draws random numbers, but reset does not seed the generator"
         raise NotCompilable(reason, file, line, "call super().reset(seed=seed) first in reset")
-    refusal, tops = "", ["reset", "step"]
+    mask_refusal, tops = None, ["reset", "step"]
     try:
         if add_action_mask(program):
             tops.append("action_mask")
     except NotCompilable as error:
-        refusal = str(error)
+        mask_refusal = error
     attributes.check_sharing()
     program.check_aliases()
     source, lines = program.source(tops)
@@ -105,7 +105,7 @@ def _attempt(env: gym.Env, attributes: Attributes) -> Rewritten:
         namespace["reset"],
         namespace["step"],
         mask,
-        refusal,
+        mask_refusal,
         dtype,
         initial,
         tuple(kept),

@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from qtab.compilation.not_compilable import NotCompilable
+
 
 @dataclass(frozen=True, eq=False)
 class Rewritten:
@@ -27,8 +29,8 @@ class Rewritten:
     action_mask: Callable[..., Any] | None
     """``action_mask(record) -> array of booleans or numbers``, from ``action_masks()`` or the info dict; None without
     masks."""
-    mask_refusal: str
-    """Why there is no action mask although the class has one; empty otherwise."""
+    mask_refusal: NotCompilable | None
+    """Why the action mask of the class cannot be compiled; None if it can, or if the class has none."""
     dtype: np.dtype[Any]
     """The record: the attributes that steps and resets use and change."""
     initial: NDArray[Any]

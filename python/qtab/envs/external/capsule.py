@@ -16,7 +16,7 @@ def has_capsule(env: gym.Env) -> bool:
     return getattr(type(env.unwrapped), "__qtab_env__", None) is not None
 
 
-def external_env(env: gym.Env, backend: str) -> _core.ExternalEnv | None:
+def external_env(env: gym.Env, backend: str, *, needs_masks: bool = False) -> _core.ExternalEnv | None:
     """Returns an environment as Rust steps it by its capsule; None if its class has no method ``__qtab_env__``.
 
     With the backend Numba, such a class is compiled from its source code.
@@ -30,6 +30,7 @@ def external_env(env: gym.Env, backend: str) -> _core.ExternalEnv | None:
     Args:
         env: The environment, perhaps in the wrappers of ``gymnasium.make``.
         backend: The backend.
+        needs_masks: Whether to refuse a class that is compiled without its action masks, as these cannot be compiled.
 
     Raises:
         NotInRustError: if Rust cannot step the environment.
@@ -43,7 +44,7 @@ def external_env(env: gym.Env, backend: str) -> _core.ExternalEnv | None:
         if is_of_library(type(env.unwrapped)):
             reason = "Numba compiles your own classes, derived from gymnasium.Env or qtab.FunctionalEnv"
             raise NotInRustError(reason, "leave out backend")
-        return _compiled_class(env)
+        return _compiled_class(env, needs_masks)
     unwrapped = _unwrapped(env)
     cls = type(unwrapped)
     owner = next(base for base in cls.__mro__ if "__qtab_env__" in vars(base))
@@ -58,11 +59,12 @@ def external_env(env: gym.Env, backend: str) -> _core.ExternalEnv | None:
     return external
 
 
-def _compiled_class(env: gym.Env) -> _core.ExternalEnv:
+def _compiled_class(env: gym.Env, needs_masks: bool) -> _core.ExternalEnv:
     """Returns an ordinary Gymnasium class as Rust steps it: compiled by Numba from its source code.
 
     Args:
         env: The environment, perhaps in the wrappers of ``gymnasium.make``.
+        needs_masks: Whether its action masks must be compiled too.
 
     Raises:
         NotInRustError: if it cannot be compiled; it gives the file, the line and what to write instead.
@@ -72,6 +74,8 @@ def _compiled_class(env: gym.Env) -> _core.ExternalEnv:
 
     try:
         compiled = OrdinaryEnv(_unwrapped(env))
+        if needs_masks and compiled.rewritten.mask_refusal is not None:
+            raise compiled.rewritten.mask_refusal
     except NotCompilable as refusal:
         raise NotInRustError(refusal.place_and_reason, refusal.advice) from None
     return _core.ExternalEnv(compiled.capsule(), _failure_handler(compiled.failed))

@@ -159,7 +159,7 @@ def _match(env: gym.Env, config: Config, *, is_made: bool) -> tuple[InRust | Non
     if config.backend in IN_PYTHON:
         return None, None
     try:
-        entry = external_env(env, config.backend) or entry_for_env(env)
+        entry = external_env(env, config.backend, needs_masks=config.action_mask is True) or entry_for_env(env)
         if is_made or config.backend == "auto":
             check_not_shown(env)
     except NotInRustError as error:
