@@ -12,7 +12,7 @@ import pytest
 import qtab
 from qtab.compilation.compiled_env import Stepper
 from qtab.compilation.ordinary import ClassTwin, OrdinaryEnv
-from qtab.compilation.rewriting import runtime
+from qtab.compilation.rewriting.helpers import helpers
 from support.gym_classes import control, failing, games, grids, operations
 
 pytest.importorskip("numba")
@@ -96,7 +96,7 @@ def test_integers_that_leave_64_bits_are_found_before_training() -> None:
 
 def test_different_numbers_are_found_before_training(monkeypatch: pytest.MonkeyPatch) -> None:
     for name, unchecked in (("h_add", lambda one, other: one + other), ("h_mul", lambda one, other: one * other)):
-        monkeypatch.setitem(runtime.HELPERS, name, unchecked)
+        monkeypatch.setitem(helpers.HELPERS, name, unchecked)
     with pytest.raises(ValueError, match=r"failing\.py.*self\.cell is .* in compiled code and .* in Python"):
         qtab.train(failing.BigIntegers(), episodes=10, backend="numba")
 

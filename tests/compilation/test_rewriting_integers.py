@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from qtab.compilation.rewriting import rewrite, runtime
+from qtab.compilation.rewriting import rewrite
+from qtab.compilation.rewriting.helpers import helpers
 from support.gym_classes import large_integers
 from support.lockstep_rewriting import transformed
 
@@ -68,7 +69,7 @@ def test_helpers_compute_exact_integers_or_raise(name: str) -> None:
     numba: Any = pytest.importorskip("numba")
     namespace: dict[str, Any] = {"np": np}
     for helper in ("h_neg", "h_mul", name):
-        code = getattr(runtime, helper).__code__
+        code = getattr(helpers, helper).__code__
         namespace[helper] = numba.njit(error_model="python")(FunctionType(code, namespace, helper))
     for one in EDGES:
         for other in EDGES:
@@ -80,7 +81,7 @@ def test_helpers_compute_exact_integers_or_raise(name: str) -> None:
                 expected = expected if -LIMIT <= expected < LIMIT else OverflowError
             except (ValueError, ZeroDivisionError) as error:
                 expected = type(error)
-            for function in (namespace[name], getattr(runtime, name)):
+            for function in (namespace[name], getattr(helpers, name)):
                 found: Any
                 try:
                     found = function(one, other)

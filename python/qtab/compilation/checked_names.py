@@ -1,6 +1,6 @@
 """Names of functions that users' compiled code may not call, and what to write instead."""
 
-from qtab.compilation.rewriting.numpy_functions import SAME_AS_MATH
+from qtab.compilation.rewriting.library.numpy_functions import SAME_AS_MATH
 from qtab.compilation.scan import DIFFERENT, SUMS
 
 NUMPY_REFUSED = {

@@ -12,8 +12,8 @@ import numpy as np
 from numba.core import types
 from numba.extending import intrinsic
 
-from qtab.compilation.rewriting.math_functions import CHECKED, ROUNDED, TESTS, TWO
-from qtab.compilation.rewriting.runtime import h_checked
+from qtab.compilation.rewriting.helpers.helpers import h_checked
+from qtab.compilation.rewriting.library.math_functions import CHECKED, ROUNDED, TESTS, TWO
 
 OPTIONS: dict[str, Any] = {
     "boundscheck": True,

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab.compilation.not_compilable import NotCompilable
-from qtab.compilation.rewriting.scan import CHANGING
-from qtab.compilation.rewriting.sources import source_of
+from qtab.compilation.rewriting.source.sources import source_of
+from qtab.compilation.rewriting.source.syntax import CHANGING
 from qtab.compilation.rewriting.values import Array, Kind, Scalar, TupleKind, in_words, join, kind_of
 
 Refuse = Callable[[str, str], NotCompilable]

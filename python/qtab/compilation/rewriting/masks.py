@@ -6,10 +6,10 @@ from typing import Any
 
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting import specials
-from qtab.compilation.rewriting.functions import compiled_function
 from qtab.compilation.rewriting.program import Compiled, Program
-from qtab.compilation.rewriting.sources import source_of
-from qtab.compilation.rewriting.statements import Statements
+from qtab.compilation.rewriting.source.sources import source_of
+from qtab.compilation.rewriting.statements.statements import Statements
+from qtab.compilation.rewriting.user_functions import compiled_function
 from qtab.compilation.rewriting.values import Array, Value, constant, in_words
 
 KEY = "action_mask"

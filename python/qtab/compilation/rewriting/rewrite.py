@@ -9,14 +9,15 @@ import numpy as np
 from gymnasium import spaces
 
 from qtab.compilation.not_compilable import NotCompilable
-from qtab.compilation.rewriting import runtime, specials
+from qtab.compilation.rewriting import specials
 from qtab.compilation.rewriting.attributes import Attributes, Restart
-from qtab.compilation.rewriting.functions import called, compiled_function
+from qtab.compilation.rewriting.helpers import helpers
 from qtab.compilation.rewriting.masks import add_action_mask
 from qtab.compilation.rewriting.observations import observation_code
 from qtab.compilation.rewriting.program import Compiled, Program, as_float
 from qtab.compilation.rewriting.rewritten import Rewritten
-from qtab.compilation.rewriting.sources import source_of
+from qtab.compilation.rewriting.source.sources import source_of
+from qtab.compilation.rewriting.user_functions import called, compiled_function
 from qtab.compilation.rewriting.values import INT, WIDE, Scalar, TupleKind, Value, constant, in_words
 
 MAX_ATTEMPTS = 200
@@ -76,7 +77,7 @@ def _check(env: gym.Env) -> None:
 def _attempt(env: gym.Env, attributes: Attributes) -> Rewritten:
     program = Program(env, attributes)
     program.compile_call = called
-    for name in runtime.HELPERS:
+    for name in helpers.HELPERS:
         program.named[name] = Compiled(name, Value())
     reset, step = _method(program, "reset"), _method(program, "step")
     _add_top(program, "reset", reset)
@@ -96,7 +97,7 @@ def _attempt(env: gym.Env, attributes: Attributes) -> Rewritten:
     program.check_aliases()
     source, lines = program.source(tops)
     dtype, initial = attributes.record()
-    namespace: dict[str, Any] = {"__name__": "qtab_rewritten", "np": np, **runtime.HELPERS}
+    namespace: dict[str, Any] = {"__name__": "qtab_rewritten", "np": np, **helpers.HELPERS}
     exec(compile(source, f"<{type(env).__name__}>", "exec"), namespace)  # noqa: S102
     mask = namespace.get("action_mask")
     changing = program.stored & attributes.kinds.keys()

@@ -6,8 +6,8 @@ from types import FunctionType
 
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting.program import Compiled, Flow, Program
-from qtab.compilation.rewriting.scan import Names
-from qtab.compilation.rewriting.sources import Source
+from qtab.compilation.rewriting.source.sources import Source
+from qtab.compilation.rewriting.source.syntax import Names
 from qtab.compilation.rewriting.values import INFO, Array, Kind, Value, in_words, join
 
 MAX_SHOWN = 90

@@ -8,7 +8,7 @@ from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting.values import Value
 
 if TYPE_CHECKING:
-    from qtab.compilation.rewriting.expressions import Expressions
+    from qtab.compilation.rewriting.expressions.expressions import Expressions
 
 
 class Special:

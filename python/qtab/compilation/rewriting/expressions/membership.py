@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from qtab.compilation.rewriting import specials
-from qtab.compilation.rewriting.containers import MAX_CASES, elements
-from qtab.compilation.rewriting.operators import comparison
-from qtab.compilation.rewriting.scan import calls_own_functions
+from qtab.compilation.rewriting.expressions.containers import MAX_CASES, elements
+from qtab.compilation.rewriting.expressions.operators import comparison
+from qtab.compilation.rewriting.source.syntax import calls_own_functions
 from qtab.compilation.rewriting.values import BOOL, Scalar, TupleKind, Value, constant, in_words
 
 if TYPE_CHECKING:
-    from qtab.compilation.rewriting.expressions import Expressions
+    from qtab.compilation.rewriting.expressions.expressions import Expressions
 
 MAX_UNROLLED = 64
 """The most elements of a comprehension."""

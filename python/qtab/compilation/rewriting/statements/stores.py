@@ -3,8 +3,10 @@
 import ast
 from typing import TYPE_CHECKING, Any
 
-from qtab.compilation.rewriting import containers, specials
-from qtab.compilation.rewriting.arrays import in_range
+from qtab.compilation.rewriting import specials
+from qtab.compilation.rewriting.expressions import containers
+from qtab.compilation.rewriting.library.arrays import in_range
+from qtab.compilation.rewriting.statements.variables import in_variables, is_simple
 from qtab.compilation.rewriting.values import (
     BOOL,
     FLOAT,
@@ -17,10 +19,9 @@ from qtab.compilation.rewriting.values import (
     in_words,
     scalar_of,
 )
-from qtab.compilation.rewriting.variables import in_variables, is_simple
 
 if TYPE_CHECKING:
-    from qtab.compilation.rewriting.statements import Statements
+    from qtab.compilation.rewriting.statements.statements import Statements
 
 KEEP = "keep what changes in an array that is an attribute of the environment"
 

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 from qtab.compilation.rewriting.values import FLOAT, INT, Array, Value
 
 if TYPE_CHECKING:
-    from qtab.compilation.rewriting.expressions import Expressions
+    from qtab.compilation.rewriting.expressions.expressions import Expressions
 
 NAMES = {"+": "add", "-": "subtract", "*": "multiply", "==": "equal", "!=": "not_equal"}
 NAMES |= {"<": "less", "<=": "less_equal", ">": "greater", ">=": "greater_equal"}

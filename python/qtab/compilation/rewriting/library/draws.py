@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from qtab.compilation.rewriting.draw_checks import HELPERS
+from qtab.compilation.rewriting.helpers.draw_checks import HELPERS
 from qtab.compilation.rewriting.program import as_float
 from qtab.compilation.rewriting.values import FLOAT, INT, WIDE, Array, Scalar, TupleKind, Value, constant, in_words
 
 if TYPE_CHECKING:
-    from qtab.compilation.rewriting.expressions import Expressions
+    from qtab.compilation.rewriting.expressions.expressions import Expressions
 
 PARAMETERS: dict[str, tuple[tuple[str, float | None], ...]] = {
     "random": (),
@@ -193,7 +193,7 @@ def _integers(scope: "Expressions", node: ast.AST, values: list[Value], named: d
 
 
 def _choice(scope: "Expressions", node: ast.AST, values: list[Value], named: dict[str, Value]) -> Value:
-    from qtab.compilation.rewriting import containers
+    from qtab.compilation.rewriting.expressions import containers
 
     chosen = bound(scope, node, ["a", "size", "replace", "p"], values, named)
     size, replace = chosen.get("size", constant(None)), chosen.get("replace", constant(True))

@@ -9,22 +9,16 @@ import gymnasium as gym
 import numpy as np
 from gymnasium import spaces
 
-from qtab.compilation.rewriting import (
-    arrays,
-    builtin_functions,
-    containers,
-    generator,
-    math_functions,
-    numpy_functions,
-    specials,
-)
-from qtab.compilation.rewriting.effects import check_pure
-from qtab.compilation.rewriting.scan import CHANGING
-from qtab.compilation.rewriting.sources import source_of
+from qtab.compilation.rewriting import specials
+from qtab.compilation.rewriting.expressions import containers
+from qtab.compilation.rewriting.library import arrays, builtin_functions, draws, math_functions, numpy_functions
+from qtab.compilation.rewriting.source.sources import source_of
+from qtab.compilation.rewriting.source.syntax import CHANGING
+from qtab.compilation.rewriting.statements.effects import check_pure
 from qtab.compilation.rewriting.values import Array, DictKind, InfoKind, Value, constant, in_words
 
 if TYPE_CHECKING:
-    from qtab.compilation.rewriting.expressions import Expressions
+    from qtab.compilation.rewriting.expressions.expressions import Expressions
 
 
 MODULE_ADVICE = {
@@ -57,7 +51,7 @@ def call(scope: "Expressions", node: ast.Call) -> Value:
         base = scope.expression(node.func.value)
         name = node.func.attr
         if base.fixed is specials.RNG:
-            return generator.draw(scope, node, name)
+            return draws.draw(scope, node, name)
         if isinstance(base.kind, Array) or isinstance(base.fixed, np.ndarray):
             return arrays.method(scope, node, name, base)
         if isinstance(base.fixed, spaces.Space):

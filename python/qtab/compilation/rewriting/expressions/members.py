@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Any
 import gymnasium as gym
 import numpy as np
 
-from qtab.compilation.rewriting import calls, specials
+from qtab.compilation.rewriting import specials
 from qtab.compilation.rewriting.attributes import MISSING, own_attribute
+from qtab.compilation.rewriting.expressions import calls
 from qtab.compilation.rewriting.values import Array, Value, constant, in_words
 
 if TYPE_CHECKING:
-    from qtab.compilation.rewriting.expressions import Expressions
+    from qtab.compilation.rewriting.expressions.expressions import Expressions
 
 ARRAY_ATTRIBUTES = ("shape", "size", "ndim", "dtype")
 GENERATORS = (np.random.Generator, np.random.RandomState)

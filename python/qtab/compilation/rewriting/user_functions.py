@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 from qtab.compilation.rewriting import specials
 from qtab.compilation.rewriting.program import Compiled, Flow, Program
 from qtab.compilation.rewriting.scope import LOCAL, Scope
-from qtab.compilation.rewriting.sources import Source
-from qtab.compilation.rewriting.statements import Statements
+from qtab.compilation.rewriting.source.sources import Source
+from qtab.compilation.rewriting.statements.statements import Statements
+from qtab.compilation.rewriting.statements.variables import kept
 from qtab.compilation.rewriting.values import Array, InfoKind, Value, constant
-from qtab.compilation.rewriting.variables import kept
 
 if TYPE_CHECKING:
-    from qtab.compilation.rewriting.expressions import Expressions
+    from qtab.compilation.rewriting.expressions.expressions import Expressions
 
 MAX_ROUNDS = 20
 """How often a function is rewritten until the kinds of its variables stay the same."""

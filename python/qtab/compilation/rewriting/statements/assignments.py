@@ -3,10 +3,12 @@
 import ast
 from typing import TYPE_CHECKING
 
-from qtab.compilation.rewriting import containers, specials
-from qtab.compilation.rewriting.effects import check_pure
-from qtab.compilation.rewriting.operators import SYMBOLS
-from qtab.compilation.rewriting.stores import changeable, store, store_element
+from qtab.compilation.rewriting import specials
+from qtab.compilation.rewriting.expressions import containers
+from qtab.compilation.rewriting.expressions.operators import SYMBOLS
+from qtab.compilation.rewriting.statements.effects import check_pure
+from qtab.compilation.rewriting.statements.stores import changeable, store, store_element
+from qtab.compilation.rewriting.statements.variables import in_variables, is_simple, kept
 from qtab.compilation.rewriting.values import (
     FLOAT,
     INFO,
@@ -20,10 +22,9 @@ from qtab.compilation.rewriting.values import (
     constant,
     in_words,
 )
-from qtab.compilation.rewriting.variables import in_variables, is_simple, kept
 
 if TYPE_CHECKING:
-    from qtab.compilation.rewriting.statements import Statements
+    from qtab.compilation.rewriting.statements.statements import Statements
 
 
 def assign(scope: "Statements", node: ast.stmt, targets: list[ast.expr], value_node: ast.expr) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from qtab.compilation.rewriting import draw_checks
+from qtab.compilation.rewriting.helpers import draw_checks
 
 
 def h_clip(value: Any, low: Any, high: Any) -> Any:

@@ -10,7 +10,7 @@ from qtab.compilation.rewriting.program import as_float
 from qtab.compilation.rewriting.values import BOOL, FLOAT, INT, WIDE, Value, in_words
 
 if TYPE_CHECKING:
-    from qtab.compilation.rewriting.expressions import Expressions
+    from qtab.compilation.rewriting.expressions.expressions import Expressions
 
 Handler = Callable[["Expressions", ast.Call, list[Value], dict[str, Value]], Value]
 

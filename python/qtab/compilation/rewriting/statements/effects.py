@@ -10,10 +10,10 @@ import numpy as np
 
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting.attributes import MISSING
-from qtab.compilation.rewriting.sources import source_of
+from qtab.compilation.rewriting.source.sources import source_of
 
 if TYPE_CHECKING:
-    from qtab.compilation.rewriting.expressions import Expressions
+    from qtab.compilation.rewriting.expressions.expressions import Expressions
 
 PURE_BUILTINS = (
     *("abs", "all", "any", "bool", "dict", "divmod", "enumerate", "float", "frozenset", "getattr", "hasattr", "int"),

@@ -23,7 +23,7 @@ from qtab.compilation.rewriting.values import (
 )
 
 if TYPE_CHECKING:
-    from qtab.compilation.rewriting.expressions import Expressions
+    from qtab.compilation.rewriting.expressions.expressions import Expressions
 
 MAX_CASES = 256
 """The most keys of a dict, or elements of a set, that become comparisons."""

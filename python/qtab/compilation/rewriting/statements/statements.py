@@ -3,13 +3,14 @@
 import ast
 from typing import Any
 
-from qtab.compilation.rewriting import assignments, loops, specials
-from qtab.compilation.rewriting.displays import Displays
-from qtab.compilation.rewriting.effects import check_pure
+from qtab.compilation.rewriting import specials
+from qtab.compilation.rewriting.expressions.displays import Displays
 from qtab.compilation.rewriting.program import tuple_value
-from qtab.compilation.rewriting.scan import calls_own_functions, info_names
+from qtab.compilation.rewriting.source.syntax import calls_own_functions, info_names
+from qtab.compilation.rewriting.statements import assignments, loops
+from qtab.compilation.rewriting.statements.effects import check_pure
+from qtab.compilation.rewriting.statements.variables import kept
 from qtab.compilation.rewriting.values import INFO, Array, InfoKind, TupleKind, Value, constant, in_words, join
-from qtab.compilation.rewriting.variables import kept
 
 REFUSED = {
     "Try": ("try/except", "test the condition with if"),

@@ -20,7 +20,7 @@ from qtab.compilation.rewriting.values import (
 )
 
 if TYPE_CHECKING:
-    from qtab.compilation.rewriting.expressions import Expressions
+    from qtab.compilation.rewriting.expressions.expressions import Expressions
 
 REDUCTIONS = ("sum", "min", "max", "any", "all", "argmax", "argmin")
 
@@ -39,7 +39,7 @@ def method(scope: "Expressions", node: ast.Call, name: str, base: Value) -> Valu
         size = None if kind.shape is None else (int(np.prod(kind.shape)),)
         return Value(Array(kind.dtype, 1, size), f"{base.code}.flatten()", fresh=True)
     if name == "tolist" and kind.ndim == 1 and not values:
-        from qtab.compilation.rewriting import containers
+        from qtab.compilation.rewriting.expressions import containers
 
         return containers.as_tuple(scope, node, base)
     if name == "item" and not values and kind.shape is not None and np.prod(kind.shape) == 1:

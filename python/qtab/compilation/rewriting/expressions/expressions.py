@@ -7,8 +7,9 @@ import operator
 from dataclasses import replace
 from typing import Any
 
-from qtab.compilation.rewriting import calls, containers, integers, members, membership, specials, vectors
-from qtab.compilation.rewriting.operators import COMPARISONS, SYMBOLS, binary, comparison, unary
+from qtab.compilation.rewriting import specials
+from qtab.compilation.rewriting.expressions import calls, containers, integers, members, membership, vectors
+from qtab.compilation.rewriting.expressions.operators import COMPARISONS, SYMBOLS, binary, comparison, unary
 from qtab.compilation.rewriting.program import converted, tuple_value
 from qtab.compilation.rewriting.scope import Scope
 from qtab.compilation.rewriting.values import (

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from qtab.compilation.not_compilable import NotCompilable
-from qtab.compilation.rewriting import arrays, numpy_arrays
-from qtab.compilation.rewriting.operators import broadcast
+from qtab.compilation.rewriting.expressions.operators import broadcast
+from qtab.compilation.rewriting.library import arrays, numpy_arrays
 from qtab.compilation.rewriting.values import (
     BOOL,
     FLOAT,
@@ -26,7 +26,7 @@ from qtab.compilation.rewriting.values import (
 )
 
 if TYPE_CHECKING:
-    from qtab.compilation.rewriting.expressions import Expressions
+    from qtab.compilation.rewriting.expressions.expressions import Expressions
 
 Handler = Callable[["Expressions", ast.Call, list[Value], dict[str, Value]], Value]
 

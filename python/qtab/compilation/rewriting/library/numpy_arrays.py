@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from qtab.compilation.rewriting import arrays
-from qtab.compilation.rewriting.generator import bound
+from qtab.compilation.rewriting.library import arrays
+from qtab.compilation.rewriting.library.draws import bound
 from qtab.compilation.rewriting.values import BOOL, WIDE, Array, TupleKind, Value, constant, in_words
 
 if TYPE_CHECKING:
-    from qtab.compilation.rewriting.expressions import Expressions
+    from qtab.compilation.rewriting.expressions.expressions import Expressions
 
 Handler = Callable[["Expressions", ast.Call, list[Value], dict[str, Value]], Value]
 

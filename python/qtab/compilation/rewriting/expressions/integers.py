@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from qtab.compilation.rewriting.values import BOOL, FLOAT, INT, Value
 
 if TYPE_CHECKING:
-    from qtab.compilation.rewriting.expressions import Expressions
+    from qtab.compilation.rewriting.expressions.expressions import Expressions
 
 CHECKED = {"+": "h_add", "-": "h_sub", "*": "h_mul", "//": "h_floordiv", "/": "h_truediv", "**": "h_ipow"}
 CHECKED |= {"<<": "h_shl", ">>": "h_shr"}

@@ -2,8 +2,8 @@
 
 import ast
 
-from qtab.compilation.rewriting import containers, membership
-from qtab.compilation.rewriting.expressions import Expressions
+from qtab.compilation.rewriting.expressions import containers, membership
+from qtab.compilation.rewriting.expressions.expressions import Expressions
 from qtab.compilation.rewriting.program import tuple_value
 from qtab.compilation.rewriting.values import DictKind, Value, constant
 

@@ -5,7 +5,7 @@ from collections import Counter
 from collections.abc import Iterator
 from functools import cached_property
 
-from qtab.compilation.rewriting.sources import Source
+from qtab.compilation.rewriting.source.sources import Source
 
 LOOPS = (ast.For, ast.While)
 CHANGING = (

@@ -3,14 +3,16 @@
 import ast
 from typing import TYPE_CHECKING
 
-from qtab.compilation.rewriting import assignments, containers, membership, specials
+from qtab.compilation.rewriting import specials
+from qtab.compilation.rewriting.expressions import containers, membership
 from qtab.compilation.rewriting.program import converted
-from qtab.compilation.rewriting.scan import calls_own_functions, changed_attributes, leaves_loop
+from qtab.compilation.rewriting.source.syntax import calls_own_functions, changed_attributes, leaves_loop
+from qtab.compilation.rewriting.statements import assignments
+from qtab.compilation.rewriting.statements.variables import in_variables
 from qtab.compilation.rewriting.values import INT, Array, TupleKind, Value, constant, in_words, scalar_of
-from qtab.compilation.rewriting.variables import in_variables
 
 if TYPE_CHECKING:
-    from qtab.compilation.rewriting.statements import Statements
+    from qtab.compilation.rewriting.statements.statements import Statements
 
 MAX_UNROLLED = 32
 """The most rounds of a loop over a constant that are written one after the other."""

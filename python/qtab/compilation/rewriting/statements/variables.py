@@ -4,12 +4,12 @@ import ast
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from qtab.compilation.rewriting.arrays import copied
+from qtab.compilation.rewriting.library.arrays import copied
 from qtab.compilation.rewriting.program import tuple_value
 from qtab.compilation.rewriting.values import INFO, Array, DictKind, Value
 
 if TYPE_CHECKING:
-    from qtab.compilation.rewriting.statements import Statements
+    from qtab.compilation.rewriting.statements.statements import Statements
 
 
 def is_simple(value: Value) -> bool:

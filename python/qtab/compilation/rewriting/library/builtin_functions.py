@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from qtab.compilation.rewriting import integers
+from qtab.compilation.rewriting.expressions import integers
 from qtab.compilation.rewriting.program import as_float, tuple_value
 from qtab.compilation.rewriting.values import (
     BOOL,
@@ -26,7 +26,7 @@ from qtab.compilation.rewriting.values import (
 )
 
 if TYPE_CHECKING:
-    from qtab.compilation.rewriting.expressions import Expressions
+    from qtab.compilation.rewriting.expressions.expressions import Expressions
 
 Handler = Callable[["Expressions", ast.Call, list[Value], dict[str, Value]], Value]
 
@@ -77,7 +77,7 @@ def _abs(scope: "Expressions", node: ast.Call, values: list[Value], named: dict[
 
 def _extreme(function: Any) -> Handler:
     def handler(scope: "Expressions", node: ast.Call, values: list[Value], named: dict[str, Value]) -> Value:
-        from qtab.compilation.rewriting import containers
+        from qtab.compilation.rewriting.expressions import containers
 
         if named:
             raise scope.refuse(node, "min or max with named arguments", "compare the numbers in a loop")
@@ -116,7 +116,7 @@ def _len(scope: "Expressions", node: ast.Call, values: list[Value], named: dict[
 
 
 def _sum(scope: "Expressions", node: ast.Call, values: list[Value], named: dict[str, Value]) -> Value:
-    from qtab.compilation.rewriting import containers
+    from qtab.compilation.rewriting.expressions import containers
 
     value = _one(scope, node, values, named)
     parts = containers.elements(scope, node, value)
@@ -136,7 +136,7 @@ def _sum(scope: "Expressions", node: ast.Call, values: list[Value], named: dict[
 
 def _any_or_all(symbol: str, empty: bool) -> Handler:
     def handler(scope: "Expressions", node: ast.Call, values: list[Value], named: dict[str, Value]) -> Value:
-        from qtab.compilation.rewriting import containers
+        from qtab.compilation.rewriting.expressions import containers
 
         value = _one(scope, node, values, named)
         codes = []
@@ -162,7 +162,7 @@ def _any_or_all(symbol: str, empty: bool) -> Handler:
 
 def _sequence(made: Any) -> Handler:
     def handler(scope: "Expressions", node: ast.Call, values: list[Value], named: dict[str, Value]) -> Value:
-        from qtab.compilation.rewriting import containers
+        from qtab.compilation.rewriting.expressions import containers
 
         if not values:
             return constant(made())
@@ -210,7 +210,7 @@ def _folded(function: Any) -> Handler:
 
 
 def _lazy(scope: "Expressions", node: ast.Call, function: Any, values: list[Value]) -> Value:
-    from qtab.compilation.rewriting import containers
+    from qtab.compilation.rewriting.expressions import containers
 
     many = [containers.elements(scope, node, value) for value in values[:1] + (values[1:] if function is zip else [])]
     if function is not enumerate:  # the elements change their order, or are left out

@@ -1,0 +1,1 @@
+"""Expressions: each becomes a constant, or code with a kind."""

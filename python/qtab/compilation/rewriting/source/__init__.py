@@ -1,0 +1,1 @@
+"""The source code of functions, and what its syntax tells before it is rewritten."""

@@ -1,0 +1,1 @@
+"""Statements: each becomes lines of the program, or nothing."""
