@@ -70,12 +70,7 @@ def call(scope: "Expressions", node: ast.Call) -> Value:
 
 def arguments(scope: "Expressions", node: ast.Call) -> tuple[list[Value], dict[str, Value]]:
     """Returns the values of the arguments."""
-    values: list[Value] = []
-    for one in node.args:
-        if isinstance(one, ast.Starred):
-            values += containers.elements(scope, one, scope.expression(one.value))
-        else:
-            values.append(scope.expression(one))
+    values = containers.unpacked(scope, node.args)
     named = {}
     for keyword in node.keywords:
         if keyword.arg is None:

@@ -29,6 +29,17 @@ MAX_CASES = 256
 """The most keys of a dict, or elements of a set, that become comparisons."""
 
 
+def unpacked(scope: "Expressions", nodes: list[ast.expr]) -> list[Value]:
+    """Returns the values of the elements of a tuple or of the arguments of a call; ``*values`` is unpacked."""
+    values: list[Value] = []
+    for node in nodes:
+        if isinstance(node, ast.Starred):
+            values += elements(scope, node, scope.expression(node.value))
+        else:
+            values.append(scope.expression(node))
+    return values
+
+
 def subscript(scope: "Expressions", node: ast.Subscript) -> Value:
     """Returns the value of ``base[index]``."""
     base = scope.expression(node.value)

@@ -12,13 +12,7 @@ class Displays(Expressions):
     """Rewrites tuples, lists, sets, dicts and comprehensions."""
 
     def _tuple(self, node: ast.Tuple | ast.List) -> Value:
-        parts: list[Value] = []
-        for one in node.elts:
-            if isinstance(one, ast.Starred):
-                parts += containers.elements(self, one, self.expression(one.value))
-            else:
-                parts.append(self.expression(one))
-        return self.tuple_of(parts, node, list if isinstance(node, ast.List) else tuple)
+        return self.tuple_of(containers.unpacked(self, node.elts), node, list if isinstance(node, ast.List) else tuple)
 
     _list = _tuple
 

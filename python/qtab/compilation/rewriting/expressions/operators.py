@@ -51,7 +51,7 @@ Result: TypeAlias = Any
 
 def binary(symbol: str, left: Value, right: Value) -> Result:
     """Returns the kind of a result, or why compiled code would not compute it as Python does."""
-    one, other = _kind(left), _kind(right)
+    one, other = left.kind, right.kind
     if isinstance(one, TupleKind) and isinstance(other, TupleKind) and symbol == "+":
         return TupleKind(one.items + other.items)
     if isinstance(one, Scalar) and isinstance(other, Scalar):
@@ -62,12 +62,8 @@ def binary(symbol: str, left: Value, right: Value) -> Result:
     return f"{in_words(one)} {symbol} {in_words(other)}", advice
 
 
-def _kind(value: Value) -> Any:
-    return value.kind
-
-
 def _scalars(symbol: str, left: Value, right: Value) -> Result:
-    one, other = _kind(left), _kind(right)
+    one, other = left.kind, right.kind
     if one not in WIDE or other not in WIDE:
         if one == other == Scalar("float32") and symbol in "+-*/":
             return one
@@ -108,7 +104,7 @@ def _power(left: Value, right: Value) -> Result:
 
 
 def _arrays(symbol: str, left: Value, right: Value) -> Result:
-    one, other = _kind(left), _kind(right)
+    one, other = left.kind, right.kind
     dtypes = [kind.dtype if isinstance(kind, Array) else dtype_of(kind) for kind in (one, other)]
     shape = broadcast(one, other)
     ndim = max(kind.ndim for kind in (one, other) if isinstance(kind, Array))
@@ -142,7 +138,7 @@ def broadcast(one: Kind, other: Kind) -> tuple[int, ...] | None:
 
 def unary(symbol: str, value: Value) -> Result:
     """Returns the kind of ``-x``, ``+x`` or ``~x``, or why it cannot be compiled."""
-    kind = _kind(value)
+    kind = value.kind
     if kind == MIXED:
         reason = "a number that is sometimes an integer: the sign of a zero would differ"
         return reason, "write a float in every assignment, such as 0.0 for 0"
@@ -157,7 +153,7 @@ def unary(symbol: str, value: Value) -> Result:
 
 def comparison(symbol: str, left: Value, right: Value) -> Result:
     """Returns the kind of a comparison, or why it cannot be compiled."""
-    one, other = _kind(left), _kind(right)
+    one, other = left.kind, right.kind
     if isinstance(one, TupleKind) and isinstance(other, TupleKind):
         simple = all(item in WIDE for item in one.items + other.items)
         if len(one.items) == len(other.items) and symbol in ("==", "!=") and simple:

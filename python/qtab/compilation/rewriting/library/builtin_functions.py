@@ -2,13 +2,13 @@
 
 import ast
 import builtins
-from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from qtab.compilation.rewriting.expressions import integers
+from qtab.compilation.rewriting.library import Handler
 from qtab.compilation.rewriting.program import as_float, tuple_value
 from qtab.compilation.rewriting.values import (
     BOOL,
@@ -27,8 +27,6 @@ from qtab.compilation.rewriting.values import (
 
 if TYPE_CHECKING:
     from qtab.compilation.rewriting.expressions.expressions import Expressions
-
-Handler = Callable[["Expressions", ast.Call, list[Value], dict[str, Value]], Value]
 
 
 def _one(scope: "Expressions", node: ast.Call, values: list[Value], named: dict[str, Value]) -> Value:

@@ -2,17 +2,15 @@
 
 import ast
 import math
-from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from qtab.compilation.not_compilable import NotCompilable
+from qtab.compilation.rewriting.library import Handler
 from qtab.compilation.rewriting.program import as_float
 from qtab.compilation.rewriting.values import BOOL, FLOAT, INT, WIDE, Value, in_words
 
 if TYPE_CHECKING:
     from qtab.compilation.rewriting.expressions.expressions import Expressions
-
-Handler = Callable[["Expressions", ast.Call, list[Value], dict[str, Value]], Value]
 
 CHECKED = ("sin", "cos", "tan", "asin", "acos", "atan", "exp", "log", "log10", "sqrt", "sinh", "cosh", "tanh")
 """Functions that raise an error for some numbers."""

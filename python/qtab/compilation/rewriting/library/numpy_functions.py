@@ -1,14 +1,13 @@
 """Functions of NumPy that compiled code computes to the same bits."""
 
 import ast
-from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting.expressions.operators import broadcast
-from qtab.compilation.rewriting.library import arrays, numpy_arrays
+from qtab.compilation.rewriting.library import Handler, arrays, numpy_arrays
 from qtab.compilation.rewriting.values import (
     BOOL,
     FLOAT,
@@ -27,8 +26,6 @@ from qtab.compilation.rewriting.values import (
 
 if TYPE_CHECKING:
     from qtab.compilation.rewriting.expressions.expressions import Expressions
-
-Handler = Callable[["Expressions", ast.Call, list[Value], dict[str, Value]], Value]
 
 SAME_AS_MATH = {"exp": "exp", "log": "log", "log10": "log10", "tan": "tan", "tanh": "tanh", "sinh": "sinh",
                 "cosh": "cosh", "arctan": "atan", "arcsin": "asin", "arccos": "acos", "arctan2": "atan2"}  # fmt: skip
