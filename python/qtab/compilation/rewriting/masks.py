@@ -105,7 +105,6 @@ def _mask_of(scope: Any, node: ast.expr, depth: int = 0) -> Any:
             returned = [one.value for one in ast.walk(source.node) if isinstance(one, ast.Return)]
             if len(returned) == 1 and returned[0] is not None:
                 return _mask_of(inner, returned[0], depth + 1)
-            member = None
             node = source.node  # type: ignore[assignment]
     if any(isinstance(one, ast.Constant) and one.value == KEY for one in ast.walk(scope.source.node)):
         advice = "write a method action_masks(self)"

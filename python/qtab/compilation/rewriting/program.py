@@ -1,4 +1,4 @@
-"""A program that is made from a class: its functions, constants and lines."""
+"""The program that a class becomes: its functions, constants and lines."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -25,6 +25,7 @@ class Compiled:
     lines: list[tuple[str, int]] = field(default_factory=list)
     """Its lines, and the lines of the user's file."""
     file: str = ""
+    """The user's file; empty for functions that are not the user's."""
     uses: set[str] = field(default_factory=set)
     """The names of functions that it calls."""
     draws: bool = False
@@ -42,9 +43,9 @@ class Flow:
     """The attributes that a function assigns and reads, in the order of its statements."""
 
     assigned: set[str] = field(default_factory=set)
-    """Those that it assigns whatever happens."""
+    """The attributes that it assigns on every path."""
     read: set[str] = field(default_factory=set)
-    """Those that it may read before it assigns them."""
+    """The attributes that it may read before it assigns them."""
 
     def note_read(self, name: str) -> None:
         """Notes that an attribute is read."""
@@ -66,7 +67,7 @@ class Program:
         self.functions: dict[Any, Compiled | None] = {}
         self.constants: dict[Any, tuple[str, str]] = {}
         self.named: dict[str, Compiled] = {}
-        self._kept: list[Any] = []
+        self._kept: list[Any] = []  # keeps the objects in keys alive, so that no other gets the id of one
         self.phase = "reset"
         """Which function is rewritten: ``reset``, ``step`` or ``mask``."""
         self.seeded = False

@@ -1,6 +1,7 @@
 """From an environment to functions over a record."""
 
 import copy
+import inspect
 from types import FunctionType
 from typing import Any
 
@@ -16,7 +17,7 @@ from qtab.compilation.rewriting.masks import add_action_mask
 from qtab.compilation.rewriting.observations import observation_code
 from qtab.compilation.rewriting.program import Compiled, Program, as_float
 from qtab.compilation.rewriting.rewritten import Rewritten
-from qtab.compilation.rewriting.source.sources import source_of
+from qtab.compilation.rewriting.source.sources import Source, source_of
 from qtab.compilation.rewriting.user_functions import called, compiled_function
 from qtab.compilation.rewriting.values import INT, WIDE, Scalar, TupleKind, Value, constant, in_words
 
@@ -143,9 +144,7 @@ def _method(program: Program, name: str) -> Compiled:
     return compiled_function(program, source, owner, values)
 
 
-def _default(source: Any, parameter: str, method: str) -> Value:
-    import inspect
-
+def _default(source: Source, parameter: str, method: str) -> Value:
     default = inspect.signature(source.function).parameters[parameter].default
     if default is inspect.Parameter.empty and parameter == "options":
         return constant(None)

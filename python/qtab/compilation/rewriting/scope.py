@@ -138,7 +138,7 @@ class Scope:
         self.flow.assigned.add(f"{LOCAL}{name}")
 
     def is_set(self, name: str) -> bool:
-        """Returns whether a local variable is set here whatever happens."""
+        """Returns whether a local variable is set on every path to this statement."""
         return f"{LOCAL}{name}" in self.flow.assigned
 
     def note_alias(self, value: Value, node: ast.AST, compiled: Compiled | None = None) -> None:

@@ -52,12 +52,12 @@ WIDE = (BOOL, INT, FLOAT, MIXED)
 REAL = (INT, FLOAT, MIXED)
 
 DYNAMIC: Any = type("Dynamic", (), {"__repr__": lambda _: "<known at run time>"})()
-"""The constant of a value that is not constant."""
+"""``Value.fixed`` of a value that is not a constant."""
 
 
 @dataclass(frozen=True, eq=False)
 class Value:
-    """What an expression is.
+    """What is known about an expression.
 
     A constant has ``fixed``, and neither kind nor code until it is lifted into the compiled program.
     """
@@ -82,12 +82,12 @@ class Value:
 
     @property
     def is_fixed(self) -> bool:
-        """Whether it is known now."""
+        """Whether the value is a constant."""
         return self.fixed is not DYNAMIC
 
 
 def constant(value: Any) -> Value:
-    """Returns a value that is known now."""
+    """Returns a constant."""
     return Value(fixed=value)
 
 
@@ -99,6 +99,11 @@ def scalar_of(dtype: str) -> Scalar:
 def dtype_of(kind: Scalar) -> str:
     """Returns the dtype of an array of such numbers."""
     return {"bool": "bool", "int": "int64", "float": "float64", "mixed": "float64"}.get(kind.name, kind.name)
+
+
+def numpy_type(dtype: str) -> str:
+    """Returns the code of the NumPy type with the name of a dtype."""
+    return "np.bool_" if dtype == "bool" else f"np.{dtype}"
 
 
 def kind_of(value: Any) -> Kind | None:

@@ -1,6 +1,7 @@
 """Calls: of the user's functions, which become functions of the program, and of known functions."""
 
 import ast
+import enum
 import inspect
 from types import BuiltinFunctionType, FunctionType, MethodType
 from typing import TYPE_CHECKING, Any
@@ -37,8 +38,11 @@ MODULE_ADVICE = {
     "scipy": ("scipy is called", "compute the numbers in __init__, or write them with math"),
     "torch": ("torch is called", "use NumPy and math"),
 }
-SIDE_EFFECTS = {print: ("print is called", "log in a wrapper or a callback"), open: MODULE_ADVICE["io"],
-                input: ("input is called", "read settings in __init__")}  # fmt: skip
+SIDE_EFFECTS: dict[Any, tuple[str, str]] = {
+    print: ("print is called", "log in a wrapper or a callback"),
+    open: MODULE_ADVICE["io"],
+    input: ("input is called", "read settings in __init__"),
+}
 
 
 def call(scope: "Expressions", node: ast.Call) -> Value:
@@ -93,7 +97,7 @@ def _known(scope: "Expressions", node: ast.Call, callee: Any) -> Value:
         raise specials.refused_special(scope, node, constant(callee))
     if callee is gym.Env.reset and node.args and scope.expression(node.args[0]).fixed is specials.SELF:
         return _seeded(scope, node, 1)
-    if callee in SIDE_EFFECTS if isinstance(callee, BuiltinFunctionType) else False:
+    if isinstance(callee, BuiltinFunctionType) and callee in SIDE_EFFECTS:
         raise scope.refuse(node, *SIDE_EFFECTS[callee])
     module = str(getattr(callee, "__module__", None) or "")
     if isinstance(callee, MethodType | BuiltinFunctionType) and isinstance(
@@ -127,8 +131,6 @@ def _known(scope: "Expressions", node: ast.Call, callee: Any) -> Value:
         return user_call(scope, node, callee, None, values, named)
     if isinstance(callee, type):
         values, named = arguments(scope, node)
-        import enum
-
         if issubclass(callee, enum.Enum) and len(values) == 1 and values[0].is_fixed:
             return scope.folded(node, callee, values[0].fixed)
         raise scope.refuse(node, f"an object of type {callee.__name__} is made", "use numbers, tuples and NumPy arrays")
@@ -171,7 +173,7 @@ def _space(scope: "Expressions", node: ast.Call, name: str, space: Any) -> Value
 
 def _of_constant(scope: "Expressions", node: ast.Call, name: str, value: Any) -> Value:
     values, named = arguments(scope, node)
-    if name in CHANGING:  # fmt: skip
+    if name in CHANGING:
         kind = type(value).__name__
         raise scope.refuse(node, f"a {kind} is changed", "use a NumPy array of fixed size, with a counter")
     if all(one.is_fixed for one in (*values, *named.values())):

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING, Any
 
-from qtab.compilation.rewriting.values import FLOAT, INT, Array, Value
+from qtab.compilation.rewriting.values import FLOAT, INT, Array, Value, numpy_type
 
 if TYPE_CHECKING:
     from qtab.compilation.rewriting.expressions.expressions import Expressions
@@ -31,10 +31,9 @@ def code(scope: "Expressions", symbol: str, left: Value, right: Value, kind: Any
     if name not in scope.program.named:
         items = ["a[i]" if forms[0] == "v" else "a", "b[i]" if forms[1] == "v" else "b"]
         size = "a" if forms[0] == "v" else "b"
-        dtype = "bool_" if kind.dtype == "bool" else kind.dtype
         lines = [
             f"def {name}(a, b):",
-            f"    made = np.empty({size}.shape[0], np.{dtype})",
+            f"    made = np.empty({size}.shape[0], {numpy_type(kind.dtype)})",
             f"    for i in range({size}.shape[0]):",
             f"        made[i] = {items[0]} {symbol} {items[1]}",
             "    return made",

@@ -60,4 +60,4 @@ def h_triangular(left: Any, mode: Any, right: Any) -> Any:
 
 
 HELPERS = {name: value for name, value in list(globals().items()) if name.startswith("h_")}
-"""All of them by name."""
+"""The helpers in this module by name."""

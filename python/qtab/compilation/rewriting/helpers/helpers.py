@@ -282,4 +282,4 @@ def h_argmin(values: Any) -> Any:
 
 
 HELPERS = {name: value for name, value in list(globals().items()) if name.startswith("h_")} | draw_checks.HELPERS
-"""All of them by name."""
+"""The helpers of rewritten code by name."""

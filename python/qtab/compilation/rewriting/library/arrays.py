@@ -16,6 +16,7 @@ from qtab.compilation.rewriting.values import (
     Value,
     constant,
     in_words,
+    numpy_type,
     scalar_of,
 )
 
@@ -82,11 +83,7 @@ def cast(scope: "Expressions", node: ast.AST, value: Value, dtype: Value) -> Val
         return Value(Array("bool", kind.ndim, kind.shape), f"({value.code} != 0)", fresh=True)
     if kind.dtype.startswith("float") and not name.startswith(("float", "int64")):
         raise scope.refuse(node, f"{kind.dtype} converted to {name}", "convert to np.int64 first")
-    return Value(Array(name, kind.ndim, kind.shape), f"{value.code}.astype(np.{_numpy(name)})", fresh=True)
-
-
-def _numpy(name: str) -> str:
-    return "bool_" if name == "bool" else name
+    return Value(Array(name, kind.ndim, kind.shape), f"{value.code}.astype({numpy_type(name)})", fresh=True)
 
 
 def reduced(scope: "Expressions", node: ast.AST, name: str, value: Value) -> Value:
@@ -98,9 +95,7 @@ def reduced(scope: "Expressions", node: ast.AST, name: str, value: Value) -> Val
         test = code if kind.dtype == "bool" else f"({code} != 0)"
         return Value(BOOL, f"bool(np.{name}({test}))")
     if name == "sum":
-        if kind.dtype == "bool":
-            return Value(INT, f"int(np.sum({code}))")
-        if scalar != INT:
+        if scalar not in (INT, BOOL):
             raise scope.refuse(node, f"the sum of {in_words(kind)} may round differently", "add the elements in a loop")
         return Value(INT, f"int(np.sum({code}))")
     if name in ("min", "max") and scalar in WIDE and scalar != BOOL:
@@ -145,7 +140,7 @@ def result_dtype(scope: "Expressions", node: ast.AST, kinds: list[Any]) -> str:
 def _vector(scope: "Expressions", node: ast.AST, value: Value, dtype: str | None) -> Value:
     kinds = list(value.kind.items)
     name = dtype or result_dtype(scope, node, kinds)
-    kind = Array(name, len(kinds) and 1, (len(kinds),))
+    kind = Array(name, 1, (len(kinds),))
     _check_conversion(scope, node, kinds, name)
     function = _maker(scope, kinds, name)
     codes = [part.code for part in value.parts] if value.parts is not None else [f"*{value.code}"]
@@ -164,7 +159,7 @@ def _maker(scope: "Expressions", kinds: list[Any], dtype: str) -> str:
     name = f"f_vector_{dtype}_{len(kinds)}"
     if name not in scope.program.named:
         names = [f"a{i}" for i in range(len(kinds))]
-        lines = [f"def {name}({', '.join(names)}):", f"    made = np.empty({len(kinds)}, np.{_numpy(dtype)})"]
+        lines = [f"def {name}({', '.join(names)}):", f"    made = np.empty({len(kinds)}, {numpy_type(dtype)})"]
         for i, one in enumerate(names):
             lines.append(f"    made[{i}] = {in_range(one, dtype) if small else one}")
         scope.program.add(name, [*lines, "    return made"], uses={"h_within"} if small else set())

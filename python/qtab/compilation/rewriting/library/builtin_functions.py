@@ -82,7 +82,7 @@ def _extreme(function: Any) -> Handler:
         if len(values) == 1:
             values = containers.elements(scope, node, values[0])
         if all(value.is_fixed for value in values):
-            return scope.folded(node, function, *[[value.fixed for value in values]])
+            return scope.folded(node, function, [value.fixed for value in values])
         lifted = [scope.lift(value, node) for value in values]
         kind: Any = lifted[0].kind
         for value in lifted:

@@ -1,19 +1,16 @@
 """Functions of NumPy that make arrays, and ``np.array_equal``."""
 
 import ast
-from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from qtab.compilation.rewriting.library import arrays
+from qtab.compilation.rewriting.library import Handler, arrays
 from qtab.compilation.rewriting.library.draws import bound
-from qtab.compilation.rewriting.values import BOOL, WIDE, Array, TupleKind, Value, constant, in_words
+from qtab.compilation.rewriting.values import BOOL, WIDE, Array, TupleKind, Value, constant, in_words, numpy_type
 
 if TYPE_CHECKING:
     from qtab.compilation.rewriting.expressions.expressions import Expressions
-
-Handler = Callable[["Expressions", ast.Call, list[Value], dict[str, Value]], Value]
 
 
 def arguments(
@@ -49,13 +46,12 @@ def filled(function: str) -> Handler:
             name = "float64" if fill is None else arrays.result_dtype(scope, node, [fill.kind])
         else:
             name = arrays.dtype_name(scope, node, dtype)
-        numpy = "bool_" if name == "bool" else name
         if fill is None:
-            code = f"np.{function}({sizes}, np.{numpy})"
+            code = f"np.{function}({sizes}, {numpy_type(name)})"
         elif name == "bool" and fill.kind != BOOL:
             code = f"np.full({sizes}, bool({fill.code}), np.bool_)"
         else:
-            code = f"np.full({sizes}, {fill.code}, np.{numpy})"
+            code = f"np.full({sizes}, {fill.code}, {numpy_type(name)})"
         return Value(Array(name, len(sizes), sizes), code, fresh=True)
 
     return handler

@@ -1,1 +1,1 @@
-"""The source code of functions, and what its syntax tells before it is rewritten."""
+"""The source code of functions, and what its syntax shows before it is rewritten."""

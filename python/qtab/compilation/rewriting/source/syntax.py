@@ -1,4 +1,4 @@
-"""What a function's syntax tells before it is rewritten: its local names, and how they are used."""
+"""What the syntax of a function shows before it is rewritten: its local names, and how they are used."""
 
 import ast
 from collections import Counter

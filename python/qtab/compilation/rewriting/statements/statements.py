@@ -1,6 +1,7 @@
 """Statements: each becomes lines of the program, or nothing if a constant decides it."""
 
 import ast
+import importlib
 from typing import Any
 
 from qtab.compilation.rewriting import specials
@@ -113,8 +114,6 @@ class Statements(Displays):
         return False
 
     def _do_import(self, node: ast.Import) -> bool:
-        import importlib
-
         for alias in node.names:
             module = importlib.import_module(alias.name)
             name = alias.asname or alias.name.partition(".")[0]
@@ -122,8 +121,6 @@ class Statements(Displays):
         return False
 
     def _do_importfrom(self, node: ast.ImportFrom) -> bool:
-        import importlib
-
         if node.level or node.module is None:
             raise self.refuse(node, "a relative import within a method", "import it at the top of the file")
         for alias in node.names:
