@@ -1,9 +1,7 @@
 """The outcomes of any Gymnasium environment that can be copied: each copy is stepped once."""
 
 import copy
-import math
 from collections.abc import Hashable, Sequence
-from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
@@ -11,11 +9,11 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab._utils.shown import shown
 from qtab.config.functions import checked_mask
 from qtab.envs.tabulation.branches import Branches, CannotListError
 from qtab.envs.tabulation.generator import ListingGenerator
 from qtab.envs.tabulation.later_resets import Reset, difference
+from qtab.envs.tabulation.listed_steps import finite_reward, listed
 from qtab.envs.tabulation.state_keys import NotComparableError, attributes_key, part_outside_attributes, state_text
 from qtab.envs.tabulation.walk import Outcome, Visit
 
@@ -92,20 +90,18 @@ class CopiedOutcomes:
             return self._step(state, action, where)
 
         try:
-            found = list(self._branches.outcomes(take))
-            again = next(self._branches.outcomes(take))[1]
+            found, repeated = listed(self._branches, take)
         except CannotListError as error:
             raise self._refused("step", error, f", {where}") from None
-        first = found[0][1]
-        if (again.visit.key, again.reward, again.terminated) != (first.visit.key, first.reward, first.terminated):
+        if not repeated:
             raise ValueError(
                 f"step of {self._name} must depend only on its attributes: a repeated step of a copy with the same "
                 f"random numbers returned another result, {where}"
             )
-        for _, one in found:
+        for one in found:
             if one.terminated:
                 self._check_next_episode(one.visit)
-        return [replace(one, probability=chance) for chance, one in found]
+        return found
 
     def plain_states(self, states: Sequence[Any]) -> list[Any]:
         """Returns the attributes of the states that differ between them, as dicts."""
@@ -164,14 +160,7 @@ class CopiedOutcomes:
                 f"env must have its time limit in gymnasium.wrappers.TimeLimit, but step of {self._name} truncates the "
                 f"episode {where}"
             )
-        try:
-            number = float(reward)
-        except (TypeError, ValueError):
-            raise TypeError(
-                f"step of {self._name} must return a number as the reward, got {shown(reward)} {where}"
-            ) from None
-        if not math.isfinite(number):
-            raise ValueError(f"step of {self._name} must return a finite reward, got {number} {where}")
+        number = finite_reward(reward, f"step of {self._name}", where)
         visit = self._visit(env, observation, info, "step", terminated=bool(terminated))
         return Outcome(Fraction(1), visit, number, bool(terminated))
 

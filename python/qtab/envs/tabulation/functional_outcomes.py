@@ -3,7 +3,6 @@
 import copy
 import math
 from collections.abc import Callable, Hashable, Iterable, Sequence
-from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
 from inspect import getattr_static
@@ -18,6 +17,7 @@ from qtab.envs.functional import FunctionalEnv
 from qtab.envs.functional.observations import observation_in
 from qtab.envs.tabulation.branches import Branches, CannotListError
 from qtab.envs.tabulation.generator import ListingGenerator
+from qtab.envs.tabulation.listed_steps import finite_reward, listed
 from qtab.envs.tabulation.state_keys import NotComparableError, attributes_key, state_key, state_text
 from qtab.envs.tabulation.walk import Outcome, Visit
 
@@ -89,8 +89,7 @@ class FunctionalOutcomes:
             return self._step(self._rng, state, action, where)
 
         try:
-            found = list(self._branches.outcomes(take))
-            again = next(self._branches.outcomes(take))[1]
+            found, repeated = listed(self._branches, take)
         except CannotListError as error:
             raise ValueError(
                 f"env must have outcomes that can be listed, but transition of {self._name} calls {error.reason}, "
@@ -101,12 +100,12 @@ class FunctionalOutcomes:
             raise ValueError(
                 f"transition of {self._name} must not change the state that it is given, as it did {where}"
             )
-        if _identity(again) != _identity(found[0][1]):
+        if not repeated:
             raise ValueError(
                 f"transition of {self._name} must depend only on its arguments: a repeated call with the same random "
                 f"numbers returned another result, {where}"
             )
-        return [replace(one, probability=chance) for chance, one in found]
+        return found
 
     def plain_states(self, states: Sequence[Any]) -> list[Any]:
         """Returns the states."""
@@ -143,12 +142,7 @@ class FunctionalOutcomes:
     ) -> Outcome:
         if not isinstance(terminated, bool | np.bool_):
             raise TypeError(f"{name} must return a boolean as terminated, got {shown(terminated)} {where}")
-        try:
-            number = float(reward)
-        except (TypeError, ValueError):
-            raise TypeError(f"{name} must return a number as the reward, got {shown(reward)} {where}") from None
-        if not math.isfinite(number):
-            raise ValueError(f"{name} must return a finite reward, got {number} {where}")
+        number = finite_reward(reward, name, where)
         return Outcome(probability, self._visit(state, bool(terminated)), number, bool(terminated))
 
     def _visit(self, state: Any, terminated: bool) -> Visit:
@@ -198,10 +192,10 @@ class FunctionalOutcomes:
             for chance, (_, next_state, reward, terminated) in zip(chances, given, strict=True)
             if chance
         ]
-        known = set(map(_identity, found))
+        known = {one.identity for one in found}
         for _ in range(_SAMPLES):
             sampled = self._step(self._sampler, state, action, where)
-            if _identity(sampled) not in known:
+            if sampled.identity not in known:
                 raise ValueError(
                     f"{name} must list every outcome of transition, which returned state "
                     f"{state_text(sampled.visit.state)}, reward {sampled.reward!r} and terminated "
@@ -267,10 +261,6 @@ def _cached_properties(env: FunctionalEnv, names: Iterable[str]) -> dict[str, Ha
 def _method(env: FunctionalEnv, name: str) -> Callable[..., Any] | None:
     """Returns a method of an environment; None if its class has none."""
     return getattr(env, name) if callable(getattr(type(env), name, None)) else None
-
-
-def _identity(outcome: Outcome) -> tuple[Hashable, float, bool]:
-    return outcome.visit.key, outcome.reward, outcome.terminated
 
 
 def _probabilities(name: str, where: str, given: list[Any]) -> list[Fraction]:

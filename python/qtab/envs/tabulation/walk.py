@@ -41,6 +41,11 @@ class Outcome:
     reward: float
     terminated: bool
 
+    @property
+    def identity(self) -> tuple[Hashable, float, bool]:
+        """The key of the next state, the reward, and whether the episode ends: equal for equal outcomes."""
+        return self.visit.key, self.reward, self.terminated
+
 
 class Outcomes(Protocol):
     """The outcomes of an environment, listed."""
