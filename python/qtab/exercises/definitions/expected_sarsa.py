@@ -16,7 +16,7 @@ import numpy as np
 def expected_sarsa(env, q, episodes, learning_rate, discount, epsilon, rng):
     """Learn by Expected Sarsa: change q in place after each step.
 
-    As Q-learning, but with the expected value of the next state under the
+    Like Q-learning, but with the expected value of the next state under the
     epsilon-greedy policy:
     target = reward + discount * np.sum(p * q[next_state]),
     where p is epsilon / n for each of the n actions, and 1 - epsilon is added to that
