@@ -44,6 +44,7 @@ def returns_late(env, *others):
         (raises, "it raised IndexError: index 99 is out of bounds for axis 1 with size 4, in line"),
         (lambda *_: exit(), "it raised SystemExit"),
         (lambda env, q: None, "it must take 7 arguments in the order of the exercise, but takes (env, q)"),
+        (lambda *_: None, "it never calls env.reset(), which starts an episode"),
         (lambda env, *_: env.reset(seed=1), "it calls env.reset with a seed"),
         (lambda env, *_: env.step(0), "it calls env.step before env.reset()"),
         (lambda env, *_: (env.reset(), env.step(4)), "an action must be an integer from 0 to 3, got 4"),

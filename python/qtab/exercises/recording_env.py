@@ -119,7 +119,13 @@ class RecordingEnv(gym.Wrapper[Any, Any, Any, Any]):
         return Misuse(f"it starts episode {self._episodes} (counted from 0), but episodes is {self._episodes}")
 
     def finish(self) -> None:
-        """Records the tables after the last step."""
+        """Records the tables after the last step.
+
+        Raises:
+            Misuse: if no episode was started, as by the starter code.
+        """
+        if self._episode < 0:
+            raise Misuse("it never calls env.reset(), which starts an episode")
         self._see()
 
     def in_words(self, observation: Any) -> str:
