@@ -102,8 +102,8 @@ class OrdinaryEnv:
         from numba.core.errors import NumbaError
 
         from qtab.compilation.numba_errors import not_compilable
-        from qtab.compilation.record_shims import STAGES, compile_record
-        from qtab.compilation.shims import ARGUMENTS
+        from qtab.compilation.record_shims import compile_record
+        from qtab.compilation.shims import ARGUMENTS, STAGES
 
         space: Any = self.env.action_space
         name = type(self.env).__name__

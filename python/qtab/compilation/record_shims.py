@@ -15,12 +15,9 @@ from qtab.compilation.layout import Number
 from qtab.compilation.memory import copy_bytes, pointer
 from qtab.compilation.observation import ObservationLayout
 from qtab.compilation.rewriting import Rewritten
-from qtab.compilation.shims import ARGUMENTS
+from qtab.compilation.shims import compiled_shims, returned_type
 from qtab.compilation.struct import FAILED, TERMINATED, TRUNCATED
 from qtab.compilation.writers import mask_writer, observation_writer
-
-STAGES = 2 + len(ARGUMENTS)
-"""The number of stages of a compilation."""
 
 
 def compile_record(
@@ -39,7 +36,7 @@ def compile_record(
         observation: The layout of its observations.
         num_actions: The number of actions.
         start: The first action of the class.
-        report: Called after each of ``STAGES``.
+        report: Called after each of ``qtab.compilation.shims.STAGES``.
 
     Raises:
         NotCompilable: if a value has a type that compiled code cannot pass on.
@@ -48,9 +45,9 @@ def compile_record(
     compiler = FunctionCompiler()
     of_record = numba.from_dtype(record)
     reset, step = compiler.dispatcher(rewritten.reset), compiler.dispatcher(rewritten.step)  # type: ignore[arg-type]
-    seen = _returned(reset, (of_record, GENERATOR))
+    seen = returned_type(reset, (of_record, GENERATOR))
     report()
-    stepped = _returned(step, (of_record, types.int64, GENERATOR))
+    stepped = returned_type(step, (of_record, types.int64, GENERATOR))
     report()
     fields: Any = record.fields
     scope: dict[str, Any] = {
@@ -67,7 +64,7 @@ def compile_record(
     if rewritten.action_mask is not None:
         mask = compiler.dispatcher(rewritten.action_mask)  # type: ignore[arg-type]
         scope["action_mask"] = mask
-        scope["write_mask"] = mask_writer(num_actions, _returned(mask, (of_record,)))
+        scope["write_mask"] = mask_writer(num_actions, returned_type(mask, (of_record,)))
     numbers = {
         "SIZE": record.itemsize,
         "OFFSET": fields[OBSERVATION][1],
@@ -78,14 +75,7 @@ def compile_record(
         "TRUNCATED": TRUNCATED,
     }
     exec(_source(rewritten.action_mask is not None, numbers), scope)  # noqa: S102 - code of this module
-    compiled = {}
-    for name, letters in ARGUMENTS.items():
-        shim = numba.njit(**OPTIONS)(scope[name])
-        signature = tuple(types.int64 if letter == "i" else types.uintp for letter in letters)
-        _returned(shim, signature)
-        compiled[name] = shim.overloads[signature]
-        report()
-    return compiled
+    return compiled_shims(scope, report)
 
 
 def _record_at(record: np.dtype[Any]) -> Any:
@@ -96,12 +86,6 @@ def _record_at(record: np.dtype[Any]) -> Any:
         return carray(at(address), (1,), record)[0]
 
     return numba.njit(**OPTIONS)(record_at)
-
-
-def _returned(dispatcher: Any, arguments: tuple[Any, ...]) -> Any:
-    """Compiles a function for types of arguments, and returns the type of its result."""
-    dispatcher.compile(arguments)
-    return dispatcher.overloads[arguments].signature.return_type
 
 
 def _source(masked: bool, numbers: dict[str, int]) -> str:

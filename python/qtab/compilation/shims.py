@@ -65,7 +65,7 @@ def compile_functional(
     state = _state_layout(functions, given, example)
     report()
     of_state = type_of(state)
-    seen = _returned(functions["observe"], (given, of_state))
+    seen = returned_type(functions["observe"], (given, of_state))
     scope: dict[str, Any] = {
         **functions,
         "np": np,
@@ -78,19 +78,13 @@ def compile_functional(
         "start": int(env.action_space.start),
     }
     if "action_mask" in functions:
-        mask = _returned(functions["action_mask"], (given, of_state))
+        mask = returned_type(functions["action_mask"], (given, of_state))
         scope["write_mask"] = mask_writer(int(env.action_space.n), mask)
     report()
     if refusals:
         raise refusals[0]
     exec(_source("action_mask" in functions), scope)  # noqa: S102 - code of this module
-    compiled = {}
-    for name, letters in ARGUMENTS.items():
-        shim = numba.njit(**OPTIONS)(scope[name])
-        signature = tuple(types.int64 if letter == "i" else types.uintp for letter in letters)
-        _returned(shim, signature)
-        compiled[name] = shim.overloads[signature]
-        report()
+    compiled = compiled_shims(scope, report)
     if refusals:
         raise refusals[0]
     return Compiled(compiled, state)
@@ -99,9 +93,9 @@ def compile_functional(
 def _state_layout(functions: dict[str, Any], given: Any, example: Any) -> Layout:
     """Returns the layout of the states: that of the first ones, until transitions from them return no other type."""
     try:
-        layout = layout_from(_returned(functions["initial_state"], (given, GENERATOR)), example)
+        layout = layout_from(returned_type(functions["initial_state"], (given, GENERATOR)), example)
         for _ in range(MOST_STATE_TYPES):
-            returned = _returned(functions["transition"], (given, type_of(layout), types.int64, GENERATOR))
+            returned = returned_type(functions["transition"], (given, type_of(layout), types.int64, GENERATOR))
             _check_transition(returned)
             following = united(layout, layout_from(returned.types[0], example))
             if following == layout:
@@ -122,10 +116,30 @@ def _check_transition(returned: Any) -> None:
         raise NotCompilable(f"transition returns {terminated} as terminated, not a boolean")
 
 
-def _returned(dispatcher: Any, arguments: tuple[Any, ...]) -> Any:
+def returned_type(dispatcher: Any, arguments: tuple[Any, ...]) -> Any:
     """Compiles a function for types of arguments, and returns the type of its result."""
     dispatcher.compile(arguments)
     return dispatcher.overloads[arguments].signature.return_type
+
+
+def compiled_shims(scope: dict[str, Any], report: Callable[[], None]) -> dict[str, Any]:
+    """Compiles the C functions.
+
+    Args:
+        scope: A namespace that contains them.
+        report: Called after each.
+
+    Returns:
+        Numba's compile results by the names of the C functions.
+    """
+    compiled = {}
+    for name, letters in ARGUMENTS.items():
+        shim = numba.njit(**OPTIONS)(scope[name])
+        signature = tuple(types.int64 if letter == "i" else types.uintp for letter in letters)
+        shim.compile(signature)
+        compiled[name] = shim.overloads[signature]
+        report()
+    return compiled
 
 
 def _source(masked: bool) -> str:
