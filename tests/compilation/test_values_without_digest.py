@@ -13,7 +13,7 @@ import pytest
 import qtab
 from qtab.compilation import functional, ordinary
 from qtab.compilation.functional import compiled_env
-from qtab.compilation.rewriting import runtime
+from qtab.compilation.rewriting.helpers import helpers
 from qtab.compilation.store import Store
 from support.gym_classes import grids
 
@@ -74,14 +74,14 @@ def test_the_value_is_kept_so_that_no_other_gets_its_address(monkeypatch: pytest
 
 
 def test_ordinary_classes(monkeypatch: pytest.MonkeyPatch, files: Path) -> None:
-    add = runtime.HELPERS["h_add"]
+    add = helpers.HELPERS["h_add"]
 
     def h_add(one: Any, other: Any) -> Any:
         if DEBUG:
             log.info("an addition")
         return add(one, other)
 
-    monkeypatch.setitem(runtime.HELPERS, "h_add", h_add)
+    monkeypatch.setitem(helpers.HELPERS, "h_add", h_add)
     shared: dict[str, Any] = {"episodes": 5, "max_episode_steps": 20, "seed": 2}
     compiled, python = (qtab.train(grids.CliffEnv(), backend=backend, **shared) for backend in ("numba", "gymnasium"))
     assert compiled.tables.tobytes() == python.tables.tobytes()
