@@ -83,21 +83,26 @@ class ProgressBar:
         progress: True shows the bar at once, False never. None shows it after a second, if standard error is a terminal
             or a notebook's, and tqdm is installed.
         description: The text before the bar.
+        done: The number of units that are finished already.
 
     Raises:
         ModuleNotFoundError: if ``progress`` is True and tqdm is not installed; the message names the ``pip install``.
         TypeError: if ``progress`` is neither a boolean nor None.
     """
 
-    def __init__(self, total: int | None, unit: str, progress: bool | None, description: str | None = None) -> None:
+    def __init__(
+        self, total: int | None, unit: str, progress: bool | None, description: str | None = None, done: int = 0
+    ) -> None:
         self._bar = _tqdm(total, unit, progress, description)
-        self._stride = 1
+        self._done, self._stride = done, 1
 
     # A class, because contextlib's generator-based context managers set attributes of exceptions that pass through
     # them, which a frozen exception does not allow.
     def __enter__(self) -> "ProgressBar":
         if self._bar is not None:
             _bars.append(self._bar)
+            if self._done:
+                self.move_to(self._done)
         return self
 
     def __exit__(self, *_: object) -> None:

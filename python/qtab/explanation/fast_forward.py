@@ -15,7 +15,7 @@ from qtab.config.choices import IN_PYTHON
 from qtab.config.options import AVERAGE_REWARD, PREFERENCES, TABLES_ONLY, WITH_STATE_VALUES, n_tables
 from qtab.reference.parts.schedules import epsilon_schedule
 from qtab.reference.parts.streams import AgentStream, agent_stream
-from qtab.results.recording import generator_states
+from qtab.results.recording import generator_before
 from qtab.results.run import Run
 from qtab.training.setup.run_env import resolve_run
 
@@ -60,7 +60,7 @@ def start_of(run: Run, episode: int) -> Start | None:
         before = trainer.tables()
         trainer.advance(episode + 1)
         start, columns = trainer.take_recordings()[-1]
-        (env_generator,) = generator_states(resolved.config, [start])
+        env_generator = generator_before(resolved.config.seed, start)
     finally:
         resolved.close()
     shape = run.tables.shape

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from qtab._utils import checks
 from qtab.config import Config
+from qtab.envs.actions import Actions
 
 if TYPE_CHECKING:
     from qtab import _core
@@ -29,18 +30,31 @@ class Recording:
         return f"<Recording of episode {self.episode}: {len(self.actions):,} actions>"
 
 
-def generator_states(config: Config, recorded: Sequence[Any]) -> list[dict[str, Any]]:
-    """Returns the state of the environment's bit generator before each recorded episode.
+def recordings_of(
+    config: Config, actions: Actions, kept: Sequence[tuple[Any, NDArray[Any]]], finished: int
+) -> tuple[Recording, ...]:
+    """Returns the recordings of the last of the ``finished`` episodes of a run.
 
     Args:
         config: The resolved config of the run.
-        recorded: For each episode the number of 64-bit words drawn since seeding and the buffered uint32 (None if there
-            is none); or the state itself; or any other value, for an episode that starts right after seeding.
+        actions: The actions of the run.
+        kept: For each recorded episode its start, as for :func:`generator_before`, and the columns of its actions.
+        finished: The number of finished episodes.
     """
-    return [_generator_state(config.seed, start) for start in recorded]
+    return tuple(
+        Recording(number, generator_before(config.seed, start), tuple(actions[column] for column in columns.tolist()))
+        for number, (start, columns) in enumerate(kept, finished - len(kept))
+    )
 
 
-def _generator_state(seed: int | None, start: Any) -> dict[str, Any]:
+def generator_before(seed: int | None, start: Any) -> dict[str, Any]:
+    """Returns the state of the environment's bit generator before a recorded episode.
+
+    Args:
+        seed: The seed of the run.
+        start: The number of 64-bit words drawn since seeding and the buffered uint32 (None if there is none); or the
+            state itself; or any other value, for an episode that starts right after seeding.
+    """
     if isinstance(start, dict):
         return start
     generator = np.random.PCG64(seed)

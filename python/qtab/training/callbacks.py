@@ -2,7 +2,7 @@
 
 import inspect
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import gymnasium as gym
 
+from qtab import _core
 from qtab._utils import checks
 from qtab._utils.memory import memory_limit as bytes_limit
 from qtab._utils.shown import shown
 from qtab.config import Config
-from qtab.training.progress import Callback, Progress
+from qtab.training.progress import Callback, EpisodeReader, Progress
 from qtab.training.setup.environment import PythonEnvironment
 from qtab.training.setup.resolved_run import ResolvedRun
 
@@ -80,27 +81,41 @@ def _shown(value: Any) -> str:
 
 
 class CallbackList:
-    """The callbacks of a run. Those without an interval are called every ``every`` episodes.
+    """The callbacks of a run, which read its progress. Those without an interval are called every ``every`` episodes.
 
     Raises:
         TypeError: if ``callbacks`` is neither a callable nor a sequence of callables.
     """
 
     def __init__(self, callbacks: Callbacks | None, every: int) -> None:
-        self._callbacks = [(callback, _interval(callback) or every) for callback in as_tuple(callbacks)]
+        self._callbacks = tuple((callback, _interval(callback) or every) for callback in as_tuple(callbacks))
+        self._reader: EpisodeReader | None = None
 
-    def __bool__(self) -> bool:
-        return bool(self._callbacks)
-
-    def start(self, resolved: ResolvedRun, earlier: "Run | None" = None) -> ExitStack:
+    def start(
+        self,
+        trainer: _core.Trainer,
+        resolved: ResolvedRun,
+        began: float,
+        make_run: "Callable[[], Run]",
+        earlier: "Run | None" = None,
+    ) -> ExitStack:
         """Starts the callbacks of a new run, or of one that continues ``earlier``.
+
+        Args:
+            trainer: The trainer of the run.
+            resolved: The run.
+            began: The time when the run began.
+            make_run: Makes the run so far.
+            earlier: The earlier part of the run, if any.
 
         Returns:
             A context that ends the started callbacks when it exits.
         """
-        environment = resolved.environment
-        env = environment.env if isinstance(environment, PythonEnvironment) else None
         with ExitStack() as on_exit:
+            if self._callbacks:
+                self._reader = on_exit.enter_context(EpisodeReader(trainer, resolved, began, make_run))
+            environment = resolved.environment
+            env = environment.env if isinstance(environment, PythonEnvironment) else None
             for callback, _ in self._callbacks:
                 if isinstance(callback, BaseCallback):
                     if earlier is None:
@@ -111,14 +126,25 @@ class CallbackList:
             return on_exit.pop_all()
 
     def next_call(self, done: int, total: int) -> int:
-        """Returns the number of episodes at which the next callback is due, ``total`` at the latest."""
-        return min([total, *((done // every + 1) * every for _, every in self._callbacks)])
+        """Returns the number of episodes at which the next callback is due, ``total`` at the latest.
 
-    def __call__(self, progress: Progress) -> bool:
+        Training then continues, and the last Progress can no longer read the tables.
+        """
+        due = total
+        for _, every in self._callbacks:
+            due = min(due, (done // every + 1) * every)
+        if self._reader is not None:
+            self._reader.move_on()
+        return due
+
+    def call(self) -> bool:
         """Calls the callbacks that are due; returns False if one of them stops the run.
 
         All others are then called as well, so that every callback sees the end of the run.
         """
+        if self._reader is None:
+            return True
+        progress = self._reader.read()
         at_end, proceed = progress.episodes == progress.total, True
         for callback, every in self._callbacks:
             if at_end or progress.episodes % every == 0:
@@ -183,8 +209,4 @@ class TrainingOptions:
         checks.count("record", self.record, least=0)
         checks.boolean("visits", self.visits)
         bytes_limit(self.memory_limit)
-        self.callbacks()
-
-    def callbacks(self) -> CallbackList:
-        """Returns the callbacks as one callback."""
-        return CallbackList(self.callback, int(self.callback_every))
+        as_tuple(self.callback)

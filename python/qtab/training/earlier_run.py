@@ -12,20 +12,18 @@ from gymnasium.envs.registration import EnvSpec
 
 from qtab._utils import checks
 from qtab._utils.shown import shown
-from qtab._utils.versions import versions
 from qtab.config import Config
 from qtab.config.config import replace_checked
 from qtab.config.functions import STORED, MissingFunction
-from qtab.config.merge import over
+from qtab.config.merge import Base, over
 from qtab.config.options import is_set
 from qtab.config.origin import copied, trained_on
-from qtab.config.schedules import epsilon
 from qtab.discretizers import AssignedRows
 from qtab.envs.origin.description import differences
 from qtab.envs.registry import versioned
 from qtab.results.loading import load, with_action_mask
-from qtab.results.rates import extensions, falling_rates
-from qtab.results.recording import resumed_snapshot_episodes, snapshot_episodes
+from qtab.results.rates import extensions
+from qtab.results.recording import resumed_snapshot_episodes
 from qtab.results.run import Run
 from qtab.training.callbacks import TrainingOptions
 from qtab.training.setup.resolve import resolve
@@ -58,6 +56,34 @@ def earlier_run(name: str, run: Any, action_mask: Any = None) -> Run:
     if callable(action_mask) and found.config.action_mask == STORED:
         return with_action_mask(found, action_mask)
     return found
+
+
+def resolve_resumed(
+    run: Any, env: Any, base: Base, settings: Mapping[str, Any], options: TrainingOptions
+) -> tuple[Run, TrainingOptions, ResolvedRun | None]:
+    """Resolves a call of :func:`qtab.train` with ``resume``.
+
+    Args:
+        run: The argument ``resume``.
+        env: The environment of the call; None takes that of the run.
+        base: The config or the settings that the call starts from.
+        settings: The settings given.
+        options: The other arguments of the call.
+
+    Returns:
+        The run, the options of its continuation, and the resolved whole run: None if the run has all its episodes.
+
+    Raises:
+        Exception: the errors of :func:`qtab.train` for this argument.
+    """
+    asked = over(base, settings)
+    earlier = _with_function(earlier_run("resume", run, asked.get("action_mask")), asked.get("discretizer"))
+    options = replace(options, visits=counts_visits(earlier, options.visits))
+    check_agrees(earlier, env, asked)
+    if has_finished(earlier, asked.get("episodes"), options):
+        return earlier, options, None
+    made = env if isinstance(env, gym.Env) else None
+    return earlier, options, resolve_again("resume", earlier, asked.get("episodes"), made)
 
 
 def resolve_again(name: str, run: Run, episodes: Any, env: gym.Env | None) -> ResolvedRun:
@@ -116,7 +142,7 @@ def has_finished(run: Run, episodes: Any, options: TrainingOptions) -> bool:
     return True
 
 
-def with_function(run: Run, function: Any) -> Run:
+def _with_function(run: Run, function: Any) -> Run:
     """Returns a run from a file, with its discretizer replaced by the original function if one is given."""
     if not isinstance(run.config.discretizer, MissingFunction) or not callable(function):
         return run
@@ -197,15 +223,13 @@ def _bare(env: str) -> str:
     return env.rpartition(":")[2]
 
 
-def snapshots_of(options: TrainingOptions, total: int, earlier: Run | None) -> tuple[int, ...]:
-    """Returns the episodes of all snapshots of a run of ``total`` episodes, the earlier part's first.
+def snapshots_of(options: TrainingOptions, total: int, earlier: Run) -> tuple[int, ...]:
+    """Returns the episodes of all snapshots of a resumed run of ``total`` episodes, the earlier part's first.
 
     Raises:
         TypeError: if ``options.snapshots`` is neither an integer nor a sequence of integers.
         ValueError: if a number in ``options.snapshots`` is out of range, or names an episode already finished.
     """
-    if earlier is None:
-        return snapshot_episodes(options.snapshots, total)
     to_take = () if earlier.state is None else earlier.state.snapshots
     finished = len(earlier.episode_returns)
     return resumed_snapshot_episodes(options.snapshots, total, finished, earlier.snapshots, to_take)
@@ -239,39 +263,3 @@ def _config(name: str, run: Run, episodes: Any) -> Config:
     if count <= finished:
         raise ValueError(f"episodes must be more than the {finished:,} that the run has finished, got {episodes!r}")
     return run.config if count == run.config.episodes else run.config.replace(episodes=count)
-
-
-def rising_epsilon(run: Run, config: Config) -> str:
-    """Returns the end of a message: how far ε rises when a run is extended, and how to keep it low."""
-    schedule, finished = epsilon(config), len(run.episode_returns)
-    before, after = schedule.after(finished, run.config.episodes), schedule.after(finished, config.episodes)
-    if after <= before or finished == 0:
-        return ""
-    starts_again = ""
-    if config.learning_rate_schedule != "constant":
-        starts_again = f" (the learning rate then starts again at {config.learning_rate:.3g})"
-    # With the same seed, the new run would repeat the random numbers of the earlier one.
-    seed = f", seed={config.seed + 1}" if isinstance(config.seed, int) else ""
-    return (
-        f": epsilon rises from {before:.3g} to {after:.3g} and falls again, and the returns may become worse at first. "
-        f"To keep it low, train on from the table instead{starts_again}: qtab.train(config=run.config.replace("
-        f"episodes={config.episodes - finished}, epsilon={config.min_epsilon!r}{seed}, initial_q=run.tables))"
-    )
-
-
-def log_what_differs(run: Run, config: Config) -> None:
-    """Logs why the result differs, or may differ, from that of an uninterrupted run."""
-    falling = falling_rates(config)
-    if config.episodes != run.config.episodes and falling:
-        _LOGGER.warning(
-            "%s now %s linearly over %s episodes instead of %s%s",
-            " and ".join(falling),
-            "fall" if len(falling) > 1 else "falls",
-            f"{config.episodes:,}",
-            f"{run.config.episodes:,}",
-            rising_epsilon(run, config) if "epsilon" in falling else "",
-        )
-    here = versions()
-    others = [f"{name} {run.versions.get(name)}" for name in here if run.versions.get(name) != here[name]]
-    if others:
-        _LOGGER.warning("the run was made with %s: its bits may differ from here on", ", ".join(others))

@@ -8,8 +8,12 @@ import numpy as np
 
 from qtab import _core
 from qtab._utils.checks import required
+from qtab._utils.versions import versions
+from qtab.config import Config
+from qtab.config.schedules import epsilon
+from qtab.results.rates import falling_rates
 from qtab.results.run import Run
-from qtab.results.run_state import RunState, generator_state
+from qtab.results.run_state import RunState
 from qtab.training.setup.environment import PythonEnvironment
 from qtab.training.setup.resolved_run import ResolvedRun
 
@@ -17,15 +21,20 @@ _LOGGER = logging.getLogger("qtab")
 
 
 def restore(trainer: _core.Trainer, resolved: ResolvedRun, earlier: Run) -> None:
-    """Restores the trainer of an earlier run, and logs if the episode in which the run stopped is lost.
+    """Restores the trainer of an earlier run.
+
+    It logs if the episode in which the run stopped is lost, and any other reason why the result may differ from that of
+    an uninterrupted run.
 
     Raises:
         ValueError: if the state of the earlier run does not fit.
     """
-    state = required("run.state", earlier.state)
-    if isinstance(resolved.environment, PythonEnvironment):
-        _restore_generator(resolved.environment.env, resolved.seed, state)
-        continue_after(resolved.environment.env, int(earlier.episode_lengths.sum()))
+    _log_what_differs(earlier, resolved.config)
+    state, environment = required("run.state", earlier.state), resolved.environment
+    if isinstance(environment, PythonEnvironment):
+        with environment.exclusively():
+            _restore_generator(environment.env, resolved.seed, state)
+            continue_after(environment.env, int(earlier.episode_lengths.sum()))
     elif state.generator is not None:
         raise ValueError("run must be resumed with env=, an environment stepped in Python as the run was trained on")
     tables = [table.ravel() for table in earlier.tables]
@@ -69,20 +78,37 @@ def _with_arrays(state: Any) -> Any:
     return np.array(state, np.uint64) if isinstance(state, list) else state
 
 
-def state_of(trainer: _core.Trainer, resolved: ResolvedRun, snapshots: tuple[int, ...]) -> RunState | None:
-    """Returns the state for :func:`restore`. If that fails, logs a warning and returns None, so the run is not lost.
+def rising_epsilon(run: Run, config: Config) -> str:
+    """Returns the end of a message: how far ε rises when a run is extended, and how to keep it low."""
+    schedule, finished = epsilon(config), len(run.episode_returns)
+    before, after = schedule.after(finished, run.config.episodes), schedule.after(finished, config.episodes)
+    if after <= before or finished == 0:
+        return ""
+    starts_again = ""
+    if config.learning_rate_schedule != "constant":
+        starts_again = f" (the learning rate then starts again at {config.learning_rate:.3g})"
+    # With the same seed, the new run would repeat the random numbers of the earlier one.
+    seed = f", seed={config.seed + 1}" if isinstance(config.seed, int) else ""
+    return (
+        f": epsilon rises from {before:.3g} to {after:.3g} and falls again, and the returns may become worse at first. "
+        f"To keep it low, train on from the table instead{starts_again}: qtab.train(config=run.config.replace("
+        f"episodes={config.episodes - finished}, epsilon={config.min_epsilon!r}{seed}, initial_q=run.tables))"
+    )
 
-    Args:
-        trainer: The trainer.
-        resolved: The run of the trainer.
-        snapshots: The episodes at which snapshots are still to be taken.
-    """
-    environment = resolved.environment
-    generator = None
-    try:
-        if isinstance(environment, PythonEnvironment):
-            generator = generator_state(environment.env.unwrapped.np_random)
-        return RunState(trainer.checkpoint(), generator, snapshots, resolved.extensions)
-    except Exception as error:  # such as an environment that fails
-        _LOGGER.warning("the run cannot be resumed: its state could not be read (%s: %s)", type(error).__name__, error)
-        return None
+
+def _log_what_differs(run: Run, config: Config) -> None:
+    """Logs why the result differs, or may differ, from that of an uninterrupted run."""
+    falling = falling_rates(config)
+    if config.episodes != run.config.episodes and falling:
+        _LOGGER.warning(
+            "%s now %s linearly over %s episodes instead of %s%s",
+            " and ".join(falling),
+            "fall" if len(falling) > 1 else "falls",
+            f"{config.episodes:,}",
+            f"{run.config.episodes:,}",
+            rising_epsilon(run, config) if "epsilon" in falling else "",
+        )
+    here = versions()
+    others = [f"{name} {run.versions.get(name)}" for name in here if run.versions.get(name) != here[name]]
+    if others:
+        _LOGGER.warning("the run was made with %s: its bits may differ from here on", ", ".join(others))

@@ -1,10 +1,11 @@
 """``qtab.train``: trains one agent."""
 
+import logging
 import os
 import time
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import gymnasium as gym
@@ -17,27 +18,18 @@ from qtab._utils.progress import ProgressBar
 from qtab._utils.versions import versions
 from qtab.config import Config
 from qtab.config.help import with_settings
-from qtab.config.merge import over
 from qtab.config.settings import Settings
-from qtab.results.recording import Recording, SnapshotCollector, generator_states
+from qtab.results.recording import SnapshotCollector, recordings_of, snapshot_episodes
 from qtab.results.run import Run
-from qtab.training.callbacks import CALLBACK_EVERY, Callbacks, TrainingOptions
-from qtab.training.earlier_run import (
-    check_agrees,
-    counts_visits,
-    earlier_run,
-    has_finished,
-    log_what_differs,
-    resolve_again,
-    snapshots_of,
-    with_function,
-)
-from qtab.training.progress import EpisodeReader
-from qtab.training.restore import restore, state_of
+from qtab.results.run_state import RunState, generator_state
+from qtab.training.callbacks import CALLBACK_EVERY, CallbackList, Callbacks, TrainingOptions
+from qtab.training.setup.environment import PythonEnvironment
 from qtab.training.setup.resolve import resolve
 from qtab.training.setup.resolved_run import ResolvedRun, log_default_limit, log_python_stepping, masks_of
 from qtab.training.setup.run_env import collect_for, resolve_over
 from qtab.training.setup.run_memory import check_run_memory, tables_shape
+
+_LOGGER = logging.getLogger("qtab")
 
 
 @with_settings
@@ -108,14 +100,12 @@ def train(
     if resume is None:
         resolved, _, _ = resolve_over(env, base, settings, resolve)
     else:
-        asked = over(base, settings)
-        earlier = with_function(earlier_run("resume", resume, asked.get("action_mask")), asked.get("discretizer"))
-        options = replace(options, visits=counts_visits(earlier, visits))
-        check_agrees(earlier, env, asked)
-        if has_finished(earlier, asked.get("episodes"), options):
+        from qtab.training.earlier_run import resolve_resumed
+
+        earlier, options, again = resolve_resumed(resume, env, base, settings, options)
+        if again is None:
             return earlier
-        made = env if isinstance(env, gym.Env) else None
-        resolved = resolve_again("resume", earlier, asked.get("episodes"), made)
+        resolved = again
     log_default_limit(resolved)
     if progress is not False:
         log_python_stepping(resolved)
@@ -129,37 +119,36 @@ def train_resolved(resolved: ResolvedRun, options: TrainingOptions | None = None
     """Trains a run that is already resolved, or continues an earlier one; see :func:`train` and :func:`qtab.resume`."""
     options = TrainingOptions() if options is None else options
     total, record = resolved.config.episodes, int(options.record)
-    copied_at = snapshots_of(options, total, earlier)
+    done, seconds, taken = 0, 0.0, None
+    if earlier is None:
+        copied_at = snapshot_episodes(options.snapshots, total)
+    else:
+        from qtab.training.earlier_run import snapshots_of
+        from qtab.training.restore import restore
+
+        done, seconds, taken = len(earlier.episode_returns), earlier.seconds, earlier.snapshots
+        copied_at = snapshots_of(options, total, earlier)
     memory = check_run_memory(resolved, options, len(copied_at), earlier)
-    if earlier is not None:
-        log_what_differs(earlier, resolved.config)
-    began = time.perf_counter()
+    began = time.perf_counter() - seconds
     trainer = _core.Trainer(resolved.spec(), resolved.seed, record, memory, bool(options.visits))
-    taken = None if earlier is None else earlier.snapshots
     collector = SnapshotCollector(trainer, copied_at, tables_shape(resolved, 1)[1:], taken)
-    callbacks = options.callbacks()
-    done = 0
     if earlier is not None:
-        with resolved.environment.exclusively():
-            restore(trainer, resolved, earlier)
-        done, began = len(earlier.episode_returns), began - earlier.seconds
-    reader = EpisodeReader(trainer, resolved, began, lambda: _run(resolved, trainer, began, collector, over=False))
+        restore(trainer, resolved, earlier)
+    callbacks = CallbackList(options.callback, int(options.callback_every))
+    so_far = partial(_run, resolved, trainer, began, collector)
     try:
         with (
             resolved.environment.exclusively(),
-            reader,
-            callbacks.start(resolved, earlier),
-            ProgressBar(total, "episode", options.progress) as bar,
+            callbacks.start(trainer, resolved, began, partial(so_far, over=False), earlier),
+            ProgressBar(total, "episode", options.progress, done=done) as bar,
         ):
-            bar.move_to(done)
             while done < total:
                 target = callbacks.next_call(done, total)
-                reader.move_on()
                 for stop in collector.stops(done, target):
                     for until in bar.chunks(done, stop):
                         trainer.advance(until)
                     done = stop
-                if callbacks and not callbacks(reader.read()):
+                if not callbacks.call():
                     break
         trainer.check_tables()
     except BaseException as error:
@@ -167,9 +156,9 @@ def train_resolved(resolved: ResolvedRun, options: TrainingOptions | None = None
             # Raised by the extension for an observation; errors of an environment or a callback pass unchanged.
             error.args = (resolved.discretizer.in_terms_of_space(str(error)), *error.args[1:])
         with suppress(MemoryError):  # if the copies do not fit either, raise the error without them
-            attach(error, run=_run(resolved, trainer, began, collector))
+            attach(error, run=so_far())
         raise
-    return _run(resolved, trainer, began, collector)
+    return so_far()
 
 
 def _run(
@@ -184,12 +173,6 @@ def _run(
     tables = trainer.tables()
     returns, lengths, terminated = trainer.take_episodes() if over else trainer.episodes()
     kept = trainer.take_recordings() if over else []
-    first = len(returns) - len(kept)
-    generators = generator_states(resolved.config, [start for start, _ in kept])
-    recordings = tuple(
-        Recording(first + index, generator, tuple(resolved.actions[column] for column in columns.tolist()))
-        for index, (generator, (_, columns)) in enumerate(zip(generators, kept, strict=True))
-    )
     visits = trainer.visits()
     return Run(
         config=resolved.config,
@@ -202,10 +185,29 @@ def _run(
         completed=len(returns) == resolved.config.episodes,
         seconds=time.perf_counter() - began,
         versions=versions(),
-        recordings=recordings,
+        recordings=recordings_of(resolved.config, resolved.actions, kept, len(returns)) if kept else (),
         visits=None if visits is None else visits.reshape(*resolved.discretizer.shape, len(resolved.actions)),
         snapshots=collector.snapshots(),
         action_masks=masks_of(trainer, resolved),
         average_reward=trainer.average_reward(),
-        state=state_of(trainer, resolved, collector.to_take),
+        state=_state(trainer, resolved, collector.to_take),
     )
+
+
+def _state(trainer: _core.Trainer, resolved: ResolvedRun, snapshots: tuple[int, ...]) -> RunState | None:
+    """Returns the state for :func:`qtab.resume`. If that fails, logs a warning and returns None: the run is not lost.
+
+    Args:
+        trainer: The trainer.
+        resolved: The run of the trainer.
+        snapshots: The episodes at which snapshots are still to be taken.
+    """
+    environment = resolved.environment
+    generator = None
+    try:
+        if isinstance(environment, PythonEnvironment):
+            generator = generator_state(environment.env.unwrapped.np_random)
+        return RunState(trainer.checkpoint(), generator, snapshots, resolved.extensions)
+    except Exception as error:  # such as an environment that fails
+        _LOGGER.warning("the run cannot be resumed: its state could not be read (%s: %s)", type(error).__name__, error)
+        return None
