@@ -18,8 +18,9 @@ from gymnasium.wrappers import (
 )
 
 import qtab
-from qtab.envs.origin import describe, differences, make_again
-from qtab.envs.origin.description import EnvironmentDescription, from_json
+from qtab.envs.origin.again import make_again
+from qtab.envs.origin.describe import describe
+from qtab.envs.origin.description import EnvironmentDescription, differences, from_json
 from qtab.envs.registry import ENTRIES, EXTRA
 
 CAR, LAKE = "MountainCar-v0", "FrozenLake-v1"

@@ -4,8 +4,7 @@ The preset is the lowest layer, then come the config that the call starts from a
 """
 
 import inspect
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
 from functools import cache
 from typing import Any, TypeAlias
@@ -119,26 +118,27 @@ def config_of(env: str, asked: Mapping[str, Any]) -> Config:
     own = {**implied_schedules(asked, {**DEFAULTS, **start, **own, **asked}), **own}
     start = applicable(start, {**DEFAULTS, **start, **own, **asked})
     own = applicable(own, {**DEFAULTS, **start, **own, **asked})
-    with naming_preset(name, {setting: value for setting, value in start.items() if setting not in own}, asked):
+    try:
         return Config(**{**start, **own, **asked, "env": env, "preset": name})
+    except ValueError as error:
+        raise naming_preset(error, name, start.keys() - own.keys(), asked) from None
 
 
-@contextmanager
-def naming_preset(name: str | None, settings: Mapping[str, Any], asked: Mapping[str, Any]) -> Iterator[None]:
-    """Adds to an error about a preset's value that it comes from the preset.
+def naming_preset(
+    error: ValueError, name: str | None, settings: Collection[str], asked: Mapping[str, Any]
+) -> ValueError:
+    """Returns an error about a setting; about one of a preset, with the addition that it comes from the preset.
 
     Args:
+        error: The error, whose message begins with the name of the setting.
         name: The name of the preset.
         settings: The settings used from the preset.
         asked: The requested settings.
     """
-    try:
-        yield
-    except ValueError as error:
-        setting = str(error).split(" ", 1)[0]
-        if name is None or setting not in settings or is_set(asked.get(setting)):
-            raise
-        raise ValueError(f"{error}; this is the {setting} of preset {name!r}; give another one") from None
+    setting = str(error).split(" ", 1)[0]
+    if name is None or setting not in settings or is_set(asked.get(setting)):
+        return error
+    return ValueError(f"{error}; this is the {setting} of preset {name!r}; give another one")
 
 
 def merge(env: str, *layers: Mapping[str, Any]) -> Config:

@@ -21,6 +21,7 @@ from types import (
 from typing import Any
 
 import numpy as np
+from gymnasium.envs.registration import load_env_creator
 
 LIBRARY = "library"
 """The digest of the code of Gymnasium and of this package, which their versions identify."""
@@ -68,6 +69,14 @@ def changed_library_code(cls: type) -> str | None:
     return None
 
 
+def changed_entry_point(entry_point: str) -> str | None:
+    """Returns the name of replaced code in the class or the function of an entry point; None if there is none."""
+    made: Any = load_env_creator(entry_point)
+    if f"{getattr(made, '__module__', '')}:{getattr(made, '__qualname__', '')}" != entry_point:
+        return entry_point
+    return changed_library_code(made) if isinstance(made, type) else None
+
+
 def replaced_member(cls: type) -> str | None:
     """Returns the name of a method that is not defined in the module of its class; None if there is none.
 
@@ -81,8 +90,9 @@ def replaced_member(cls: type) -> str | None:
         if type(member) is FunctionType and member.__globals__ is own:
             continue
         functions = _functions(member)
-        if any(function.__globals__ is not own and not _is_trusted(function) for function in functions):
-            return name
+        for function in functions:
+            if function.__globals__ is not own and not _is_trusted(function):
+                return name
         if not functions and callable(member) and not isinstance(member, type) and not _is_builtin(member):
             return name
     return None

@@ -15,14 +15,12 @@ from qtab.envs.class_code import LIBRARY
 from qtab.envs.origin.describe import describe
 from qtab.envs.origin.description import EnvironmentDescription, WrapperDescription
 from qtab.envs.origin.values import comparable, same
-from qtab.envs.registry import entry_for_id, gymnasium_id, is_registered, make_env
+from qtab.envs.registry import UNLIMITED_MAX_EPISODE_STEPS, entry_for_id, gymnasium_id, is_registered, make_env
 
 BEST_KNOWN_MOUNTAIN_CAR = -97.668
 """The expected return that ``qtab.optimum("MountainCar-v0")`` finds in seconds."""
 MAX_QUICK_UPDATES = 10**8
 """The optimum of a table is computed if it needs at most this many updates, which take less than a second."""
-UNLIMITED_MAX_EPISODE_STEPS = 10_000
-"""The time limit in training for environments that have none."""
 
 
 def reward_threshold(

@@ -6,7 +6,6 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 from gymnasium import spaces
-from gymnasium.envs.registration import EnvSpec, load_env_creator
 from gymnasium.wrappers import OrderEnforcing, PassiveEnvChecker, TimeLimit
 
 from qtab.envs.class_code import changed_library_code
@@ -74,14 +73,6 @@ def entry_for_env(env: gym.Env) -> EnvEntry:
     if not entry.has_table:  # Rust reads a table from the object, so no attribute can be out of date
         _check_attributes(unwrapped, entry)
     return entry
-
-
-def changed_entry_code(spec: EnvSpec) -> str | None:
-    """Returns the name of replaced code in the class of a spec, which Rust otherwise steps; None if there is none."""
-    if not isinstance(spec.entry_point, str):
-        return None
-    made: Any = load_env_creator(spec.entry_point)
-    return changed_library_code(made) if isinstance(made, type) else None
 
 
 def _entry_for_class(unwrapped: Any) -> EnvEntry:

@@ -16,7 +16,7 @@ from gymnasium.envs.toy_text.blackjack import BlackjackEnv
 
 from qtab import _core
 from qtab.envs.actions import Actions
-from qtab.envs.class_code import changed_library_code
+from qtab.envs.class_code import changed_entry_point
 from qtab.envs.matching import NotInRustError
 from qtab.envs.registry import ENTRIES, TABULAR, gymnasium_id
 
@@ -63,13 +63,11 @@ def known_table(spec: EnvSpec, kwargs: Mapping[str, Any]) -> KnownTable | None:
     arguments = {**defaults, **spec.kwargs, **kwargs}
     if arguments.keys() != defaults.keys() or any(type(arguments[key]) is not type(defaults[key]) for key in defaults):
         return None
-    module_name, _, class_name = ENTRIES[name].gymnasium_entry_point.partition(":")
-    module: Any = import_module(module_name)
-    cls = getattr(module, class_name)
-    if cls.__module__ != module_name or changed_library_code(cls) is not None:
+    entry_point = ENTRIES[name].gymnasium_entry_point
+    if changed_entry_point(entry_point) is not None:
         return None
     try:
-        return make_table(module, **arguments)
+        return make_table(import_module(entry_point.partition(":")[0]), **arguments)
     except (OverflowError, ValueError):  # arguments that Gymnasium refuses, or a map of another size
         return None
 

@@ -13,9 +13,12 @@ import gymnasium as gym
 from gymnasium.envs.registration import EnvSpec, find_highest_version, get_env_id, parse_env_id
 
 from qtab._utils.shown import shown
+from qtab.envs.class_code import changed_entry_point
 
 PACKAGE = "qtab"
 PREFIX = "qtab/"
+UNLIMITED_MAX_EPISODE_STEPS = 10_000
+"""The time limit in training for environments that have none."""
 _TABLE = "Table"
 """The name, in the extension module, of all environments that a transition table describes completely."""
 
@@ -141,21 +144,23 @@ def entry_for_id(env: str) -> EnvEntry | None:
 
 
 def entry_for_spec(spec: EnvSpec, kwargs: Mapping[str, Any]) -> EnvEntry | None:
-    """Returns the entry that computes the numbers of ``gymnasium.make(spec, **kwargs)``; None if there is none."""
+    """Returns the entry that computes the numbers of ``gymnasium.make(spec, **kwargs)``; None if there is none.
+
+    There is none either if the code of the environment's class was replaced.
+    """
     entry = entry_for_id(spec.id)
     if entry is None or spec.additional_wrappers:
         return None
     if spec.entry_point not in (entry.gymnasium_entry_point, entry.entry_point):
         return None
-    # An environment with a render mode is stepped in Python, so that it can be rendered.
-    arguments = {
-        name: value for name, value in {**spec.kwargs, **kwargs}.items() if (name, value) != ("render_mode", None)
-    }
-    if entry.has_table:
-        return None if "render_mode" in arguments else entry
-    # NumPy scalars would promote to other dtypes than Python numbers do.
-    are_python_numbers = all(type(value) in (int, float, bool) for value in arguments.values())
-    return entry if are_python_numbers and arguments.keys() <= entry.supported_kwargs else None
+    for name, value in {**spec.kwargs, **kwargs}.items():
+        if name == "render_mode":
+            if value is not None:  # Python steps it, so that it can be rendered
+                return None
+        # NumPy scalars would promote to other dtypes than Python numbers do.
+        elif not entry.has_table and (name not in entry.supported_kwargs or type(value) not in (int, float, bool)):
+            return None
+    return None if changed_entry_point(spec.entry_point) else entry
 
 
 def versioned(env: str) -> str:

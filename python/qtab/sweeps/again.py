@@ -12,7 +12,7 @@ from qtab._utils.versions import versions
 from qtab.config import Config
 from qtab.config.merge import over
 from qtab.config.origin import Origin, copied
-from qtab.envs.origin import differences
+from qtab.envs.origin.description import differences
 from qtab.envs.origin.values import with_types
 from qtab.results.run import Run
 from qtab.results.summary import summarize

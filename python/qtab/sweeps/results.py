@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     import pandas as pd
     import pyarrow as pa
 
-    from qtab.envs.origin import EnvironmentDescription
+    from qtab.envs.origin.description import EnvironmentDescription
     from qtab.results.run import Run
 
 INTEGER_COLUMNS = ("episodes", "steps")

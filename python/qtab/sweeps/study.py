@@ -17,7 +17,7 @@ from qtab.config import DEFAULTS
 from qtab.config.functions import function_name
 from qtab.config.merge import Base, over
 from qtab.config.unknown import check_names
-from qtab.envs.origin import EnvironmentDescription
+from qtab.envs.origin.description import EnvironmentDescription
 from qtab.envs.registry import stored_id
 from qtab.results.file_parts import corrected_settings, stored_settings
 from qtab.sweeps import designs

@@ -22,11 +22,16 @@ from gymnasium.wrappers import (
 )
 from gymnasium.wrappers import TimeLimit as TimeLimitWrapper
 
-from qtab.envs.class_code import LIBRARY, class_code, is_of_library, state_attributes
-from qtab.envs.external.native_env import NativeEnv
+from qtab.envs.class_code import class_code, is_of_library, state_attributes
 from qtab.envs.matching import layers, time_limit
-from qtab.envs.origin.description import EnvironmentDescription, WrapperDescription
-from qtab.envs.origin.values import describe_value, is_plain, same, space_text
+from qtab.envs.origin.description import (
+    UNIMPORTANT,
+    EnvironmentDescription,
+    WrapperDescription,
+    constants_of,
+    without_rendering,
+)
+from qtab.envs.origin.values import describe_value, describe_values, is_plain, same, space_text
 from qtab.envs.registry import EnvEntry, entry_for_id
 
 NEUTRAL = (
@@ -34,8 +39,6 @@ NEUTRAL = (
     *(HumanRendering, RenderCollection),
 )
 """Wrappers that change no observation, reward or end of an episode; the time limit is described separately."""
-_UNIMPORTANT = ("render_mode", "spec", "metadata")
-"""Attributes of environments that change no number."""
 _BESIDE_TABLE = {"fickle_passenger": False, "fickle_probability": 0.3}
 """The attributes that Taxi's steps read besides the table, with the defaults of its constructor."""
 _PROBE_STEPS = 50
@@ -52,7 +55,7 @@ def describe(env: gym.Env, *, is_new: bool = False, code: str | None = None) -> 
     unwrapped: Any = env.unwrapped
     cls, spec = type(unwrapped), unwrapped.spec
     entry = None if spec is None else entry_for_id(spec.id)
-    kwargs = {} if spec is None else _without_rendering(spec.kwargs)
+    kwargs = {} if spec is None else without_rendering(spec.kwargs)
     attributes = _attributes(unwrapped, entry)
     table = None
     if _has_table(unwrapped) and (not is_new or _draws_table(spec)):
@@ -64,7 +67,7 @@ def describe(env: gym.Env, *, is_new: bool = False, code: str | None = None) -> 
         id=None if spec is None else spec.id,
         cls=f"{cls.__module__}:{cls.__qualname__}",
         code=_code(unwrapped) if code is None else code,
-        kwargs={name: describe_value(value) for name, value in kwargs.items()},
+        kwargs=describe_values(kwargs),
         wrappers=tuple(_wrapper(layer) for layer in layers(env) if _counts(layer)),
         attributes=attributes,
         table=table,
@@ -76,34 +79,9 @@ def describe(env: gym.Env, *, is_new: bool = False, code: str | None = None) -> 
 
 def _code(unwrapped: Any) -> str | None:
     """Returns a digest of the code of an environment: of its library, or of its class."""
+    from qtab.envs.external.native_env import NativeEnv
+
     return unwrapped.code_digest if isinstance(unwrapped, NativeEnv) else class_code(type(unwrapped))
-
-
-def describe_known(spec: EnvSpec, kwargs: Mapping[str, Any], env: gym.Env) -> EnvironmentDescription:
-    """Describes an environment of Gymnasium's that is known by its table and was not made.
-
-    Args:
-        spec: Its spec.
-        kwargs: The keyword arguments of the constructor.
-        env: The environment that stands for it, with its spaces.
-    """
-    given = _without_rendering({**spec.kwargs, **kwargs})
-    return EnvironmentDescription(
-        id=spec.id,
-        cls=str(spec.entry_point),
-        code=LIBRARY,
-        kwargs={name: describe_value(value) for name, value in given.items()},
-        wrappers=(),
-        attributes={},
-        table=None,
-        observation_space=space_text(env.observation_space),
-        action_space=space_text(env.action_space),
-        max_episode_steps=spec.max_episode_steps,
-    )
-
-
-def _without_rendering(kwargs: Mapping[str, Any]) -> dict[str, Any]:
-    return {name: value for name, value in kwargs.items() if name not in _UNIMPORTANT}
 
 
 def _counts(layer: gym.Env) -> bool:
@@ -117,7 +95,7 @@ def _wrapper(layer: gym.Env) -> WrapperDescription:
     return WrapperDescription(
         cls=f"{cls.__module__}:{cls.__qualname__}",
         code=class_code(cls),
-        kwargs=None if kwargs is None else {name: describe_value(value) for name, value in kwargs.items()},
+        kwargs=None if kwargs is None else describe_values(kwargs),
         attributes={**_scalars(layer), **_arguments(layer), **_replaced_methods(layer)},
     )
 
@@ -144,7 +122,7 @@ def _scalars(layer: Any) -> dict[str, Any]:
     held = {
         name: value
         for name, value in vars(layer).items()
-        if not name.startswith("_") and name not in _UNIMPORTANT and isinstance(value, bool | int | float | str)
+        if not name.startswith("_") and name not in UNIMPORTANT and isinstance(value, bool | int | float | str)
     }
     state = state_attributes(type(layer)) if held else set()
     return {name: describe_value(value) for name, value in held.items() if name not in state}
@@ -155,10 +133,7 @@ def _attributes(unwrapped: Any, entry: EnvEntry | None) -> dict[str, Any]:
     if entry is not None and is_of_library(type(unwrapped)):
         if entry.has_table:
             return _beside_table(unwrapped) | replaced
-        from qtab._core import parameter_names
-
-        known = {name: getattr(unwrapped, name, None) for name in parameter_names(entry.name)}
-        return {name: describe_value(value) for name, value in known.items()} | replaced
+        return constants_of(entry, unwrapped) | replaced
     described_apart = ("P", "initial_state_distrib") if _has_table(unwrapped) else ()
     return {name: value for name, value in _arguments(unwrapped).items() if name not in described_apart} | replaced
 
@@ -173,7 +148,7 @@ def _beside_table(unwrapped: Any) -> dict[str, Any]:
 def _arguments(layer: Any) -> dict[str, Any]:
     """Returns the attributes with the names of constructor arguments, which most classes keep there, but no state."""
     held = vars(layer)
-    names = [name for name in _parameters(type(layer)) if name != "env" and name not in _UNIMPORTANT]
+    names = [name for name in _parameters(type(layer)) if name != "env" and name not in UNIMPORTANT]
     keys = {key: name for name in names for key in (name, f"_{name}") if key in held}
     state = state_attributes(type(layer)) if keys else set()
     return {name: describe_value(held[key]) for key, name in keys.items() if key not in state}
@@ -200,7 +175,7 @@ def _changed(unwrapped: Any, known_already: Mapping[str, Any]) -> dict[str, Any]
     try:
         with _new(unwrapped) as new:
             # Described now, since steps may change an array or a list in place.
-            made = {name: describe_value(value) for name, value in _plain_attributes(new)}
+            made = describe_values(dict(_plain_attributes(new)))
             names = [name for name in held if name in made and not same(describe_value(held[name]), made[name])]
             moving = _moving(new, made) if names else set()
     except Exception:  # a constructor or a step of any package may raise any error
@@ -209,13 +184,13 @@ def _changed(unwrapped: Any, known_already: Mapping[str, Any]) -> dict[str, Any]
 
 
 def _new(unwrapped: Any) -> "closing[Any]":
-    spec = replace(unwrapped.spec, kwargs=_without_rendering(unwrapped.spec.kwargs))
+    spec = replace(unwrapped.spec, kwargs=without_rendering(unwrapped.spec.kwargs))
     return closing(gym.make(spec).unwrapped)
 
 
 def _plain_attributes(unwrapped: Any) -> Iterator[tuple[str, Any]]:
     for name, value in vars(unwrapped).items():
-        if not name.startswith("_") and name not in _UNIMPORTANT and is_plain(value):
+        if not name.startswith("_") and name not in UNIMPORTANT and is_plain(value):
             yield name, value
 
 

@@ -5,9 +5,16 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, dataclass, fields
 from typing import Any, TypeVar
 
+import gymnasium as gym
+from gymnasium.envs.registration import EnvSpec
+
+from qtab._core import parameter_names
 from qtab.envs.class_code import LIBRARY
-from qtab.envs.origin.values import comparable, in_words, same, without_digest
-from qtab.envs.registry import gymnasium_id
+from qtab.envs.origin.values import comparable, describe_values, in_words, same, space_text, without_digest
+from qtab.envs.registry import EnvEntry, gymnasium_id
+
+UNIMPORTANT = ("render_mode", "spec", "metadata")
+"""Attributes of environments that change no number."""
 
 
 @dataclass(frozen=True)
@@ -67,6 +74,42 @@ class EnvironmentDescription:
     def as_json(self) -> dict[str, Any]:
         """Returns the description as JSON represents it."""
         return asdict(self)
+
+
+def describe_entry(
+    entry: EnvEntry, spec: EnvSpec, kwargs: Mapping[str, Any], env: gym.Env, max_episode_steps: int | None
+) -> EnvironmentDescription:
+    """Describes a new environment of an entry of the registry, in the wrappers of ``gymnasium.make`` only.
+
+    Args:
+        entry: The entry, whose class has the code of its library.
+        spec: The spec of the environment.
+        kwargs: The keyword arguments of the constructor.
+        env: The environment, or one with its spaces and its table.
+        max_episode_steps: The time limit of the environment.
+    """
+    return EnvironmentDescription(
+        id=spec.id,
+        cls=str(spec.entry_point),
+        code=LIBRARY,
+        kwargs=describe_values(without_rendering({**spec.kwargs, **kwargs})),
+        wrappers=(),
+        attributes={} if entry.has_table else constants_of(entry, env.unwrapped),
+        table=None,
+        observation_space=space_text(env.observation_space),
+        action_space=space_text(env.action_space),
+        max_episode_steps=max_episode_steps,
+    )
+
+
+def constants_of(entry: EnvEntry, unwrapped: gym.Env) -> dict[str, Any]:
+    """Returns the described constants of an environment with equations, such as gravity."""
+    return describe_values({name: getattr(unwrapped, name, None) for name in parameter_names(entry.name)})
+
+
+def without_rendering(kwargs: Mapping[str, Any]) -> dict[str, Any]:
+    """Returns keyword arguments of a constructor without those that change no number."""
+    return {name: value for name, value in kwargs.items() if name not in UNIMPORTANT}
 
 
 D = TypeVar("D", WrapperDescription, EnvironmentDescription)

@@ -82,7 +82,7 @@ def describe_value(value: Any) -> Any:
     if isinstance(value, list):
         return [describe_value(item) for item in value]
     if isinstance(value, Mapping) and all(isinstance(key, str) for key in value):
-        return {_TAG: "dict", "items": {key: describe_value(item) for key, item in value.items()}}
+        return {_TAG: "dict", "items": describe_values(value)}
     if isinstance(value, gym.Space):
         return {_TAG: "space", "text": space_text(value)}
     if isinstance(value, type):
@@ -90,6 +90,11 @@ def describe_value(value: Any) -> Any:
     if callable(value) and hasattr(value, "__code__"):
         return {_TAG: "function", "name": value.__qualname__, "code": function_code(value)}
     return {_TAG: "object", "name": f"{type(value).__module__}:{type(value).__qualname__}"}
+
+
+def describe_values(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Returns each value as :func:`describe_value` does."""
+    return {name: describe_value(value) for name, value in values.items()}
 
 
 def _describe_array(array: Any) -> dict[str, Any]:

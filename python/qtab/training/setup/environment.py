@@ -187,12 +187,12 @@ Environment: TypeAlias = NativeEnvironment | PythonEnvironment
 
 
 def with_discretizer(environment: Environment, discretizer: Discretizer) -> tuple[Environment, bool]:
-    """Returns an environment as it is with a discretizer, and whether Python must read its observations.
+    """Returns an environment with a discretizer that reads its space, and whether Python must read its observations.
 
     The functions of an environment in a capsule write the components of any observation in the order of the space.
     """
-    if not discretizer.reads_space or not isinstance(environment, NativeEnvironment):
-        return environment, discretizer.reads_space
+    if not isinstance(environment, NativeEnvironment):
+        return environment, True
     external, first = environment.external, discretizer.flat_first
     if external is None or first is None or len(first) != len(external.bounds):
         return environment, True

@@ -16,20 +16,22 @@ from qtab.config import DEFAULTS, Config
 from qtab.config.choices import IN_PYTHON, INSISTING, Backend
 from qtab.config.config import replace_checked
 from qtab.config.merge import config_of, merge_layers, naming_preset
-from qtab.config.options import WITH_STATE_VALUES, n_tables
 from qtab.config.origin import Origin, copied
 from qtab.config.presets import preset
 from qtab.config.validation import defaults
-from qtab.discretizers import AssignedRows, Discretizer
 from qtab.envs.actions import Actions, choose_actions
 from qtab.envs.class_code import LIBRARY, is_of_library
-from qtab.envs.external.capsule import external_env, has_capsule
-from qtab.envs.goals import UNLIMITED_MAX_EPISODE_STEPS
-from qtab.envs.matching import NotInRustError, changed_entry_code, entry_for_env, rust_unavailable, time_limit
+from qtab.envs.matching import NotInRustError, entry_for_env, rust_unavailable, time_limit
 from qtab.envs.native import KnownTable, check_not_shown, known_table, native_env
-from qtab.envs.origin.describe import describe, describe_known
-from qtab.envs.origin.description import EnvironmentDescription
-from qtab.envs.registry import EnvEntry, entry_for_spec, make_env, spec_of, versioned
+from qtab.envs.origin.description import EnvironmentDescription, describe_entry
+from qtab.envs.registry import (
+    UNLIMITED_MAX_EPISODE_STEPS,
+    EnvEntry,
+    entry_for_spec,
+    make_env,
+    spec_of,
+    versioned,
+)
 from qtab.training.setup.environment import (
     NO_MASKS,
     WRITTEN_MASKS,
@@ -41,8 +43,8 @@ from qtab.training.setup.environment import (
     observed_masks,
     with_discretizer,
 )
-from qtab.training.setup.preset_fit import infer_discretizer, set_aside
 from qtab.training.setup.resolved_run import ResolvedRun, derived_settings
+from qtab.training.setup.spaces_fit import fit_initial_q, infer_discretizer, set_aside
 
 READ_IN_PYTHON = "a function as the discretizer, or max_rows, reads each observation in Python"
 InRust: TypeAlias = EnvEntry | _core.ExternalEnv
@@ -70,10 +72,17 @@ class _Request:
 
     def description(self) -> EnvironmentDescription:
         """Describes the environment, before anything steps it."""
-        if isinstance(self.env, KnownTable) and self.spec is not None:
-            return describe_known(self.spec, self.config.env_kwargs, self.env)
+        entry, spec, kwargs = self.entry, self.spec, self.config.env_kwargs
+        if isinstance(entry, EnvEntry) and spec is not None and not spec.additional_wrappers:
+            if isinstance(self.env, KnownTable):
+                return describe_entry(entry, spec, kwargs, self.env, spec.max_episode_steps)
+            if not entry.has_table:
+                limit = self.config.max_episode_steps or spec.max_episode_steps
+                return describe_entry(entry, spec, kwargs, self.env, limit)
+        from qtab.envs.origin.describe import describe
+
         # An environment stepped in Rust has its library's code, as was just checked.
-        is_checked = isinstance(self.entry, EnvEntry) and is_of_library(type(self.env.unwrapped))
+        is_checked = isinstance(entry, EnvEntry) and is_of_library(type(self.env.unwrapped))
         return describe(self.env, is_new=self.spec is not None, code=LIBRARY if is_checked else None)
 
 
@@ -119,9 +128,7 @@ def _from_spec(env: str | EnvSpec, layers: tuple[Mapping[str, Any], ...]) -> _Re
     name, spec = (env.id, env) if isinstance(env, EnvSpec) else (env, spec_of(env))
     asked = merge_layers({"env_kwargs": dict(spec.kwargs)}, *layers)
     config = config_of(name, asked)
-    entry: InRust | None = entry_for_spec(spec, config.env_kwargs)
-    if entry is not None and (config.backend == "numba" or changed_entry_code(spec) is not None):
-        entry = None
+    entry: InRust | None = None if config.backend == "numba" else entry_for_spec(spec, config.env_kwargs)
     known, python_reason = None, None
     if entry is not None and config.backend not in IN_PYTHON and not asks_for_masks(config.action_mask):
         known = known_table(spec, config.env_kwargs)
@@ -158,6 +165,8 @@ def _match(env: gym.Env, config: Config, *, is_made: bool) -> tuple[InRust | Non
     """
     if config.backend in IN_PYTHON:
         return None, None
+    from qtab.envs.external.capsule import external_env
+
     try:
         entry = external_env(env, config.backend, needs_masks=config.action_mask is True) or entry_for_env(env)
         if is_made or config.backend == "auto":
@@ -199,11 +208,15 @@ def _fill_defaults(request: _Request, owns_env: bool) -> ResolvedRun:
     config = replace_checked(config, max_episode_steps=max_episode_steps)
     actions = choose_actions(env.action_space, config.actions)
     environment, python_reason = _environment(request, actions, owns_env)
-    of_preset = preset(config.env, config.preset)[1] if config.preset else {}
-    of_preset = {name: value for name, value in of_preset.items() if getattr(config, name) is not DEFAULTS[name]}
-    with naming_preset(config.preset, of_preset, request.asked):
+    try:
         discretizer = discretizers.build(env.observation_space, config, len(actions))
-    environment, in_python = with_discretizer(environment, discretizer)
+    except ValueError as error:
+        of_preset = preset(config.env, config.preset)[1] if config.preset else {}
+        used = {name for name in of_preset if getattr(config, name) is not DEFAULTS[name]}
+        raise naming_preset(error, config.preset, used, request.asked) from None
+    in_python = discretizer.reads_space
+    if in_python:
+        environment, in_python = with_discretizer(environment, discretizer)
     masks = None if asks_for_masks(config.action_mask) else NO_MASKS
     in_rust = isinstance(environment, NativeEnvironment)
     external = request.entry if isinstance(request.entry, _core.ExternalEnv) else None
@@ -225,9 +238,9 @@ def _fill_defaults(request: _Request, owns_env: bool) -> ResolvedRun:
     config = replace_checked(
         config,
         **discretizer.settings(),
-        initial_q=_fit_initial_q(config, discretizer, len(actions)),
+        initial_q=fit_initial_q(config, discretizer, len(actions)),
         seed=seed,
-        backend=_backend_of(request) if in_rust else "gymnasium",
+        backend="gymnasium" if not in_rust else "rust" if external is None else _backend_of(env),
     )
     origin = Origin(description, derived_settings(request.config, config, discretizer))
     return ResolvedRun(
@@ -258,36 +271,8 @@ def _environment(request: _Request, actions: Actions, owns_env: bool) -> tuple[E
     return PythonEnvironment(request.env, actions, owns_env), reason
 
 
-def _backend_of(request: _Request) -> Backend:
-    """Returns the backend that steps an environment in Rust: Numba for an ordinary class, which it has compiled."""
-    of_numba = isinstance(request.entry, _core.ExternalEnv) and not has_capsule(request.env)
-    return "numba" if of_numba else "rust"
+def _backend_of(env: gym.Env) -> Backend:
+    """Returns the backend of an environment with a capsule: Numba for an ordinary class, which it has compiled."""
+    from qtab.envs.external.capsule import has_capsule
 
-
-def _fit_initial_q(config: Config, discretizer: Discretizer, n_actions: int) -> Any:
-    """Returns the initial Q table. For an algorithm with two tables, a single one is used twice, or with zeros."""
-    initial_q, count = config.initial_q, n_tables(config.algorithm)
-    if not isinstance(initial_q, np.ndarray):
-        return initial_q
-    if isinstance(discretizer, AssignedRows):
-        raise ValueError(
-            "initial_q must be a number or a range with max_rows, which assigns the rows anew, got a table"
-        )
-    one = (*discretizer.shape, n_actions)
-    shape = one if count == 1 else (count, *one)
-    if initial_q.shape == one and count > 1:
-        second = np.zeros(one) if config.algorithm in WITH_STATE_VALUES else initial_q
-        both = np.stack([initial_q, second])
-        both.flags.writeable = False
-        return both
-    if initial_q.shape not in (shape, (count, discretizer.n_rows, n_actions)):
-        raise ValueError(f"initial_q must have the table's shape {shape}, got {initial_q.shape}")
-    if config.algorithm in WITH_STATE_VALUES:
-        values = initial_q.reshape(count, -1, n_actions)[1]
-        if not np.isfinite(values).all() or (values != values[:, :1]).any():
-            raise ValueError("initial_q must have in its second table the value of a state in each of its columns")
-        return initial_q
-    missing = np.isneginf(initial_q.reshape(count, -1))
-    if (missing != missing[0]).any():
-        raise ValueError("initial_q must have -inf in both tables or in none, got it in one")
-    return initial_q
+    return "rust" if has_capsule(env) else "numba"
