@@ -211,7 +211,7 @@ class Config(WithOrigin):
 
     def __post_init__(self) -> None:
         """Checks the values and converts NumPy's numbers to Python's."""
-        vars(self).update(validated(vars(self)))
+        vars(self).update(validated(vars(self), DEFAULTS))
 
     def __eq__(self, other: object) -> bool:
         """Whether all settings are equal; arrays are compared byte by byte."""

@@ -7,7 +7,7 @@ import gymnasium as gym
 
 from qtab.config.options import FIXED, OPTIONS, fixed_settings, freed_settings, is_set
 from qtab.config.origin import Origin
-from qtab.config.validation import applicable
+from qtab.config.validation import mismatch
 
 _AVERAGES: Mapping[str, Any] = {"learning_rate": 1.0, "learning_rate_schedule": "visits"}
 """Averages of returns as values."""
@@ -45,6 +45,13 @@ _SCHEDULES: Mapping[str, tuple[str, tuple[str, ...]]] = {
 rate."""
 
 
+_WITH_RATE = {
+    rate: (schedule, *(name for name, option in OPTIONS.items() if option.choice == schedule))
+    for rate, (schedule, _) in _SCHEDULES.items()
+}
+"""For each rate that can fall, the setting that names its schedule, and the options of the schedule."""
+
+
 def implied_schedules(asked: Mapping[str, Any], fields: Mapping[str, Any]) -> dict[str, str]:
     """Returns the schedules of the rates that were requested without naming one; see :func:`implied_schedule`.
 
@@ -52,8 +59,12 @@ def implied_schedules(asked: Mapping[str, Any], fields: Mapping[str, Any]) -> di
         asked: The requested settings.
         fields: All settings.
     """
-    found = {name: implied_schedule(rate, asked, fields[name]) for rate, (name, _) in _SCHEDULES.items()}
-    return applicable({name: schedule for name, schedule in found.items() if schedule is not None}, fields)
+    found = {}
+    for rate, (name, _) in _SCHEDULES.items():
+        schedule = implied_schedule(rate, asked, fields[name])
+        if schedule is not None and mismatch(name, schedule, fields) is None:
+            found[name] = schedule
+    return found
 
 
 def implied_schedule(rate: str, asked: Mapping[str, Any], otherwise: str | None) -> str | None:
@@ -70,7 +81,7 @@ def implied_schedule(rate: str, asked: Mapping[str, Any], otherwise: str | None)
     name, falling = _SCHEDULES[rate]
     if is_set(asked.get(name)):
         return None
-    falls = any(is_set(asked.get(option)) for option in falling)
+    falls = any(map(is_set, map(asked.get, falling)))
     if is_set(asked.get(rate)):
         return "linear" if falls else "constant"
     return "linear" if falls and otherwise in (None, "constant") else None
@@ -81,12 +92,12 @@ def without_rates(start: Mapping[str, Any], asked: Mapping[str, Any]) -> dict[st
 
     The schedule of a preset belongs to its rate: a requested rate does not fall because the preset's does.
     """
-    replaced = tuple(rate for rate in _SCHEDULES if is_set(asked.get(rate)))
-    return {name: value for name, value in start.items() if not any(_belongs(name, rate) for rate in replaced)}
-
-
-def _belongs(name: str, rate: str) -> bool:
-    return name == _SCHEDULES[rate][0] or (name in OPTIONS and OPTIONS[name].choice == _SCHEDULES[rate][0])
+    left = dict(start)
+    for rate, names in _WITH_RATE.items():
+        if is_set(asked.get(rate)):
+            for name in names:
+                left.pop(name, None)
+    return left
 
 
 def with_followers(

@@ -86,19 +86,6 @@ def over(base: Base, settings: Mapping[str, Any]) -> dict[str, Any]:
     return {**base, **settings}
 
 
-def merge_layers(*layers: Mapping[str, Any]) -> dict[str, Any]:
-    """Returns the requested settings, with later layers over earlier ones. Their values are not checked.
-
-    Raises:
-        TypeError: for an unknown setting.
-    """
-    asked: dict[str, Any] = {}
-    for layer in layers:
-        check_names(layer, DEFAULTS)
-        asked.update(layer)
-    return asked
-
-
 def config_of(env: str, asked: Mapping[str, Any]) -> Config:
     """Returns the config of an environment: the requested settings over those of its preset.
 
@@ -106,7 +93,7 @@ def config_of(env: str, asked: Mapping[str, Any]) -> Config:
     algorithm brings its own defaults.
 
     Raises:
-        TypeError: for a setting of the wrong type.
+        TypeError: for an unknown setting, or one of the wrong type.
         ValueError: for a setting out of range, or an unknown preset.
     """
     name = asked.get("preset")
@@ -148,4 +135,7 @@ def merge(env: str, *layers: Mapping[str, Any]) -> Config:
         TypeError: for an unknown setting, or one of the wrong type.
         ValueError: for a setting out of range, or an unknown preset.
     """
-    return config_of(env, merge_layers(*layers))
+    asked: dict[str, Any] = {}
+    for layer in layers:
+        asked.update(layer)
+    return config_of(env, asked)

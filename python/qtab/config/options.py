@@ -234,8 +234,8 @@ SETTINGS: Mapping[str, Setting] = {
     ),
     "bins": Option(check.counts(1, MAX_BINS), "discretizer", ("bins",), (10,), other_names="n_bins num_bins buckets"),
     "edges": Option(check.edges, "discretizer", ("edges",), None),
-    "low": Option(check.each(checks.finite), "discretizer", ("bins", "tiles"), None),
-    "high": Option(check.each(checks.finite), "discretizer", ("bins", "tiles"), None),
+    "low": Option(check.each, "discretizer", ("bins", "tiles"), None),
+    "high": Option(check.each, "discretizer", ("bins", "tiles"), None),
     "actions": Setting(check.actions, other_names="n_actions num_actions", may_be_none=True),
 }
 """Every setting except ``discretizer``, whose check also needs its options; see ``keyed_discretizers.py``."""

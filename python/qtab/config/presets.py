@@ -191,18 +191,14 @@ def presets(env: str) -> Mapping[str, SharedSettings]:
     """
     if not isinstance(env, str):
         raise TypeError(f"env must be an environment id, got {shown(env)}")
-    known = _presets(env)
+    known = _PRESETS.get(gymnasium_id(env), {})
     if not known:
         try:
-            known = _presets(spec_of(env).id)
+            known = _PRESETS.get(gymnasium_id(spec_of(env).id), {})
         except (gym.error.Error, ModuleNotFoundError):
             suggestion = did_you_mean(env, _PRESETS)
             raise ValueError(f"env must be a registered environment id, got {shown(env)}{suggestion}") from None
     return MappingProxyType(deepcopy(dict(known)))
-
-
-def _presets(env: str) -> Mapping[str, SharedSettings]:
-    return _PRESETS.get(gymnasium_id(env), {})
 
 
 def preset(env: str, name: str | None) -> tuple[str | None, Mapping[str, Any]]:
@@ -211,7 +207,7 @@ def preset(env: str, name: str | None) -> tuple[str | None, Mapping[str, Any]]:
     Raises:
         ValueError: if there is none of that name.
     """
-    known = _presets(env)
+    known = _PRESETS.get(gymnasium_id(env), {})
     if name is None:
         return next(iter(known.items())) if known else (None, {})
     if name not in known:

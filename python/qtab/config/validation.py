@@ -32,20 +32,6 @@ _CHECKED = (
 """The settings, other than options, some of whose values exclude each other."""
 
 
-def check_options(fields: Mapping[str, Any]) -> None:
-    """Rejects options that do not apply to the choices made, and choices that are incompatible.
-
-    Raises:
-        ValueError: names the option, the choices it applies to, and the choice made.
-    """
-    for name in OPTIONS:
-        if is_set(fields[name]) and (reason := mismatch(name, fields[name], fields)):
-            raise ValueError(reason)
-    for name in _CHECKED:
-        if reason := mismatch(name, fields[name], fields):
-            raise ValueError(reason)
-
-
 def mismatch(name: str, value: Any, fields: Mapping[str, Any]) -> str | None:
     """Returns why a value of a setting is incompatible with the other ``fields``; None if it is compatible."""
     if name in OPTIONS:
@@ -220,8 +206,12 @@ def _of_key(name: str, given: Any) -> dict[str, Any]:
 LARGEST_MT19937_SEED = 2**32 - 1
 
 
-def validated(fields: Mapping[str, Any]) -> dict[str, Any]:
+def validated(fields: Mapping[str, Any], defaults: Mapping[str, Any]) -> dict[str, Any]:
     """Returns the checked fields of a config. None stays None if it means "not given".
+
+    Args:
+        fields: The fields.
+        defaults: The defaults of the fields, which are valid.
 
     Raises:
         TypeError: for a value of the wrong type.
@@ -231,10 +221,13 @@ def validated(fields: Mapping[str, Any]) -> dict[str, Any]:
     if fields["seed"] is not None and fields["bit_generator"] == "MT19937":
         checks.integer("seed", fields["seed"], least=0, most=LARGEST_MT19937_SEED)
     for name, setting in SETTINGS.items():
-        if fields[name] is not None or not setting.may_be_none:
-            checked[name] = setting.check(name, fields[name])
+        value = fields[name]
+        if value is not defaults[name] and (value is not None or not setting.may_be_none):
+            checked[name] = setting.check(name, value)
     checked["discretizer"] = checked_discretizer("discretizer", fields["discretizer"])
-    check_options(checked)
+    for name in (*OPTIONS, *_CHECKED):
+        if (name in _CHECKED or is_set(checked[name])) and (reason := mismatch(name, checked[name], checked)):
+            raise ValueError(reason)
     missing = isinstance(checked["initial_q"], np.ndarray) and np.isneginf(checked["initial_q"]).any()
     if missing and uses_tiles(checked["discretizer"]):
         raise ValueError(other_choice("discretizer", "tiles", ("tiles",), "for an initial_q that contains -inf"))
@@ -245,16 +238,12 @@ def validated(fields: Mapping[str, Any]) -> dict[str, Any]:
         checks.real("learning_rate", checked["learning_rate"], 0, most_rate)
     if checked["value_learning_rate"] is not None:
         checks.real("value_learning_rate", checked["value_learning_rate"], 0, most_rate)
-    _at_most(checked, "min_epsilon", "epsilon", OPTIONS["epsilon"].default)
-    _at_most(checked, "min_learning_rate", "learning_rate", None)
+    for name, limit in (("min_epsilon", "epsilon"), ("min_learning_rate", "learning_rate")):
+        most = OPTIONS["epsilon"].default if checked[limit] is None else checked[limit]
+        if checked[name] is not None and checked[name] > most:
+            raise ValueError(f"{name} must lie in [0, {limit} = {most:g}], got {shown(checked[name])}")
     for name in ("epsilon_warm_up", "learning_rate_warm_up"):
         if checked[name] is not None and checked[name] >= checked["episodes"]:
             raise ValueError(f"{name} must be less than episodes = {checked['episodes']}, got {shown(checked[name])}")
     check_limits(checked["low"], checked["high"])
     return checked
-
-
-def _at_most(fields: Mapping[str, Any], name: str, limit: str, default: float | None) -> None:
-    most = default if fields[limit] is None else fields[limit]
-    if fields[name] is not None and fields[name] > most:
-        raise ValueError(f"{name} must lie in [0, {limit} = {most:g}], got {shown(fields[name])}")

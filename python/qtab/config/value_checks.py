@@ -6,6 +6,7 @@ It raises TypeError for a value of the wrong type, and ValueError for one that i
 
 import math
 from collections.abc import Callable, Mapping
+from functools import partial
 from itertools import pairwise
 from typing import Any, TypeAlias
 
@@ -30,7 +31,7 @@ def text(name: str, value: Any) -> str:
 
 def real(low: float, high: float) -> Check:
     """Returns the check of a number in [``low``, ``high``]."""
-    return lambda name, value: checks.real(name, value, low, high)
+    return partial(checks.real, low=low, high=high)
 
 
 def above_zero(name: str, value: Any) -> float:
@@ -51,12 +52,11 @@ def not_negative(name: str, value: Any) -> float:
 
 def integer(least: int, most: int | None = None) -> Check:
     """Returns the check of an integer in [``least``, ``most``]."""
-    return lambda name, value: checks.integer(name, value, least, most)
+    return partial(checks.integer, least=least, most=most)
 
 
-def count(name: str, value: Any) -> int:
-    """Returns a number of episodes or steps: at least 1."""
-    return checks.count(name, value, least=1)
+count: Check = partial(checks.count, least=1)
+"""Returns a number of episodes or steps: at least 1."""
 
 
 def choice(name: str, value: Any) -> str:
@@ -71,47 +71,43 @@ def keywords(name: str, value: Any) -> dict[str, Any]:
     return dict(value)
 
 
-def each(check: Check) -> Check:
-    """Returns the check of a number for each component of the observation."""
-
-    def checked(name: str, value: Any) -> tuple[Any, ...]:
-        if not checks.is_sequence(value):
-            raise TypeError(f"{name} must hold a number for each component of the observation, got {shown(value)}")
-        return tuple(check(name, number) for number in value)
-
-    return checked
+def each(name: str, value: Any, check: Check = checks.finite) -> tuple[Any, ...]:
+    """Returns a number for each component of the observation, each of them checked."""
+    if not checks.is_sequence(value):
+        raise TypeError(f"{name} must hold a number for each component of the observation, got {shown(value)}")
+    return tuple(map(partial(check, name), value))
 
 
 def scale(name: str, value: Any) -> tuple[float, ...]:
     """Returns a positive number for each component of the observation."""
-    numbers: tuple[float, ...] = each(checks.finite)(name, value)
-    if any(number <= 0 for number in numbers):
+    numbers = each(name, value)
+    if min(numbers, default=1.0) <= 0:
         raise ValueError(f"{name} must hold positive numbers, got {shown(value)}")
     return numbers
 
 
 def counts(least: int, most: int) -> Check:
     """Returns the check of an integer for each component, or of a single one for all."""
+    return partial(_counts, check=integer(least, most))
 
-    def checked(name: str, value: Any) -> tuple[int, ...]:
-        numbers: tuple[int, ...] = each(integer(least, most))(name, value if hasattr(value, "__iter__") else (value,))
-        if not numbers:
-            fitting = (
-                "the number of cells along each axis of the table, such as (19, 15)"
-                if name == "shape"
-                else "a number for each component of the observation, or one for all"
-            )
-            raise ValueError(f"{name} must hold {fitting}, got ()")
-        return numbers
 
-    return checked
+def _counts(name: str, value: Any, check: Check) -> tuple[int, ...]:
+    numbers = each(name, value if hasattr(value, "__iter__") else (value,), check)
+    if not numbers:
+        fitting = (
+            "the number of cells along each axis of the table, such as (19, 15)"
+            if name == "shape"
+            else "a number for each component of the observation, or one for all"
+        )
+        raise ValueError(f"{name} must hold {fitting}, got ()")
+    return numbers
 
 
 def edges(name: str, value: Any) -> tuple[tuple[float, ...], ...]:
     """Returns ascending numbers for each component of the observation."""
     if not checks.is_sequence(value):
         raise TypeError(f"{name} must hold a row of numbers for each component of the observation, got {shown(value)}")
-    rows = tuple(each(checks.finite)(name, row) for row in value)
+    rows = tuple(each(name, row) for row in value)
     if any(left >= right for row in rows for left, right in pairwise(row)):
         raise ValueError(f"{name} must hold rows of ascending numbers, got {shown(value)}")
     return rows

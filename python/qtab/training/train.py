@@ -18,6 +18,7 @@ from qtab._utils.progress import ProgressBar
 from qtab._utils.versions import versions
 from qtab.config import Config
 from qtab.config.help import with_settings
+from qtab.config.merge import collect
 from qtab.config.settings import Settings
 from qtab.results.recording import SnapshotCollector, recordings_of, snapshot_episodes
 from qtab.results.run import Run
@@ -26,7 +27,6 @@ from qtab.training.callbacks import CALLBACK_EVERY, CallbackList, Callbacks, Tra
 from qtab.training.setup.environment import PythonEnvironment
 from qtab.training.setup.resolve import resolve
 from qtab.training.setup.resolved_run import ResolvedRun, log_default_limit, log_python_stepping, masks_of
-from qtab.training.setup.run_env import collect_for, resolve_over
 from qtab.training.setup.run_memory import check_run_memory, tables_shape
 
 _LOGGER = logging.getLogger("qtab")
@@ -95,17 +95,23 @@ def train(
             so far as ``.run``.
     """
     options = TrainingOptions(callback, callback_every, record, visits, snapshots, progress, memory_limit)
-    env, base = collect_for(env, train, config, settings)
+    env, base = collect(train, env, config, settings)
     earlier = None
-    if resume is None:
-        resolved, _, _ = resolve_over(env, base, settings, resolve)
-    else:
+    if isinstance(base, Config):
+        from qtab.training.setup.run_env import base_for, resolve_over
+
+        base = base_for(env, config, base)
+    if resume is not None:
         from qtab.training.earlier_run import resolve_resumed
 
         earlier, options, again = resolve_resumed(resume, env, base, settings, options)
         if again is None:
             return earlier
         resolved = again
+    elif isinstance(base, Config):
+        resolved, _, _ = resolve_over(env, base, settings, resolve)
+    else:
+        resolved = resolve(env, base, settings)
     log_default_limit(resolved)
     if progress is not False:
         log_python_stepping(resolved)

@@ -15,7 +15,7 @@ from qtab._utils.shown import shown
 from qtab.config import DEFAULTS, Config
 from qtab.config.choices import IN_PYTHON, INSISTING, Backend
 from qtab.config.config import replace_checked
-from qtab.config.merge import config_of, merge_layers, naming_preset
+from qtab.config.merge import config_of, naming_preset
 from qtab.config.origin import Origin, copied
 from qtab.config.presets import preset
 from qtab.config.validation import defaults
@@ -102,15 +102,18 @@ def resolve(
         TypeError: if ``env`` has the wrong type, or a setting is unknown or has the wrong type.
         ValueError: if a setting is out of range, or the backend or a space does not fit.
     """
+    asked: dict[str, Any] = {}
+    for layer in layers:
+        asked.update(layer)
     with ExitStack() as on_exit:
         if isinstance(env, partial):
             env, owns_env = env(), True
         if isinstance(env, gym.Env):
             if owns_env:
                 on_exit.callback(env.close)
-            request = _from_env(env, layers)
+            request = _from_env(env, asked)
         elif isinstance(env, str | EnvSpec):
-            request = _from_spec(env, layers)
+            request = _from_spec(env, asked)
             owns_env = True
             on_exit.callback(request.env.close)
         else:
@@ -121,12 +124,12 @@ def resolve(
     return run
 
 
-def _from_spec(env: str | EnvSpec, layers: tuple[Mapping[str, Any], ...]) -> _Request:
+def _from_spec(env: str | EnvSpec, asked: Mapping[str, Any]) -> _Request:
     # The id keeps its package, so that the config can make the environment anywhere.
     if isinstance(env, str):
         env = versioned(env)
     name, spec = (env.id, env) if isinstance(env, EnvSpec) else (env, spec_of(env))
-    asked = merge_layers({"env_kwargs": dict(spec.kwargs)}, *layers)
+    asked = {"env_kwargs": dict(spec.kwargs), **asked}
     config = config_of(name, asked)
     entry: InRust | None = None if config.backend == "numba" else entry_for_spec(spec, config.env_kwargs)
     known, python_reason = None, None
@@ -185,13 +188,12 @@ def _make(spec: EnvSpec, config: Config) -> gym.Env:
     return make_env(spec, config.env_kwargs, **limit)
 
 
-def _from_env(env: gym.Env, layers: tuple[Mapping[str, Any], ...]) -> _Request:
+def _from_env(env: gym.Env, asked: Mapping[str, Any]) -> _Request:
     name = env.spec.id if env.spec is not None else type(env.unwrapped).__name__
     kwargs = dict(env.spec.kwargs) if env.spec is not None else {}
-    asked = merge_layers(*layers)
     if asked.get("env_kwargs"):
         raise ValueError(f"env_kwargs must be left out with an environment object, got {shown(asked['env_kwargs'])}")
-    asked["env_kwargs"] = kwargs
+    asked = {**asked, "env_kwargs": kwargs}
     config = config_of(name, asked)
     entry, python_reason = _match(env, config, is_made=False)
     config, limit = _within_limit(config, time_limit(env))

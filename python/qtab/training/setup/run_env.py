@@ -14,7 +14,7 @@ from qtab._utils import checks
 from qtab._utils.shown import shown
 from qtab.config import Config
 from qtab.config.config import replace_checked
-from qtab.config.merge import Base, collect, over
+from qtab.config.merge import Base, over
 from qtab.config.options import is_set
 from qtab.config.origin import copied, trained_on
 from qtab.envs.actions import choose_actions
@@ -146,16 +146,20 @@ def _check_plain(config: Config, description: EnvironmentDescription) -> None:
         raise cannot_be_made(description, f"other env_kwargs are given, and {'; '.join(changed)}")
 
 
-def collect_for(
-    env: Any, function: Callable[..., Any], config: Base | None, settings: Mapping[str, Any]
-) -> tuple[Any, Base]:
-    """Calls :func:`qtab.config.merge.collect`; keeps derived settings if an object is the config's environment."""
-    given, base = collect(function, env, config, settings)
+def base_for(env: Any, config: Any, base: Config) -> Config:
+    """Returns the base config of a call: the config as given if its environment is the object of the call.
+
+    Args:
+        env: The environment of the call.
+        config: The config of the call.
+        base: The base that :func:`qtab.config.merge.collect` returned, without the settings derived from another
+            environment.
+    """
     if isinstance(env, gym.Env) and isinstance(config, Config):
         description = trained_on(config)
         if description is not None and not differences(description, describe(env)):
-            return env, replace_checked(config, env_kwargs={})
-    return given, base
+            return replace_checked(config, env_kwargs={})
+    return base
 
 
 def resolve_over(
