@@ -52,6 +52,7 @@
 //! ```
 
 #![forbid(unsafe_code)]
+#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
 pub mod batch;
 mod build_error;

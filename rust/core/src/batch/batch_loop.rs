@@ -1,7 +1,5 @@
 //! The training loop over the lanes of a batch.
 
-#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
-
 use super::episode_lanes::EpisodeLanes;
 use super::learning_steps::Shared;
 use super::{BatchRule, NextValue, SimdTrainer};

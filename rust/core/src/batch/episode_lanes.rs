@@ -1,7 +1,5 @@
 //! The unfinished episodes of a batch, field by field.
 
-#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
-
 use super::SimdTrainer;
 use super::lane_values::argmax_in_lanes;
 use super::row_buffers::RowBuffers;

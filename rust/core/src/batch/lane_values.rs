@@ -1,7 +1,5 @@
 //! Functions of the action values in the lanes of a batch.
 
-#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
-
 use crate::features::LaneRows;
 use crate::q_table::sum_rows;
 use crate::simd::{F64s, Simd, U64s, map};

@@ -1,7 +1,5 @@
 //! The steps of a batch between two events: the end of an episode or of the budget.
 
-#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
-
 use super::episode_lanes::EpisodeLanes;
 use super::lane_values::{expected_values, largest, values_of, values_of_rows};
 use super::updates::{update_rows, update_single_rows};

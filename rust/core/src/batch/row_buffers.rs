@@ -1,7 +1,5 @@
 //! The active rows of the lanes before and after a step.
 
-#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
-
 /// The active rows of the current states and of the next ones. The two buffers swap roles instead of being copied,
 /// because a processor stalls if it copies numbers in vector registers right after they were written in smaller parts.
 pub(super) struct RowBuffers<R, const K: usize> {

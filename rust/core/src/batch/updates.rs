@@ -1,7 +1,5 @@
 //! The updates of the tables of a batch, and of the values of the next rows.
 
-#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
-
 use crate::features::LaneRows;
 use crate::q_table::sum_values;
 use crate::simd::{F64s, Simd, U64s, map};

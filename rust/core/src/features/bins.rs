@@ -59,7 +59,6 @@ impl Edges {
     }
 
     /// [`bin`](Self::bin) of the values in each lane.
-    #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
     #[inline(always)]
     fn bin_in_lanes<S: Simd, const K: usize>(&self, simd: S, values: F64s<S, K>) -> U64s<S, K> {
         if self.0.len() > LINEAR_SCAN_MAX {
@@ -117,7 +116,6 @@ impl<T: Float, A: AsRef<[Edges]>, O: AsRef<[T]> + ?Sized> Features<O> for Bins<T
 impl<const M: usize> BatchFeatures<M> for Bins<f32, [Edges; M]> {
     type ActiveInLane = usize;
 
-    #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
     #[inline(always)]
     fn write_active_rows_batch<S: Simd, const K: usize>(
         &self,

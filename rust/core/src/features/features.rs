@@ -34,7 +34,6 @@ pub trait Features<O: ?Sized> {
     ///
     /// # Errors
     /// As for `active_rows`.
-    #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
     #[inline(always)]
     fn write_active_rows(&self, observation: &O, active: &mut Self::Active) -> Result<(), OutOfBounds> {
         *active = self.active_rows(observation)?;
@@ -64,13 +63,11 @@ impl<O: ?Sized, F: Features<O>> Features<O> for &F {
 
     const USES_VECTORS: bool = F::USES_VECTORS;
 
-    #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
     #[inline(always)]
     fn active_rows(&self, observation: &O) -> Result<F::Active, OutOfBounds> {
         F::active_rows(self, observation)
     }
 
-    #[expect(clippy::inline_always, reason = "as for `active_rows`")]
     #[inline(always)]
     fn write_active_rows(&self, observation: &O, active: &mut F::Active) -> Result<(), OutOfBounds> {
         F::write_active_rows(self, observation, active)

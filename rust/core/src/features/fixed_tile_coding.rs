@@ -1,7 +1,5 @@
 //! Tile coding compiled for the number of tilings and of components.
 
-#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
-
 use std::array::TryFromSliceError;
 
 use super::tile_coding::TiledAxis;

@@ -1,7 +1,5 @@
 //! The active rows of an observation in the representation of a batch.
 
-#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
-
 use super::{ActiveRows, FixedTiles};
 
 /// The active rows of one lane of a batch. A single row is stored in 64 bits, like every other number of a lane.

@@ -116,7 +116,6 @@ impl<T: Float, A: AsRef<[Axis<T>]>, O: AsRef<[T]> + ?Sized> Features<O> for Roun
 impl<const M: usize> BatchFeatures<M> for Rounding<f32, [Axis<f32>; M]> {
     type ActiveInLane = usize;
 
-    #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
     #[inline(always)]
     fn write_active_rows_batch<S: Simd, const K: usize>(
         &self,

@@ -18,8 +18,6 @@
 //!
 //! The fast sums `1 - half` and `x + t` lose nothing (T. Dekker).
 
-#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
-
 use std::sync::OnceLock;
 
 use crate::simd::{F64s, Portable, Simd};

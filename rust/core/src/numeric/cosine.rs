@@ -29,8 +29,6 @@
 //!
 //! Together they are below 1/8.
 
-#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
-
 use std::sync::OnceLock;
 
 use crate::simd::{F64s, Portable, Simd};

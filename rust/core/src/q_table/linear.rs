@@ -154,7 +154,6 @@ impl<const N: usize> QTable<N> {
 }
 
 /// The sums of the values of all actions, in registers.
-#[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 #[inline(always)]
 pub(crate) fn sum_rows<const A: usize>(mut rows: impl Iterator<Item = [f64; A]>) -> [f64; A] {
     let mut sums = rows.next().unwrap_or([0.0; A]);
@@ -167,7 +166,6 @@ pub(crate) fn sum_rows<const A: usize>(mut rows: impl Iterator<Item = [f64; A]>)
 }
 
 /// The sum of the values of one action.
-#[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 #[inline(always)]
 pub(crate) fn sum_values(mut values: impl Iterator<Item = f64>) -> f64 {
     let first = values.next().unwrap_or(0.0);

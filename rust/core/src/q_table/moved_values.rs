@@ -1,7 +1,5 @@
 //! Action values while a learner stores some of the values after the rows.
 
-#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
-
 use super::{QTable, sum_rows, sum_values};
 
 impl<const N: usize> QTable<N> {

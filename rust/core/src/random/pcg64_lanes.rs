@@ -1,7 +1,5 @@
 //! Several PCG64 generators in SIMD lanes, for ε-greedy decisions without a branch.
 
-#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
-
 use super::pcg64::{MULTIPLIER, Pcg64Engine};
 use super::{Pcg64, Rng, TWO_POW_53};
 use crate::numeric::cold_path;

@@ -1,7 +1,5 @@
 //! Lanes in pairs of AVX2 registers.
 
-#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
-
 use std::arch::x86_64::{__m128, __m256d, __m256i, _CMP_EQ_OQ, _CMP_LE_OQ, _CMP_LT_OQ};
 
 use pulp::cast;

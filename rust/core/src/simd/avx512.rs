@@ -1,7 +1,5 @@
 //! Lanes in single AVX-512 registers.
 
-#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
-
 use std::arch::x86_64::{__m256, __m256d, __m512d, __m512i};
 
 use pulp::cast;

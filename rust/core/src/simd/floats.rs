@@ -1,7 +1,5 @@
 //! Floating-point numbers in lanes.
 
-#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
-
 use std::ops::{Add, Div, Mul, Sub};
 
 use super::lane_type::{InLanes, lane_type};

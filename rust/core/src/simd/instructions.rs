@@ -1,8 +1,6 @@
 //! The trait of instruction sets.
 
 #![expect(missing_docs, reason = "the methods are named after their operations")]
-#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
-
 use std::fmt::Debug;
 
 use super::LANES;

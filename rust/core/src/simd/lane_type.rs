@@ -1,7 +1,5 @@
 //! The common parts of the lane types.
 
-#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
-
 /// An operand in lanes: `L`, or a number that is the same in all lanes.
 pub(crate) trait InLanes<S, L> {
     fn in_lanes(self, simd: S) -> L;

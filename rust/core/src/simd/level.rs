@@ -135,7 +135,6 @@ struct Dispatched<C, S>(C, S);
 impl<C: SimdCode, S: Simd> pulp::NullaryFnOnce for Dispatched<C, S> {
     type Output = C::Output;
 
-    #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
     #[inline(always)]
     fn call(self) -> C::Output {
         let Self(code, simd) = self;

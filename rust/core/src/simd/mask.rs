@@ -1,7 +1,5 @@
 //! Truth values in lanes.
 
-#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
-
 use std::ops::{BitAnd, BitOr, BitXor, Not};
 
 use super::lane_type::{InLanes, lane_type};

@@ -1,7 +1,5 @@
 //! Lanes as arrays, which the compiler may put into registers.
 
-#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
-
 use super::Simd;
 use super::operations::operations;
 

@@ -1,7 +1,5 @@
 //! Conversions between arrays of up to [`LANES`] numbers and registers.
 
-#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
-
 use std::arch::x86_64::{__m128d, __m256d};
 
 use pulp::cast;

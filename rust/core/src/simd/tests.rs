@@ -57,7 +57,6 @@ impl<const K: usize> SimdCode for Operands<K> {
     /// a is less than its b; and a bit for each lane where it is.
     type Output = ([Vec<u64>; K], Option<[f64; K]>, bool, u8);
 
-    #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> Self::Output {
         let (a, b) = (F64s::new(simd, self.a), F64s::new(simd, self.b));
@@ -140,7 +139,6 @@ impl<const N: usize, const K: usize> SimdCode for Columns<'_, N, K> {
 
     type Output = [[f64; K]; N];
 
-    #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> [[f64; K]; N] {
         F64s::columns(simd, self.1.map(|row| &self.0[row])).map(F64s::to_array)
@@ -163,7 +161,6 @@ impl SimdCode for Setting {
 
     type Output = ();
 
-    #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         for lane in 0..LANES {

@@ -1,7 +1,5 @@
 //! Any task behind one type.
 
-#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
-
 use super::{NextKind, Task, Transition};
 use crate::checkpoint::{Checkpoint, CheckpointError, RunIdentity};
 use crate::features::ActiveRows;

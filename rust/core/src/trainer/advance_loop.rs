@@ -1,7 +1,5 @@
 //! The training loop, compiled for wide vector registers too if the learner or the task benefits from them.
 
-#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
-
 use super::{Budget, Trainer};
 use crate::learners::Learner;
 use crate::random::Rng;

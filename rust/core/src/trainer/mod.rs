@@ -172,7 +172,6 @@ impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> Trainer<T, L, R> {
     /// within 2 %.
     const WRITES_ROWS: bool = size_of::<T::Active>() > IN_REGISTERS;
 
-    #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
     #[inline(always)]
     fn advance_with(&mut self, rng: &mut R, budget: Budget) -> Result<(), T::Error> {
         let mut work = i64::try_from(budget.work).unwrap_or(i64::MAX);

@@ -1,7 +1,5 @@
 //! States that are stepped in SIMD lanes.
 
-#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
-
 use super::states::{States, StepOutputs};
 use crate::StopFlag;
 use crate::envs::{Env, SimdEnv};

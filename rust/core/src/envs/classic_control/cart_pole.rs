@@ -133,7 +133,6 @@ impl CartPole {
     /// One step of `K` cart-poles, in place, given the cosine and sine of their angles. Returns whether each next state
     /// is terminal.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
     fn transition<S: Simd, const K: usize>(
         &self,
         simd: S,
@@ -214,7 +213,6 @@ impl SimdEnv<4> for CartPole {
         true
     }
 
-    #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
     #[inline(always)]
     fn step_batch<S: Simd, const K: usize>(
         &self,

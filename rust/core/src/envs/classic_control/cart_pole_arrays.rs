@@ -41,7 +41,6 @@ impl CartPole {
 }
 
 /// The lanes in which the magnitude of a component exceeds the limit or is NaN.
-#[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 #[inline(always)]
 fn out_of_range<S: Simd, const K: usize>(fields: &[F64s<S, K>; 4], limit: f64) -> Mask<S, K> {
     // NaN is not in the range.
@@ -66,7 +65,6 @@ impl SimdCode for ArrayChunks<'_> {
 
     type Output = bool;
 
-    #[expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> bool {
         let [x, x_dot, theta, theta_dot] = self.state.map(|field| field.as_chunks_mut::<LANES>().0);

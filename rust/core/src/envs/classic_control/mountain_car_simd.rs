@@ -1,7 +1,5 @@
 //! `MountainCar` in SIMD lanes: the operations of `MountainCar::transition` in the same order.
 
-#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
-
 use super::MountainCar;
 use super::mountain_car::{DIRECTIONS, REWARD};
 use crate::envs::SimdEnv;

@@ -1,8 +1,6 @@
 //! Transformations of the steps that a learner learns from: truncation as termination (F. Pardo et al., "Time limits in
 //! reinforcement learning", 2018), and rewards with a bonus.
 
-#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
-
 use super::{CountBonus, Learner};
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::delegate_learner;

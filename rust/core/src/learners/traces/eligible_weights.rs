@@ -1,7 +1,5 @@
 //! The weights whose traces are not zero, stored side by side so that learning is a pass over contiguous memory.
 
-#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
-
 use std::hint::select_unpredictable;
 
 use super::aligned_vec::{AlignedVec, MAX_PADDING, padding};

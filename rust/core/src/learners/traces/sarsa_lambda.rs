@@ -1,7 +1,5 @@
 //! Sarsa(λ) (G. Rummery and M. Niranjan, 1994; Sutton & Barto, the box in section 12.7).
 
-#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
-
 use super::{TraceKind, Traces};
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::learners::{Agent, UpdateRule, VALUES_PER_WORK};

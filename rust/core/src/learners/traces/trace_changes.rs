@@ -1,7 +1,5 @@
 //! The changes of traces by a visit to a state-action pair.
 
-#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
-
 use std::hint::select_unpredictable;
 
 use super::eligible_weights::EligibleWeights;

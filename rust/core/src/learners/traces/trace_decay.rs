@@ -1,7 +1,5 @@
 //! The updates of all eligible weights and the decay of their traces.
 
-#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
-
 use super::eligible_weights::EligibleWeights;
 use super::trace_pass::{BLOCK, LONG_PASS, TracePass};
 use crate::q_table::QTable;

@@ -1,7 +1,5 @@
 //! The pass over eligible weights and their traces.
 
-#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
-
 use crate::simd::{F64s, LANES, Simd, SimdCode};
 
 /// The number of traces in a block of a pass. The number of traces is hard for the processor to predict, but the number

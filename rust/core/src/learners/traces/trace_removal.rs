@@ -1,7 +1,5 @@
 //! The removal of the weights whose traces have become 0.
 
-#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
-
 use super::eligible_weights::EligibleWeights;
 use super::trace_pass::BLOCK;
 use crate::simd::{F64s, LANES, Simd, SimdCode};

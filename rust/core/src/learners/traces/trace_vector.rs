@@ -1,8 +1,6 @@
 //! Eligibility traces, stored sparsely: a step takes time in proportion to the number of active traces, not to the size
 //! of the table.
 
-#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
-
 use super::eligible_weights::EligibleWeights;
 use crate::StopFlag;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};

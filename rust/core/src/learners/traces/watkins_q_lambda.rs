@@ -1,7 +1,5 @@
 //! Watkins's Q(λ) (C. Watkins, 1989; Sutton & Barto, section 12.10, and the box in section 7.6 of the first edition).
 
-#![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
-
 use super::{TraceKind, Traces};
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::learners::{Agent, UpdateRule, VALUES_PER_WORK, masked_values};
