@@ -9,5 +9,6 @@ pub mod toy_text;
 pub mod wrappers;
 
 pub use env::{Env, Step, TransitionProbability};
+use parameters::parameters;
 pub use parameters::{Flag, Parameters};
 pub use simd_env::SimdEnv;

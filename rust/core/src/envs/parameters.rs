@@ -24,3 +24,22 @@ pub trait Parameters: Default {
         None
     }
 }
+
+/// Defines the numeric parameters of [`Parameters`]: fields of these names, or a name for each field.
+macro_rules! parameters {
+    ($($field:ident),+) => {
+        parameters!($(stringify!($field) => $field),+);
+    };
+    ($($name:expr => $field:ident),+ $(,)?) => {
+        const NAMES: &'static [&'static str] = &[$($name),+];
+
+        fn parameter(&mut self, name: &str) -> Option<&mut f64> {
+            $(if name == $name {
+                return Some(&mut self.$field);
+            })+
+            None
+        }
+    };
+}
+
+pub(in crate::envs) use parameters;

@@ -2,9 +2,9 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
-use crate::envs::{Env, Flag, Parameters, Step};
+use crate::envs::{Env, Flag, Parameters, Step, parameters};
 use crate::numeric::squared;
+use crate::persist_struct;
 use crate::random::Rng;
 
 /// The bounds of each component of the initial state, which is uniform.
@@ -66,35 +66,20 @@ impl Default for Acrobot {
 }
 
 impl Parameters for Acrobot {
-    const NAMES: &'static [&'static str] = &[
-        "dt",
-        "LINK_LENGTH_1",
-        "LINK_MASS_1",
-        "LINK_MASS_2",
-        "LINK_COM_POS_1",
-        "LINK_COM_POS_2",
-        "LINK_MOI",
-        "MAX_VEL_1",
-        "MAX_VEL_2",
-        "torque_noise_max",
-    ];
-    const FLAGS: &'static [Flag] = &[Flag { name: "book_or_nips", true_value: Some("nips") }];
+    parameters!(
+        "dt" => dt,
+        "LINK_LENGTH_1" => link_length_1,
+        "LINK_MASS_1" => link_mass_1,
+        "LINK_MASS_2" => link_mass_2,
+        "LINK_COM_POS_1" => link_com_pos_1,
+        "LINK_COM_POS_2" => link_com_pos_2,
+        "LINK_MOI" => link_moi,
+        "MAX_VEL_1" => max_vel_1,
+        "MAX_VEL_2" => max_vel_2,
+        "torque_noise_max" => torque_noise_max,
+    );
 
-    fn parameter(&mut self, name: &str) -> Option<&mut f64> {
-        Some(match name {
-            "dt" => &mut self.dt,
-            "LINK_LENGTH_1" => &mut self.link_length_1,
-            "LINK_MASS_1" => &mut self.link_mass_1,
-            "LINK_MASS_2" => &mut self.link_mass_2,
-            "LINK_COM_POS_1" => &mut self.link_com_pos_1,
-            "LINK_COM_POS_2" => &mut self.link_com_pos_2,
-            "LINK_MOI" => &mut self.link_moi,
-            "MAX_VEL_1" => &mut self.max_vel_1,
-            "MAX_VEL_2" => &mut self.max_vel_2,
-            "torque_noise_max" => &mut self.torque_noise_max,
-            _ => return None,
-        })
-    }
+    const FLAGS: &'static [Flag] = &[Flag { name: "book_or_nips", true_value: Some("nips") }];
 
     fn flag(&mut self, name: &str) -> Option<&mut bool> {
         (name == "book_or_nips").then_some(&mut self.nips)
@@ -115,6 +100,8 @@ pub struct AcrobotState {
     /// Whether the state is float32, so that its sines and cosines are computed in float32.
     pub is_f32: bool,
 }
+
+persist_struct!(AcrobotState { theta1, theta2, dtheta1, dtheta2, is_f32 });
 
 impl From<[f64; 4]> for AcrobotState {
     fn from([theta1, theta2, dtheta1, dtheta2]: [f64; 4]) -> Self {
@@ -245,12 +232,6 @@ fn wrap(mut angle: f64) -> f64 {
 fn bound(velocity: f64, max: f64) -> f64 {
     let raised = if -max > velocity { -max } else { velocity };
     if max < raised { max } else { raised }
-}
-
-impl Persist for AcrobotState {
-    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
-        (&mut self.theta1, &mut self.theta2, &mut self.dtheta1, &mut self.dtheta2, &mut self.is_f32).persist(checkpoint)
-    }
 }
 
 #[cfg(test)]

@@ -1,10 +1,10 @@
 //! `CartPole-v1`: balance a pole on a cart by pushing the cart left or right (A. Barto, R. Sutton and C. Anderson,
 //! 1983). Gymnasium's dynamics follow R. Florian, "Correct equations for the dynamics of the cart-pole system", 2005.
 
-use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::envs::simd_env::sealed::Sealed;
-use crate::envs::{Env, Flag, Parameters, SimdEnv, Step};
+use crate::envs::{Env, Flag, Parameters, SimdEnv, Step, parameters};
 use crate::numeric::cos_sin;
+use crate::persist_struct;
 use crate::random::Rng;
 use crate::simd::{F64s, Mask, Portable, Simd, U64s};
 
@@ -59,36 +59,22 @@ impl Default for CartPole {
 }
 
 impl Parameters for CartPole {
-    const NAMES: &'static [&'static str] = &[
-        "gravity",
-        "masspole",
-        "total_mass",
-        "length",
-        "polemass_length",
-        "force_mag",
-        "tau",
-        "theta_threshold_radians",
-        "x_threshold",
-    ];
+    parameters!(
+        gravity,
+        masspole,
+        total_mass,
+        length,
+        polemass_length,
+        force_mag,
+        tau,
+        theta_threshold_radians,
+        x_threshold
+    );
+
     const FLAGS: &'static [Flag] = &[
         Flag { name: "kinematics_integrator", true_value: Some("euler") },
         Flag { name: "_sutton_barto_reward", true_value: None },
     ];
-
-    fn parameter(&mut self, name: &str) -> Option<&mut f64> {
-        Some(match name {
-            "gravity" => &mut self.gravity,
-            "masspole" => &mut self.masspole,
-            "total_mass" => &mut self.total_mass,
-            "length" => &mut self.length,
-            "polemass_length" => &mut self.polemass_length,
-            "force_mag" => &mut self.force_mag,
-            "tau" => &mut self.tau,
-            "theta_threshold_radians" => &mut self.theta_threshold_radians,
-            "x_threshold" => &mut self.x_threshold,
-            _ => return None,
-        })
-    }
 
     fn flag(&mut self, name: &str) -> Option<&mut bool> {
         Some(match name {
@@ -111,6 +97,8 @@ pub struct CartPoleState {
     /// The angular velocity of the pole.
     pub theta_dot: f64,
 }
+
+persist_struct!(CartPoleState { x, x_dot, theta, theta_dot });
 
 impl From<[f64; 4]> for CartPoleState {
     fn from([x, x_dot, theta, theta_dot]: [f64; 4]) -> Self {
@@ -232,12 +220,6 @@ impl SimdEnv<4> for CartPole {
             (true, false) => 0.0,
             (true, true) => -1.0,
         }
-    }
-}
-
-impl Persist for CartPoleState {
-    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
-        (&mut self.x, &mut self.x_dot, &mut self.theta, &mut self.theta_dot).persist(checkpoint)
     }
 }
 

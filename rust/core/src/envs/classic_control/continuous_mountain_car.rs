@@ -1,8 +1,8 @@
 //! `MountainCarContinuous-v0`: the mountain car with a continuous force, whose square is subtracted from the reward.
 
-use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
-use crate::envs::{Env, Parameters, Step};
+use crate::envs::{Env, Parameters, Step, parameters};
 use crate::numeric::{Scalar, squared};
+use crate::persist_struct;
 use crate::random::Rng;
 
 /// The bounds of the initial position, which is uniform.
@@ -48,30 +48,7 @@ impl Default for ContinuousMountainCar {
 }
 
 impl Parameters for ContinuousMountainCar {
-    const NAMES: &'static [&'static str] = &[
-        "min_action",
-        "max_action",
-        "min_position",
-        "max_position",
-        "max_speed",
-        "goal_position",
-        "goal_velocity",
-        "power",
-    ];
-
-    fn parameter(&mut self, name: &str) -> Option<&mut f64> {
-        Some(match name {
-            "min_action" => &mut self.min_action,
-            "max_action" => &mut self.max_action,
-            "min_position" => &mut self.min_position,
-            "max_position" => &mut self.max_position,
-            "max_speed" => &mut self.max_speed,
-            "goal_position" => &mut self.goal_position,
-            "goal_velocity" => &mut self.goal_velocity,
-            "power" => &mut self.power,
-            _ => return None,
-        })
-    }
+    parameters!(min_action, max_action, min_position, max_position, max_speed, goal_position, goal_velocity, power);
 }
 
 /// Position and velocity: float64 after a reset and float32 after a step, as in Gymnasium.
@@ -82,6 +59,8 @@ pub struct ContinuousMountainCarState {
     /// The velocity, in position units per step.
     pub velocity: Scalar,
 }
+
+persist_struct!(ContinuousMountainCarState { position, velocity });
 
 impl From<[Scalar; 2]> for ContinuousMountainCarState {
     fn from([position, velocity]: [Scalar; 2]) -> Self {
@@ -168,12 +147,6 @@ impl Env for ContinuousMountainCar {
     #[inline]
     fn observe(&self, state: &Self::State) -> [f32; 2] {
         [state.position.into(), state.velocity.into()]
-    }
-}
-
-impl Persist for ContinuousMountainCarState {
-    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
-        (&mut self.position, &mut self.velocity).persist(checkpoint)
     }
 }
 

@@ -1,8 +1,8 @@
 //! `MountainCar-v0`: an underpowered car in a sinusoidal valley (A. W. Moore, 1990; Sutton & Barto, Example 10.1).
 
-use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
-use crate::envs::{Env, Parameters, Step};
+use crate::envs::{Env, Parameters, Step, parameters};
 use crate::numeric::cold_path;
+use crate::persist_struct;
 use crate::random::Rng;
 
 /// The bounds of the initial position, which is uniform.
@@ -50,21 +50,7 @@ impl Default for MountainCar {
 }
 
 impl Parameters for MountainCar {
-    const NAMES: &'static [&'static str] =
-        &["min_position", "max_position", "max_speed", "goal_position", "goal_velocity", "force", "gravity"];
-
-    fn parameter(&mut self, name: &str) -> Option<&mut f64> {
-        Some(match name {
-            "min_position" => &mut self.min_position,
-            "max_position" => &mut self.max_position,
-            "max_speed" => &mut self.max_speed,
-            "goal_position" => &mut self.goal_position,
-            "goal_velocity" => &mut self.goal_velocity,
-            "force" => &mut self.force,
-            "gravity" => &mut self.gravity,
-            _ => return None,
-        })
-    }
+    parameters!(min_position, max_position, max_speed, goal_position, goal_velocity, force, gravity);
 }
 
 /// Position and velocity, in float64 as in Gymnasium.
@@ -75,6 +61,8 @@ pub struct MountainCarState {
     /// The velocity, in position units per step.
     pub velocity: f64,
 }
+
+persist_struct!(MountainCarState { position, velocity });
 
 impl From<[f64; 2]> for MountainCarState {
     fn from([position, velocity]: [f64; 2]) -> Self {
@@ -158,12 +146,6 @@ fn clip_by_branches(value: f64, low: f64, high: f64) -> f64 {
         clipped = high;
     }
     clipped
-}
-
-impl Persist for MountainCarState {
-    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
-        (&mut self.position, &mut self.velocity).persist(checkpoint)
-    }
 }
 
 #[cfg(test)]

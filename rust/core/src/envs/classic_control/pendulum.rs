@@ -2,9 +2,9 @@
 
 use std::f64::consts::PI;
 
-use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
-use crate::envs::{Env, Parameters, Step};
+use crate::envs::{Env, Parameters, Step, parameters};
 use crate::numeric::{Scalar, clip, modulo, squared};
+use crate::persist_struct;
 use crate::random::Rng;
 
 /// The bounds of the initial angle and angular velocity: each is uniform between the bound and its negative.
@@ -34,19 +34,7 @@ impl Default for Pendulum {
 }
 
 impl Parameters for Pendulum {
-    const NAMES: &'static [&'static str] = &["max_speed", "max_torque", "dt", "g", "m", "l"];
-
-    fn parameter(&mut self, name: &str) -> Option<&mut f64> {
-        Some(match name {
-            "max_speed" => &mut self.max_speed,
-            "max_torque" => &mut self.max_torque,
-            "dt" => &mut self.dt,
-            "g" => &mut self.g,
-            "m" => &mut self.m,
-            "l" => &mut self.l,
-            _ => return None,
-        })
-    }
+    parameters!(max_speed, max_torque, dt, g, m, l);
 }
 
 /// Angle and angular velocity, in float64.
@@ -57,6 +45,8 @@ pub struct PendulumState {
     /// The angular velocity.
     pub theta_dot: f64,
 }
+
+persist_struct!(PendulumState { theta, theta_dot });
 
 impl From<[f64; 2]> for PendulumState {
     fn from([theta, theta_dot]: [f64; 2]) -> Self {
@@ -133,12 +123,6 @@ impl Env for Pendulum {
 #[inline]
 fn normalized(angle: f64) -> f64 {
     modulo(angle + PI, 2.0 * PI) - PI
-}
-
-impl Persist for PendulumState {
-    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
-        (&mut self.theta, &mut self.theta_dot).persist(checkpoint)
-    }
 }
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
 //! `Blackjack-v1`: get closer to 21 than the dealer without exceeding it (Sutton & Barto, Example 5.1).
 
 use super::hand::{Hand, TEN};
-use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::envs::{Env, Step};
+use crate::persist_struct;
 use crate::random::Rng;
 
 /// The values of an infinite deck: the ace, 2 to 10, and 10 for each of the face cards.
@@ -35,6 +35,8 @@ pub struct BlackjackState {
     /// The dealer's face-up card.
     pub shown: u32,
 }
+
+persist_struct!(BlackjackState { player, dealer, shown });
 
 impl Blackjack {
     /// The sizes of Gymnasium's observation space: the player's sum, the dealer's card, the usable ace.
@@ -128,12 +130,6 @@ impl Env for Blackjack {
     #[inline]
     fn observe(&self, state: &BlackjackState) -> [u32; 3] {
         [state.player.sum(), state.shown, u32::from(state.player.usable_ace())]
-    }
-}
-
-impl Persist for BlackjackState {
-    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
-        (&mut self.player, &mut self.dealer, &mut self.shown).persist(checkpoint)
     }
 }
 

@@ -1,6 +1,6 @@
 //! A hand of blackjack.
 
-use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
+use crate::persist_struct;
 
 /// The value of a ten and of a face card.
 pub(super) const TEN: u32 = 10;
@@ -18,6 +18,8 @@ pub struct Hand {
     /// Whether there is an ace.
     pub ace: bool,
 }
+
+persist_struct!(Hand { total, cards, ace });
 
 impl Hand {
     /// The hand with one more card.
@@ -63,12 +65,6 @@ impl Hand {
     #[inline]
     pub fn is_natural(&self) -> bool {
         self.cards == 2 && self.ace && self.total == ACE + TEN
-    }
-}
-
-impl Persist for Hand {
-    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
-        (&mut self.total, &mut self.cards, &mut self.ace).persist(checkpoint)
     }
 }
 

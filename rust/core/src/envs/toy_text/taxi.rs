@@ -1,9 +1,9 @@
 //! `Taxi`: pick up a passenger and drop them off at their destination (T. Dietterich, 2000, section 3.1; the fickle
 //! passenger is in section 7.1).
 
-use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::envs::tabular::TabularMdp;
 use crate::envs::{Env, Step, TransitionProbability};
+use crate::persist_struct;
 use crate::random::Rng;
 
 /// The index of a state is `((row * 5 + column) * 5 + passenger) * 4 + destination`.
@@ -29,6 +29,8 @@ pub struct TaxiState {
     /// Whether the passenger will change the destination when the taxi first moves with them.
     pub fickle: bool,
 }
+
+persist_struct!(TaxiState { cell, fickle });
 
 impl Taxi {
     /// Whether a step from state `before` to state `after` moved the taxi while the passenger was in it.
@@ -86,12 +88,6 @@ impl TransitionProbability for Taxi {
             cell = Self::with_other_destinations(cell)[rng.integers(NUM_DESTINATIONS - 1) as usize];
         }
         (Step { state: TaxiState { cell, fickle }, reward, terminated }, probability)
-    }
-}
-
-impl Persist for TaxiState {
-    fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
-        (&mut self.cell, &mut self.fickle).persist(checkpoint)
     }
 }
 
