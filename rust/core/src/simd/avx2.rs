@@ -6,7 +6,7 @@ use pulp::cast;
 use pulp::x86::V3;
 
 use super::Simd;
-use super::operations::operations;
+use super::operations::{conversions, operations};
 use super::portable::all_bits;
 use super::registers::{WIDTH, bools, both, narrowed, pairs_of, widened};
 
@@ -79,19 +79,24 @@ impl Simd for V3 {
         u64s_increment(m: Mask, a: U64s) -> U64s = self.u64s_sub::<K>(a, m);
     }
 
-    #[inline(always)]
-    fn f64s<const K: usize>(self, array: [f64; K]) -> [__m256d; 2] {
-        cast(widened(array, 0.0))
-    }
-
-    #[inline(always)]
-    fn f64_array<const K: usize>(self, a: [__m256d; 2]) -> [f64; K] {
-        narrowed(cast(a))
-    }
-
-    #[inline(always)]
-    fn f64s_splat<const K: usize>(self, number: f64) -> [__m256d; 2] {
-        [self.avx._mm256_set1_pd(number); 2]
+    conversions! {
+        self;
+        f64s(array: [f64; K]) -> [__m256d; 2] = cast(widened(array, 0.0));
+        f64_array(a: [__m256d; 2]) -> [f64; K] = narrowed(cast(a));
+        f64s_splat(number: f64) -> [__m256d; 2] = [self.avx._mm256_set1_pd(number); 2];
+        f32_array(a: [__m128; 2]) -> [f32; K] = narrowed(cast(a));
+        f32s_splat(number: f32) -> [__m128; 2] = [self.sse._mm_set1_ps(number); 2];
+        u64s(array: [u64; K]) -> [__m256i; 2] = cast(widened(array, 0));
+        u64_array(a: [__m256i; 2]) -> [u64; K] = narrowed(cast(a));
+        u64s_splat(number: u64) -> [__m256i; 2] = [self.avx._mm256_set1_epi64x(number.cast_signed()); 2];
+        u64s_shift_left<BITS>(a: [__m256i; 2]) -> [__m256i; 2] = {
+            both!(K, |half| self.avx2._mm256_slli_epi64::<BITS>(a[half]))
+        };
+        u64s_shift_right<BITS>(a: [__m256i; 2]) -> [__m256i; 2] = {
+            both!(K, |half| self.avx2._mm256_srli_epi64::<BITS>(a[half]))
+        };
+        mask(array: [bool; K]) -> [__m256i; 2] = self.u64s(array.map(all_bits));
+        bool_array(a: [__m256i; 2]) -> [bool; K] = bools(self.mask_bits::<K>(a));
     }
 
     /// Two columns at a time: a row's pair of numbers is half a register.
@@ -111,51 +116,6 @@ impl Simd for V3 {
             *column = cast(rows.map(|row| row[N - 1]));
         }
         columns
-    }
-
-    #[inline(always)]
-    fn f32_array<const K: usize>(self, a: [__m128; 2]) -> [f32; K] {
-        narrowed(cast(a))
-    }
-
-    #[inline(always)]
-    fn f32s_splat<const K: usize>(self, number: f32) -> [__m128; 2] {
-        [self.sse._mm_set1_ps(number); 2]
-    }
-
-    #[inline(always)]
-    fn u64s<const K: usize>(self, array: [u64; K]) -> [__m256i; 2] {
-        cast(widened(array, 0))
-    }
-
-    #[inline(always)]
-    fn u64_array<const K: usize>(self, a: [__m256i; 2]) -> [u64; K] {
-        narrowed(cast(a))
-    }
-
-    #[inline(always)]
-    fn u64s_splat<const K: usize>(self, number: u64) -> [__m256i; 2] {
-        [self.avx._mm256_set1_epi64x(number.cast_signed()); 2]
-    }
-
-    #[inline(always)]
-    fn u64s_shift_left<const BITS: i32, const K: usize>(self, a: [__m256i; 2]) -> [__m256i; 2] {
-        both!(K, |half| self.avx2._mm256_slli_epi64::<BITS>(a[half]))
-    }
-
-    #[inline(always)]
-    fn u64s_shift_right<const BITS: i32, const K: usize>(self, a: [__m256i; 2]) -> [__m256i; 2] {
-        both!(K, |half| self.avx2._mm256_srli_epi64::<BITS>(a[half]))
-    }
-
-    #[inline(always)]
-    fn mask<const K: usize>(self, array: [bool; K]) -> [__m256i; 2] {
-        self.u64s(array.map(all_bits))
-    }
-
-    #[inline(always)]
-    fn bool_array<const K: usize>(self, a: [__m256i; 2]) -> [bool; K] {
-        bools(self.mask_bits::<K>(a))
     }
 
     #[inline(always)]

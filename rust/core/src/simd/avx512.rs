@@ -6,7 +6,7 @@ use pulp::cast;
 use pulp::x86::V4;
 
 use super::Simd;
-use super::operations::operations;
+use super::operations::{conversions, operations};
 use super::registers::{bools, narrowed, pairs_of, widened};
 
 /// The numbers of two registers of AVX2.
@@ -62,19 +62,25 @@ impl Simd for V4 {
         mask_not(a: Mask) -> Mask = !a;
     }
 
-    #[inline(always)]
-    fn f64s<const K: usize>(self, array: [f64; K]) -> __m512d {
-        cast(widened(array, 0.0))
-    }
-
-    #[inline(always)]
-    fn f64_array<const K: usize>(self, a: __m512d) -> [f64; K] {
-        narrowed(cast(a))
-    }
-
-    #[inline(always)]
-    fn f64s_splat<const K: usize>(self, number: f64) -> __m512d {
-        self.avx512f._mm512_set1_pd(number)
+    conversions! {
+        self;
+        f64s(array: [f64; K]) -> __m512d = cast(widened(array, 0.0));
+        f64_array(a: __m512d) -> [f64; K] = narrowed(cast(a));
+        f64s_splat(number: f64) -> __m512d = self.avx512f._mm512_set1_pd(number);
+        f32_array(a: __m256) -> [f32; K] = narrowed(cast(a));
+        f32s_splat(number: f32) -> __m256 = self.avx._mm256_set1_ps(number);
+        u64s(array: [u64; K]) -> __m512i = cast(widened(array, 0));
+        u64_array(a: __m512i) -> [u64; K] = narrowed(cast(a));
+        u64s_splat(number: u64) -> __m512i = self.avx512f._mm512_set1_epi64(number.cast_signed());
+        u64s_shift_left<BITS>(a: __m512i) -> __m512i = {
+            self.avx512f._mm512_sll_epi64(a, self.sse2._mm_cvtsi32_si128(BITS))
+        };
+        u64s_shift_right<BITS>(a: __m512i) -> __m512i = {
+            self.avx512f._mm512_srl_epi64(a, self.sse2._mm_cvtsi32_si128(BITS))
+        };
+        mask(array: [bool; K]) -> u8 = (0..K).fold(0, |bits, lane| bits | u8::from(array[lane]) << lane);
+        bool_array(a: u8) -> [bool; K] = bools(a);
+        mask_bits(a: u8) -> u8 = a;
     }
 
     /// Two columns at a time: a row's pair of numbers is a quarter of a register. Gathers would take longer.
@@ -94,55 +100,5 @@ impl Simd for V4 {
             *column = cast(rows.map(|row| row[N - 1]));
         }
         columns
-    }
-
-    #[inline(always)]
-    fn f32_array<const K: usize>(self, a: __m256) -> [f32; K] {
-        narrowed(cast(a))
-    }
-
-    #[inline(always)]
-    fn f32s_splat<const K: usize>(self, number: f32) -> __m256 {
-        self.avx._mm256_set1_ps(number)
-    }
-
-    #[inline(always)]
-    fn u64s<const K: usize>(self, array: [u64; K]) -> __m512i {
-        cast(widened(array, 0))
-    }
-
-    #[inline(always)]
-    fn u64_array<const K: usize>(self, a: __m512i) -> [u64; K] {
-        narrowed(cast(a))
-    }
-
-    #[inline(always)]
-    fn u64s_splat<const K: usize>(self, number: u64) -> __m512i {
-        self.avx512f._mm512_set1_epi64(number.cast_signed())
-    }
-
-    #[inline(always)]
-    fn u64s_shift_left<const BITS: i32, const K: usize>(self, a: __m512i) -> __m512i {
-        self.avx512f._mm512_sll_epi64(a, self.sse2._mm_cvtsi32_si128(BITS))
-    }
-
-    #[inline(always)]
-    fn u64s_shift_right<const BITS: i32, const K: usize>(self, a: __m512i) -> __m512i {
-        self.avx512f._mm512_srl_epi64(a, self.sse2._mm_cvtsi32_si128(BITS))
-    }
-
-    #[inline(always)]
-    fn mask<const K: usize>(self, array: [bool; K]) -> u8 {
-        (0..K).fold(0, |bits, lane| bits | u8::from(array[lane]) << lane)
-    }
-
-    #[inline(always)]
-    fn bool_array<const K: usize>(self, a: u8) -> [bool; K] {
-        bools(a)
-    }
-
-    #[inline(always)]
-    fn mask_bits<const K: usize>(self, a: u8) -> u8 {
-        a
     }
 }

@@ -1,4 +1,4 @@
-//! A macro for the methods of [`Simd`](super::Simd), one per line.
+//! Macros for the methods of [`Simd`](super::Simd), one per line.
 
 /// Defines operations in `K` lanes: `name(operand: Type, …) -> Type = value;`, where `Type` is a type of
 /// [`Simd`](super::Simd). With `$each |index|`, `value` is for one register or lane, and the macro `$each` computes all
@@ -23,4 +23,17 @@ macro_rules! operations {
     };
 }
 
-pub(super) use operations;
+/// Defines conversions and shifts in the same way, with the types of a function: `name(operand: type) -> type = value;`.
+/// The number of bits of a shift is a parameter of the function.
+macro_rules! conversions {
+    ($self:ident; $($name:ident $(<$bits:ident>)? ($operand:ident: $type:ty) -> $result:ty = $value:expr;)+) => {
+        $(
+            #[inline(always)]
+            fn $name<$(const $bits: i32,)? const K: usize>($self, $operand: $type) -> $result {
+                $value
+            }
+        )+
+    };
+}
+
+pub(super) use {conversions, operations};

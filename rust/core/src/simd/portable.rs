@@ -1,7 +1,7 @@
 //! Lanes as arrays, which the compiler may put into registers.
 
 use super::Simd;
-use super::operations::operations;
+use super::operations::{conversions, operations};
 
 /// The instructions that every processor of the target has.
 #[derive(Clone, Copy, Debug)]
@@ -86,19 +86,24 @@ impl Simd for Portable {
         u64s_increment(m: Mask, a: U64s) -> U64s = self.u64s_sub(a, m);
     }
 
-    #[inline(always)]
-    fn f64s<const K: usize>(self, array: [f64; K]) -> [f64; K] {
-        array
-    }
-
-    #[inline(always)]
-    fn f64_array<const K: usize>(self, a: [f64; K]) -> [f64; K] {
-        a
-    }
-
-    #[inline(always)]
-    fn f64s_splat<const K: usize>(self, number: f64) -> [f64; K] {
-        [number; K]
+    conversions! {
+        self;
+        f64s(array: [f64; K]) -> [f64; K] = array;
+        f64_array(a: [f64; K]) -> [f64; K] = a;
+        f64s_splat(number: f64) -> [f64; K] = [number; K];
+        f32_array(a: [f32; K]) -> [f32; K] = a;
+        f32s_splat(number: f32) -> [f32; K] = [number; K];
+        u64s(array: [u64; K]) -> [u64; K] = array;
+        u64_array(a: [u64; K]) -> [u64; K] = a;
+        u64s_splat(number: u64) -> [u64; K] = [number; K];
+        u64s_shift_left<BITS>(a: [u64; K]) -> [u64; K] = lanes!(K, |lane| a[lane] << BITS);
+        u64s_shift_right<BITS>(a: [u64; K]) -> [u64; K] = lanes!(K, |lane| a[lane] >> BITS);
+        mask(array: [bool; K]) -> [u64; K] = lanes!(K, |lane| all_bits(array[lane]));
+        bool_array(a: [u64; K]) -> [bool; K] = lanes!(K, |lane| a[lane] != 0);
+        mask_bits(a: [u64; K]) -> u8 = {
+            a.iter().enumerate().fold(0, |bits, (lane, mask)| bits | ((mask & 1) as u8) << lane)
+        };
+        mask_any(a: [u64; K]) -> bool = a.iter().fold(0, |any, bits| any | bits) != 0;
     }
 
     #[inline(always)]
@@ -110,60 +115,5 @@ impl Simd for Portable {
             }
         }
         columns
-    }
-
-    #[inline(always)]
-    fn f32_array<const K: usize>(self, a: [f32; K]) -> [f32; K] {
-        a
-    }
-
-    #[inline(always)]
-    fn f32s_splat<const K: usize>(self, number: f32) -> [f32; K] {
-        [number; K]
-    }
-
-    #[inline(always)]
-    fn u64s<const K: usize>(self, array: [u64; K]) -> [u64; K] {
-        array
-    }
-
-    #[inline(always)]
-    fn u64_array<const K: usize>(self, a: [u64; K]) -> [u64; K] {
-        a
-    }
-
-    #[inline(always)]
-    fn u64s_splat<const K: usize>(self, number: u64) -> [u64; K] {
-        [number; K]
-    }
-
-    #[inline(always)]
-    fn u64s_shift_left<const BITS: i32, const K: usize>(self, a: [u64; K]) -> [u64; K] {
-        lanes!(K, |lane| a[lane] << BITS)
-    }
-
-    #[inline(always)]
-    fn u64s_shift_right<const BITS: i32, const K: usize>(self, a: [u64; K]) -> [u64; K] {
-        lanes!(K, |lane| a[lane] >> BITS)
-    }
-
-    #[inline(always)]
-    fn mask<const K: usize>(self, array: [bool; K]) -> [u64; K] {
-        lanes!(K, |lane| all_bits(array[lane]))
-    }
-
-    #[inline(always)]
-    fn bool_array<const K: usize>(self, a: [u64; K]) -> [bool; K] {
-        lanes!(K, |lane| a[lane] != 0)
-    }
-
-    #[inline(always)]
-    fn mask_bits<const K: usize>(self, a: [u64; K]) -> u8 {
-        a.iter().enumerate().fold(0, |bits, (lane, mask)| bits | ((mask & 1) as u8) << lane)
-    }
-
-    #[inline(always)]
-    fn mask_any<const K: usize>(self, a: [u64; K]) -> bool {
-        a.iter().fold(0, |any, bits| any | bits) != 0
     }
 }
