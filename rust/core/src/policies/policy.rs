@@ -12,8 +12,7 @@ pub trait Policy {
     /// state.
     #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
     #[inline(always)]
-    fn choose_in(&mut self, rows: &[u32], values: &[f64], rng: &mut impl Rng) -> usize {
-        let _ = rows;
+    fn choose_in(&mut self, _rows: &[u32], values: &[f64], rng: &mut impl Rng) -> usize {
         self.choose(values, rng)
     }
 
@@ -22,8 +21,7 @@ pub trait Policy {
 
     /// [`expected_value`](Self::expected_value) in the state with these active rows.
     #[inline]
-    fn expected_value_in(&mut self, rows: &[u32], values: &[f64]) -> f64 {
-        let _ = rows;
+    fn expected_value_in(&mut self, _rows: &[u32], values: &[f64]) -> f64 {
         self.expected_value(values)
     }
 

@@ -21,9 +21,7 @@ pub trait Learner<R> {
     /// Records the action mask of a state, as reported by the task, before an action is chosen in this state or learned
     /// from.
     #[inline]
-    fn set_action_mask(&mut self, state: R, mask: &[bool]) {
-        let (_, _) = (state, mask);
-    }
+    fn set_action_mask(&mut self, _state: R, _mask: &[bool]) {}
 
     /// The action masks, row by row; `None` if every action is available in every state.
     fn action_masks(&self) -> Option<&[bool]> {
@@ -40,8 +38,7 @@ pub trait Learner<R> {
     ///
     /// # Errors
     /// `OutOfMemory`, `LimitReached`.
-    fn reserve(&mut self, work: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
-        let (_, _) = (work, memory);
+    fn reserve(&mut self, _work: u64, _memory: &mut RunMemory) -> Result<(), AllocationError> {
         Ok(())
     }
 
@@ -54,8 +51,7 @@ pub trait Learner<R> {
 
     /// Continues to learn from the last step, which led to `next`, and returns the next action once the step is
     /// finished.
-    fn resume(&mut self, next: Next<R>, rng: &mut impl Rng) -> usize {
-        let (_, _) = (next, rng);
+    fn resume(&mut self, _next: Next<R>, _rng: &mut impl Rng) -> usize {
         0
     }
 

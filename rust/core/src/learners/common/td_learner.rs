@@ -50,7 +50,7 @@ where
 
     #[inline]
     fn work(&self) -> u64 {
-        self.rule.work(&self.agent)
+        self.rule.work(self.agent.work())
     }
 
     fn reserve(&mut self, work: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {

@@ -16,8 +16,7 @@ pub trait UpdateRule<R, G> {
 
     /// Samples the first action of an episode; `None` leaves the choice to the policy.
     #[inline]
-    fn first_action(&mut self, agent: &mut G, state: R, rng: &mut impl Rng) -> Option<usize> {
-        let (_, _, _) = (agent, state, rng);
+    fn first_action(&mut self, _agent: &mut G, _state: R, _rng: &mut impl Rng) -> Option<usize> {
         None
     }
 
@@ -32,15 +31,17 @@ pub trait UpdateRule<R, G> {
         rng: &mut impl Rng,
     ) -> usize;
 
-    /// As [`Learner::work`](super::Learner::work).
-    fn work(&self, agent: &G) -> u64;
+    /// As [`Learner::work`](super::Learner::work), given the work of updating a row: that alone for a one-step method.
+    #[inline]
+    fn work(&self, row_work: u64) -> u64 {
+        row_work
+    }
 
     /// As [`Learner::reserve`](super::Learner::reserve).
     ///
     /// # Errors
     /// `OutOfMemory`, `LimitReached`.
-    fn reserve(&mut self, agent: &mut G, work: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
-        let (_, _, _) = (agent, work, memory);
+    fn reserve(&mut self, _agent: &mut G, _work: u64, _memory: &mut RunMemory) -> Result<(), AllocationError> {
         Ok(())
     }
 
@@ -51,8 +52,7 @@ pub trait UpdateRule<R, G> {
     }
 
     /// As [`Learner::resume`](super::Learner::resume).
-    fn resume(&mut self, agent: &mut G, next: Next<R>, rng: &mut impl Rng) -> usize {
-        let (_, _, _) = (agent, next, rng);
+    fn resume(&mut self, _agent: &mut G, _next: Next<R>, _rng: &mut impl Rng) -> usize {
         0
     }
 
@@ -77,9 +77,7 @@ pub trait UpdateRule<R, G> {
     }
 
     /// Called after the last step of every episode. The rule discards its data of the episode.
-    fn end_episode(&mut self, agent: &mut G) {
-        let _ = agent;
-    }
+    fn end_episode(&mut self, _agent: &mut G) {}
 
     /// Called when an episode is abandoned before its end.
     fn abandon_episode(&mut self, agent: &mut G) {
@@ -87,9 +85,7 @@ pub trait UpdateRule<R, G> {
     }
 
     /// As [`Learner::complete_tables`](super::Learner::complete_tables).
-    fn complete_tables(&mut self, agent: &mut G) {
-        let _ = agent;
-    }
+    fn complete_tables(&mut self, _agent: &mut G) {}
 
     /// Saves or restores the data stored between steps. `shape` is the number of rows and of actions of the table.
     ///

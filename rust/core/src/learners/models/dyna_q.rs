@@ -51,7 +51,7 @@ impl<R: Copy + AsRef<[u32]>, M: DynaModel> UpdateRule<R, Agent> for DynaQ<M> {
     }
 
     #[inline]
-    fn work(&self, _agent: &Agent) -> u64 {
+    fn work(&self, _row_work: u64) -> u64 {
         self.planning.work()
     }
 
@@ -66,9 +66,9 @@ impl<R: Copy + AsRef<[u32]>, M: DynaModel> UpdateRule<R, Agent> for DynaQ<M> {
 
     #[inline]
     fn resume(&mut self, agent: &mut Agent, next: Next<R>, rng: &mut impl Rng) -> usize {
-        for _ in 0..self.planning.take(row_work(self.model.num_actions()) + self.model.work()) {
-            let row = self.model.sample_state(rng);
-            let action = self.model.sample_action(row, rng);
+        for _ in 0..self.planning.take(row_work(self.model.tried().num_actions()) + self.model.work()) {
+            let row = self.model.tried().sample_state(rng);
+            let action = self.model.tried().sample_action(row, rng);
             if let Some(ModelEntry { reward, next }) = self.model.sample(row, action, rng) {
                 agent.update_from_transition(row, action, reward, next);
             }
@@ -82,7 +82,7 @@ impl<R: Copy + AsRef<[u32]>, M: DynaModel> UpdateRule<R, Agent> for DynaQ<M> {
 
     fn persist(&mut self, _shape: (usize, usize), checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
         (&mut self.model, &mut self.planning).persist(checkpoint)?;
-        checkpoint.check(!self.planning.is_unfinished() || !self.model.is_empty(), "number of planning updates")
+        checkpoint.check(!self.planning.is_unfinished() || !self.model.tried().is_empty(), "number of planning updates")
     }
 }
 

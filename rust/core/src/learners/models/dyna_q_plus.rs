@@ -65,7 +65,7 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for DynaQPlus {
     }
 
     #[inline]
-    fn work(&self, _agent: &Agent) -> u64 {
+    fn work(&self, _row_work: u64) -> u64 {
         self.planning.work()
     }
 

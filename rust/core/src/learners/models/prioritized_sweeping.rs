@@ -117,8 +117,8 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for PrioritizedSweeping {
     }
 
     #[inline]
-    fn work(&self, agent: &Agent) -> u64 {
-        agent.work() + self.planning.work()
+    fn work(&self, row_work: u64) -> u64 {
+        row_work + self.planning.work()
     }
 
     #[inline]

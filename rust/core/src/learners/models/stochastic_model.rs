@@ -35,28 +35,15 @@ impl StochasticModel {
 }
 
 impl DynaModel for StochasticModel {
-    fn num_actions(&self) -> usize {
-        self.tried.num_actions()
+    #[inline]
+    fn tried(&self) -> &Model {
+        &self.tried
     }
 
     fn record(&mut self, row: u32, action: usize, entry: ModelEntry) {
         self.tried.record(row, action, entry);
         let pair = self.pair(row, action);
         self.trees.count(&mut self.roots[pair], pair, entry, 1);
-    }
-
-    #[inline]
-    fn sample_state(&self, rng: &mut impl Rng) -> u32 {
-        self.tried.sample_state(rng)
-    }
-
-    fn is_empty(&self) -> bool {
-        self.tried.is_empty()
-    }
-
-    #[inline]
-    fn sample_action(&self, row: u32, rng: &mut impl Rng) -> usize {
-        self.tried.sample_action(row, rng)
     }
 
     /// Draws one `integers` below the number of times that the pair was tried.

@@ -84,7 +84,7 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for MonteCarloControl {
     }
 
     #[inline]
-    fn work(&self, _agent: &Agent) -> u64 {
+    fn work(&self, _row_work: u64) -> u64 {
         self.steps.work()
     }
 

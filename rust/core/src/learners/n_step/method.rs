@@ -35,10 +35,10 @@ pub trait NStepMethod<R> {
     /// after a terminal state.
     fn update(&self, agent: &mut Agent, visits: &VecDeque<NStepVisit<R, Self::Memo>>, following: Option<(R, usize)>);
 
-    /// The work of an update with this many visits.
+    /// The work of an update with this many visits, given that of reading a row.
     #[inline]
-    fn work(agent: &Agent, visits: usize) -> u64 {
-        agent.work() + visits as u64 / VALUES_PER_WORK
+    fn work(row_work: u64, visits: usize) -> u64 {
+        row_work + visits as u64 / VALUES_PER_WORK
     }
 }
 
@@ -73,7 +73,7 @@ impl<R: ActiveRows, M: NStepMethod<R>> NStep<R, M> {
     fn update_remaining(&mut self, agent: &mut Agent) {
         let Self { method, visits, following, end, .. } = self;
         end.advance(|| {
-            let work = M::work(agent, visits.len());
+            let work = M::work(agent.work(), visits.len());
             method.update(agent, visits, *following);
             visits.pop_front();
             (work, !visits.is_empty())
@@ -115,8 +115,8 @@ impl<R: ActiveRows, M: NStepMethod<R>> UpdateRule<R, Agent> for NStep<R, M> {
     }
 
     #[inline]
-    fn work(&self, agent: &Agent) -> u64 {
-        M::work(agent, self.visits.len()) + self.end.work()
+    fn work(&self, row_work: u64) -> u64 {
+        M::work(row_work, self.visits.len()) + self.end.work()
     }
 
     fn end_episode(&mut self, _agent: &mut Agent) {

@@ -49,8 +49,8 @@ impl<R: ActiveRows> NStepMethod<R> for QSigma {
     }
 
     #[inline]
-    fn work(agent: &Agent, visits: usize) -> u64 {
-        agent.work() * (1 + visits as u64)
+    fn work(row_work: u64, visits: usize) -> u64 {
+        row_work * (1 + visits as u64)
     }
 }
 

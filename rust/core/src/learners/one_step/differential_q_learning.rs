@@ -55,11 +55,6 @@ impl<R: ActiveRows> UpdateRule<R, Agent> for DifferentialQLearning<R> {
         agent.next_action(next, rng)
     }
 
-    #[inline]
-    fn work(&self, agent: &Agent) -> u64 {
-        agent.work()
-    }
-
     fn average_reward(&self) -> Option<f64> {
         Some(self.average_reward.value())
     }

@@ -52,11 +52,6 @@ impl<R: ActiveRows> UpdateRule<R, Agent> for DifferentialSarsa<R> {
         next_action
     }
 
-    #[inline]
-    fn work(&self, agent: &Agent) -> u64 {
-        agent.work()
-    }
-
     fn average_reward(&self) -> Option<f64> {
         Some(self.average_reward.value())
     }

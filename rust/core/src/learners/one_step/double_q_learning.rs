@@ -78,11 +78,6 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for DoubleQLearning {
         if let Next::NonTerminal(next_state) = next { self.choose(agent, next_state.as_ref(), rng) } else { 0 }
     }
 
-    #[inline]
-    fn work(&self, agent: &Agent) -> u64 {
-        agent.work()
-    }
-
     fn second_table(&self) -> Option<&QTable> {
         Some(&self.second_table)
     }

@@ -36,11 +36,6 @@ where
         }
         agent.next_action(next, rng)
     }
-
-    #[inline]
-    fn work(&self, agent: &Agent<N, P, A>) -> u64 {
-        agent.work()
-    }
 }
 
 #[cfg(test)]

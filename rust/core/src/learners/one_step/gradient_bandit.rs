@@ -59,11 +59,6 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for GradientBandit {
         agent.next_action(next, rng)
     }
 
-    #[inline]
-    fn work(&self, agent: &Agent) -> u64 {
-        agent.work()
-    }
-
     fn persist(&mut self, _shape: (usize, usize), checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
         self.averages.persist(checkpoint)
     }

@@ -46,11 +46,6 @@ where
             }
         }
     }
-
-    #[inline]
-    fn work(&self, agent: &Agent<N, P, A>) -> u64 {
-        agent.work()
-    }
 }
 
 #[cfg(test)]

@@ -35,11 +35,6 @@ where
         agent.update(state, action, target);
         next_action
     }
-
-    #[inline]
-    fn work(&self, agent: &Agent<N, P, A>) -> u64 {
-        agent.work()
-    }
 }
 
 #[cfg(test)]

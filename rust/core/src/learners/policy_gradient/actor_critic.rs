@@ -67,11 +67,6 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for ActorCritic {
         agent.next_action(next, rng)
     }
 
-    #[inline]
-    fn work(&self, agent: &Agent) -> u64 {
-        agent.work()
-    }
-
     fn second_table(&self) -> Option<&QTable> {
         Some(&self.critic.table)
     }

@@ -126,8 +126,8 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for ActorCriticLambda {
     }
 
     #[inline]
-    fn work(&self, agent: &Agent) -> u64 {
-        agent.work() + (self.value_traces.len() + self.preference_traces.len()) as u64 / VALUES_PER_WORK
+    fn work(&self, row_work: u64) -> u64 {
+        row_work + (self.value_traces.len() + self.preference_traces.len()) as u64 / VALUES_PER_WORK
     }
 
     /// The caller has already accounted for these bytes, which are those of a table.

@@ -94,8 +94,8 @@ impl<R: ActiveRows> UpdateRule<R, Agent> for Reinforce<R> {
     }
 
     #[inline]
-    fn work(&self, agent: &Agent) -> u64 {
-        agent.work() + self.end.work()
+    fn work(&self, row_work: u64) -> u64 {
+        row_work + self.end.work()
     }
 
     /// Each step takes at least one unit of work.

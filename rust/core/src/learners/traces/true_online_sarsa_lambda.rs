@@ -70,8 +70,8 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for TrueOnlineSarsaLambda {
     }
 
     #[inline]
-    fn work(&self, agent: &Agent) -> u64 {
-        agent.work() + self.traces.pass_len() as u64 / VALUES_PER_WORK
+    fn work(&self, row_work: u64) -> u64 {
+        row_work + self.traces.pass_len() as u64 / VALUES_PER_WORK
     }
 
     fn end_episode(&mut self, agent: &mut Agent) {
