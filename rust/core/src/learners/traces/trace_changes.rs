@@ -2,19 +2,22 @@
 
 use std::hint::select_unpredictable;
 
-use super::eligible_weights::EligibleWeights;
+use super::Traces;
 use crate::q_table::QTable;
 
-impl EligibleWeights {
-    /// Replaces the traces of some weights, one after the other, by a function of the trace. Returns the sum of the
-    /// values from left to right.
+impl Traces {
+    /// Replaces the traces of a state-action pair, one after the other, by a function of the trace. They become active.
+    /// Returns Q(S, A).
     #[inline(always)]
-    pub(super) fn update<const N: usize>(
+    pub fn update<const N: usize>(
         &mut self,
         table: &mut QTable<N>,
-        weights: impl ExactSizeIterator<Item = usize>,
+        rows: impl AsRef<[u32]>,
+        action: usize,
         change: impl Fn(f64) -> f64,
     ) -> f64 {
+        let num_actions = table.num_actions();
+        let weights = rows.as_ref().iter().map(|&row| row as usize * num_actions + action);
         self.grow(weights.len(), table.storage_mut());
         // Local variables, because fields of `self` and `table` would be loaded again for each weight.
         let base = self.base;
@@ -42,13 +45,15 @@ impl EligibleWeights {
         sum.unwrap_or(0.0)
     }
 
-    /// Sets the traces of some weights to 1. Returns the sum of the values from left to right.
+    /// Sets the traces of a state-action pair to 1. Returns Q(S, A).
     #[inline(always)]
     pub(super) fn replace<const N: usize>(
         &mut self,
         table: &mut QTable<N>,
-        weights: impl ExactSizeIterator<Item = u32>,
+        rows: impl AsRef<[u32]>,
+        action: usize,
     ) -> f64 {
+        let weights = weight_indices(rows.as_ref(), table.num_actions(), action);
         self.smallest = self.smallest.min(1.0);
         self.grow(weights.len(), table.storage_mut());
         // Local variables, as in `update`. They have 32 bits, so that no sum of them overflows and the compiler knows
@@ -75,6 +80,14 @@ impl EligibleWeights {
         self.count = count as usize;
         sum.unwrap_or(0.0)
     }
+}
+
+/// The indices of the weights of a state-action pair: [`QTable::weight_index`] in 32 bits, which suffice for all
+/// weights with traces, because a vector register holds more such indices.
+#[inline(always)]
+fn weight_indices(rows: &[u32], num_actions: usize, action: usize) -> impl ExactSizeIterator<Item = u32> {
+    let (num_actions, action) = (num_actions as u32, action as u32);
+    rows.iter().map(move |&row| row * num_actions + action)
 }
 
 /// One of two numbers, without a branch. Not every instruction set can select between floats.

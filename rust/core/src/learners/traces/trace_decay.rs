@@ -1,18 +1,22 @@
 //! The updates of all eligible weights and the decay of their traces.
 
-use super::eligible_weights::EligibleWeights;
+use super::Traces;
 use super::trace_pass::{BLOCK, LONG_PASS, TracePass};
 use crate::q_table::QTable;
+use crate::schedules::{LearningRate, StepSize};
 
-impl EligibleWeights {
-    /// Adds to each eligible weight a step times its trace.
+impl Traces {
+    /// w ← w + α δ z.
     #[inline(always)]
-    pub(super) fn apply<const N: usize>(&mut self, table: &mut QTable<N>, step: f64) {
-        self.pass::<N, true, false>(table, step, 1.0);
+    pub fn apply_td_error<const N: usize>(&mut self, table: &mut QTable<N>, learning_rate: &LearningRate, error: f64) {
+        match learning_rate.uniform() {
+            Some(step_size) => self.pass::<N, true, false>(table, step_size * error, 1.0),
+            None => self.apply_each(table, |weight, trace| learning_rate.at(weight) * error * trace),
+        }
     }
 
     /// Adds to each eligible weight a function of its index and its trace.
-    pub(super) fn apply_each<const N: usize>(&mut self, table: &mut QTable<N>, change: impl Fn(usize, f64) -> f64) {
+    fn apply_each<const N: usize>(&mut self, table: &mut QTable<N>, change: impl Fn(usize, f64) -> f64) {
         let values = &mut table.storage_mut()[self.base..];
         let traces = self.weights.iter().zip(&*self.traces).take(self.count);
         for (value, (&weight, &trace)) in values.iter_mut().zip(traces) {
@@ -22,20 +26,31 @@ impl EligibleWeights {
         }
     }
 
-    /// Multiplies the traces by a factor; those whose magnitudes fall to the cutoff become 0.
+    /// z ← γλ z, where `factor` is γλ; traces whose magnitudes fall to the cutoff become 0.
     #[inline(always)]
-    pub(super) fn decay<const N: usize>(&mut self, table: &mut QTable<N>, factor: f64) {
+    pub fn decay<const N: usize>(&mut self, table: &mut QTable<N>, factor: f64) {
         self.bound_magnitudes(factor);
         self.pass::<N, false, true>(table, 0.0, factor);
         self.remove_zeros(table.storage_mut());
     }
 
-    /// [`apply`](Self::apply) and [`decay`](Self::decay) in one pass.
+    /// [`apply_td_error`](Self::apply_td_error) and [`decay`](Self::decay) in one pass.
     #[inline(always)]
-    pub(super) fn apply_and_decay<const N: usize>(&mut self, table: &mut QTable<N>, step: f64, factor: f64) {
-        self.bound_magnitudes(factor);
-        self.pass::<N, true, true>(table, step, factor);
-        self.remove_zeros(table.storage_mut());
+    pub fn apply_td_error_and_decay<const N: usize>(
+        &mut self,
+        table: &mut QTable<N>,
+        learning_rate: &LearningRate,
+        error: f64,
+        factor: f64,
+    ) {
+        if let Some(step_size) = learning_rate.uniform() {
+            self.bound_magnitudes(factor);
+            self.pass::<N, true, true>(table, step_size * error, factor);
+            self.remove_zeros(table.storage_mut());
+        } else {
+            self.apply_td_error(table, learning_rate, error);
+            self.decay(table, factor);
+        }
     }
 
     #[inline(always)]
@@ -66,8 +81,8 @@ mod tests {
     use super::*;
     use crate::StopFlag;
 
-    fn with_traces(traces: &[f64], cutoff: f64) -> EligibleWeights {
-        let mut weights = EligibleWeights::new(4, cutoff, &StopFlag::new()).expect("a few weights");
+    fn with_traces(traces: &[f64], cutoff: f64) -> Traces {
+        let mut weights = Traces::new(4, cutoff, &StopFlag::new()).expect("a few weights");
         for (weight, &trace) in traces.iter().enumerate() {
             weights.insert(weight as u32, trace);
         }

@@ -1,13 +1,13 @@
 //! The removal of the weights whose traces have become 0.
 
-use super::eligible_weights::EligibleWeights;
+use super::Traces;
 use super::trace_pass::BLOCK;
 use crate::simd::{F64s, LANES, Simd, SimdCode};
 
 /// The number of places that are examined together, with a bit for each.
 const GROUP: usize = u64::BITS as usize;
 
-impl EligibleWeights {
+impl Traces {
     /// Removes the weights whose traces are 0, if enough places have come into use since the last removal. They are
     /// removed together, because the processor cannot predict in which steps traces become 0.
     #[inline(always)]
@@ -26,7 +26,7 @@ impl EligibleWeights {
 
 /// Removes all weights whose traces are 0.
 struct ZeroRemoval<'a> {
-    weights: &'a mut EligibleWeights,
+    weights: &'a mut Traces,
     storage: &'a mut [f64],
 }
 

@@ -1,16 +1,18 @@
 //! Eligibility traces, stored sparsely: a step takes time in proportion to the number of active traces, not to the size
 //! of the table.
 
-use super::eligible_weights::EligibleWeights;
+use std::hint::select_unpredictable;
+
+use super::aligned_vec::{AlignedVec, MAX_PADDING};
+use super::trace_changes::select;
+use super::trace_pass::BLOCK;
 use crate::StopFlag;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::learners::{Agent, masked_values};
-use crate::memory::AllocationError;
+use crate::memory::{AllocationError, from_fn, reserve, with_capacity};
 use crate::policies::Policy;
 use crate::q_table::QTable;
 use crate::random::Rng;
-use crate::schedules::{LearningRate, StepSize};
-#[cfg(test)]
 use crate::simd::SimdLevel;
 use crate::tasks::Next;
 
@@ -45,11 +47,39 @@ impl Default for TraceOptions {
 
 /// The trace vector z, with one trace per weight. A trace whose magnitude falls to the cutoff becomes 0.
 ///
-/// From [`begin_step`](Self::begin_step) until [`complete_table`](Self::complete_table), the values of the weights
-/// whose traces are active are not in the rows of the table, and are read with [`action_values`](Self::action_values).
-#[derive(Clone, Debug, PartialEq)]
+/// The weights whose traces are active (not 0), and some whose traces have become 0, are eligible: each has a place, and
+/// the places lie side by side, so that learning is a pass over contiguous memory. From [`begin_step`](Self::begin_step)
+/// until [`complete_table`](Self::complete_table), the values of the eligible weights are at their places, after the rows
+/// of the table, and are read with [`action_values`](Self::action_values).
+///
+/// If the values stayed in the table, each at the index of its weight, a pass would take 2.7 (64 traces) to 7.6 times
+/// (256 traces) as long, measured with AVX2 on an Intel Xeon. A run of Sarsa(λ) with 8 tilings has several hundred
+/// traces.
+#[derive(Clone, Debug)]
 pub struct Traces {
-    eligible: EligibleWeights,
+    /// The number of places in use. The first places are used.
+    pub(super) count: usize,
+    /// The trace at each place, 0 at unused places.
+    pub(super) traces: AlignedVec,
+    /// A lower bound on the magnitudes of the traces; 0 if a trace may be 0.
+    pub(super) smallest: f64,
+    /// Traces whose magnitudes fall to this value become 0.
+    pub(super) cutoff: f64,
+    /// The index of the weight at each place in use.
+    pub(super) weights: Vec<u32>,
+    /// Weights with traces of 0 are removed once this many places are in use.
+    pub(super) remove_zeros_at: usize,
+    /// The instructions for short passes over traces.
+    pub(super) level: SimdLevel,
+    /// The instructions for long passes.
+    pub(super) long_pass_level: SimdLevel,
+    /// For each weight the index of its value in the storage of the table: the index of the weight, or `base` plus its
+    /// place.
+    pub(super) slots: Vec<u32>,
+    /// The index of the value at the first place, which is at the start of a cache line.
+    pub(super) base: usize,
+    /// Whether the values of the eligible weights are at their places.
+    pub(super) moved: bool,
 }
 
 impl Traces {
@@ -58,13 +88,35 @@ impl Traces {
     /// # Errors
     /// `OutOfMemory`; `Stopped` after `stop` was set.
     pub fn new(weights: usize, cutoff: f64, stop: &StopFlag<'_>) -> Result<Self, AllocationError> {
-        Ok(Self { eligible: EligibleWeights::new(weights, cutoff, stop)? })
+        // The indices of a table and as many places must fit into 32 bits.
+        if weights > u32::MAX as usize / 2 - BLOCK - MAX_PADDING {
+            return Err(AllocationError::OutOfMemory { bytes: weights.saturating_mul(32) });
+        }
+        let places = weights.next_multiple_of(BLOCK);
+        let mut next = 0;
+        let slots = from_fn(weights, stop, || {
+            next += 1;
+            next - 1
+        })?;
+        Ok(Self {
+            count: 0,
+            traces: AlignedVec::with_capacity(places)?,
+            smallest: f64::INFINITY,
+            cutoff,
+            remove_zeros_at: 0,
+            level: SimdLevel::detect().without_avx512(),
+            long_pass_level: SimdLevel::detect(),
+            weights: with_capacity(places)?,
+            base: slots.len(),
+            slots,
+            moved: false,
+        })
     }
 
     /// Sets the instructions of passes over these traces. The default is the best of the machine.
     #[cfg(test)]
     pub(super) fn set_level(&mut self, level: SimdLevel) {
-        (self.eligible.level, self.eligible.long_pass_level) = (level, level);
+        (self.level, self.long_pass_level) = (level, level);
     }
 
     /// Makes room in the table for the values of the weights with traces.
@@ -72,36 +124,41 @@ impl Traces {
     /// # Errors
     /// `OutOfMemory`.
     pub fn reserve<const N: usize>(&self, table: &mut QTable<N>) -> Result<(), AllocationError> {
-        self.eligible.reserve(table)
+        let places = self.slots.len().next_multiple_of(BLOCK);
+        let storage = table.storage_mut();
+        reserve(storage, (self.slots.len() + MAX_PADDING + places).saturating_sub(storage.len()))
     }
 
     /// The number of traces that a pass goes over: the active ones, and some that have become 0.
     pub fn pass_len(&self) -> usize {
-        self.eligible.count
+        self.count
+    }
+
+    /// The number of active traces.
+    pub(super) fn num_active(&self) -> usize {
+        self.traces[..self.count].iter().filter(|&&trace| trace != 0.0).count()
     }
 
     /// Whether no trace is active.
     #[cfg(test)]
     pub(in crate::learners) fn is_empty(&self) -> bool {
-        self.eligible.num_eligible() == 0
+        self.num_active() == 0
     }
 
     /// The trace of a weight.
     #[inline(always)]
     pub fn get(&self, weight_index: usize) -> f64 {
-        self.eligible.trace(weight_index)
+        let (slot, len) = (self.slots[weight_index] as usize, self.base);
+        // No branch, because it is hard to predict which weights are eligible.
+        let eligible = slot >= len;
+        let place = select_unpredictable(eligible, slot.wrapping_sub(len), 0);
+        select(eligible, self.traces.get(place).copied().unwrap_or(0.0), 0.0)
     }
 
     /// The sum of the traces of a state-action pair, from left to right.
     #[inline(always)]
     pub fn sum<const N: usize>(&self, table: &QTable<N>, rows: &[u32], action: usize) -> f64 {
         rows.iter().fold(0.0, |sum, &row| sum + self.get(table.weight_index(row, action)))
-    }
-
-    /// Begins a step: the values of the weights whose traces are active move out of the rows of the table.
-    #[inline(always)]
-    pub fn begin_step<const N: usize>(&mut self, table: &mut QTable<N>) {
-        self.eligible.move_out(table);
     }
 
     /// Changes the traces for a visit to a state-action pair. Returns Q(S, A).
@@ -120,44 +177,23 @@ impl Traces {
         if kind == TraceKind::Clearing {
             for &row in rows.as_ref() {
                 for other in (0..table.num_actions()).filter(|&other| other != action) {
-                    self.eligible.remove_weight(table, table.weight_index(row, other));
+                    self.remove_weight(table, table.weight_index(row, other));
                 }
             }
         }
         value
     }
 
-    /// Replaces the traces of a state-action pair by a function of each. They become active. Returns Q(S, A).
-    #[inline(always)]
-    pub fn update<const N: usize>(
-        &mut self,
-        table: &mut QTable<N>,
-        rows: impl AsRef<[u32]>,
-        action: usize,
-        change: impl Fn(f64) -> f64,
-    ) -> f64 {
-        let num_actions = table.num_actions();
-        let weights = rows.as_ref().iter().map(|&row| row as usize * num_actions + action);
-        self.eligible.update(table, weights, change)
-    }
-
-    /// Sets the traces of a state-action pair to 1. Returns Q(S, A).
-    #[inline(always)]
-    fn replace<const N: usize>(&mut self, table: &mut QTable<N>, rows: impl AsRef<[u32]>, action: usize) -> f64 {
-        let weights = weight_indices(rows.as_ref(), table.num_actions(), action);
-        self.eligible.replace(table, weights)
-    }
-
     /// The action values of a state, as [`QTable::action_values`].
     #[inline(always)]
     pub fn action_values<'a, const N: usize>(&self, table: &'a mut QTable<N>, rows: impl AsRef<[u32]>) -> &'a [f64] {
-        table.values_at(self.eligible.slots(), &rows)
+        table.values_at(&self.slots, &rows)
     }
 
     /// Q(S, A), as [`QTable::value`].
     #[inline(always)]
     pub fn value<const N: usize>(&self, table: &QTable<N>, rows: &[u32], action: usize) -> f64 {
-        table.value_at(self.eligible.slots(), rows, action)
+        table.value_at(&self.slots, rows, action)
     }
 
     /// Samples A′ in the next state S′ and returns it with Q(S′, A′); `None` if S′ is terminal. If the episode is
@@ -183,67 +219,17 @@ impl Traces {
     #[inline(always)]
     pub fn subtract<const N: usize>(&self, table: &mut QTable<N>, rows: &[u32], action: usize, number: f64) {
         for &row in rows {
-            let slot = self.eligible.slots()[table.weight_index(row, action)];
+            let slot = self.slots[table.weight_index(row, action)];
             table.storage_mut()[slot as usize] -= number;
         }
     }
-
-    /// w ← w + α δ z.
-    #[inline(always)]
-    pub fn apply_td_error<const N: usize>(&mut self, table: &mut QTable<N>, learning_rate: &LearningRate, error: f64) {
-        match learning_rate.uniform() {
-            Some(step_size) => self.eligible.apply(table, step_size * error),
-            None => self.eligible.apply_each(table, |weight, trace| learning_rate.at(weight) * error * trace),
-        }
-    }
-
-    /// z ← γλ z, where `factor` is γλ.
-    #[inline(always)]
-    pub fn decay<const N: usize>(&mut self, table: &mut QTable<N>, factor: f64) {
-        self.eligible.decay(table, factor);
-    }
-
-    /// w ← w + α δ z and z ← γλ z in one pass.
-    #[inline(always)]
-    pub fn apply_td_error_and_decay<const N: usize>(
-        &mut self,
-        table: &mut QTable<N>,
-        learning_rate: &LearningRate,
-        error: f64,
-        factor: f64,
-    ) {
-        if let Some(step_size) = learning_rate.uniform() {
-            self.eligible.apply_and_decay(table, step_size * error, factor);
-        } else {
-            self.apply_td_error(table, learning_rate, error);
-            self.decay(table, factor);
-        }
-    }
-
-    /// z ← 0.
-    pub fn clear<const N: usize>(&mut self, table: &mut QTable<N>) {
-        self.eligible.clear(table);
-    }
-
-    /// Moves all values back into the rows of the table.
-    pub fn complete_table<const N: usize>(&mut self, table: &mut QTable<N>) {
-        self.eligible.move_back(table);
-    }
-}
-
-/// The indices of the weights of a state-action pair: [`QTable::weight_index`] in 32 bits, which suffice for all
-/// weights with traces, because a vector register holds more such indices.
-#[inline(always)]
-fn weight_indices(rows: &[u32], num_actions: usize, action: usize) -> impl ExactSizeIterator<Item = u32> {
-    let (num_actions, action) = (num_actions as u32, action as u32);
-    rows.iter().map(move |&row| row * num_actions + action)
 }
 
 /// Saves the active traces in the order of their weights, because their places depend on the history of the run.
 impl Persist for Traces {
     fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
-        let weights = self.eligible.num_weights();
-        let mut count = self.eligible.num_eligible();
+        let weights = self.slots.len();
+        let mut count = self.num_active();
         checkpoint.index(&mut count, weights + 1, "number of traces")?;
         if !checkpoint.is_restoring() {
             for weight in 0..weights {
@@ -254,13 +240,13 @@ impl Persist for Traces {
             }
             return Ok(());
         }
-        self.eligible.discard();
+        self.discard();
         for _ in 0..count {
             let (weight, trace) = persist_trace(checkpoint, weights, (0, 0.0))?;
-            if self.eligible.place(weight as usize).is_some() {
+            if self.place(weight as usize).is_some() {
                 return Err(CheckpointError::Invalid("weight of two traces"));
             }
-            self.eligible.insert(weight, trace);
+            self.insert(weight, trace);
         }
         Ok(())
     }
