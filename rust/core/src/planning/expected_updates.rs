@@ -2,13 +2,11 @@
 
 use std::iter::once;
 
-use crate::StopFlag;
-
 use super::PlanningError;
-use super::bellman::{action_value, initial_value};
 use super::markov_chain::MarkovChain;
 use super::policy_evaluation::solve;
-use super::stop_checks::StopChecks;
+use super::problem::{Problem, initial_value};
+use crate::StopFlag;
 use crate::envs::Env;
 use crate::envs::tabular::TabularMdp;
 use crate::memory::{collect, filled};
@@ -81,7 +79,8 @@ impl ExpectedUpdates {
     /// # Errors
     /// `Overflow`; `Stopped` after `stop` was set. The updates made before are kept.
     pub fn advance(&mut self, updates: u64, stop: &StopFlag<'_>) -> Result<(), PlanningError> {
-        let mut checks = StopChecks::new(&self.mdp, stop);
+        let problem = Problem { mdp: &self.mdp, discount: self.discount, stop };
+        let mut checks = problem.checks();
         let num_actions = self.mdp.num_actions();
         for _ in 0..updates {
             let (state, action) = match &mut self.source {
@@ -99,7 +98,7 @@ impl ExpectedUpdates {
                     (state as usize, action)
                 }
             };
-            let target = action_value(&self.mdp, state, action, self.discount, &self.values);
+            let target = problem.action_value(state, action, &self.values);
             if !target.is_finite() {
                 return Err(PlanningError::Overflow(state));
             }
@@ -116,11 +115,12 @@ impl ExpectedUpdates {
     /// Without discounting `NoProperPolicy` if the policy collects rewards forever; `NotConverged`; `Overflow`;
     /// `OutOfMemory`; `Stopped` after `stop` was set.
     pub fn greedy_return(&self, stop: &StopFlag<'_>) -> Result<f64, PlanningError> {
+        let problem = Problem { mdp: &self.mdp, discount: self.discount, stop };
         let policy: Vec<usize> = collect(self.q_values.chunks(self.mdp.num_actions()).map(argmax))?;
-        let chain = MarkovChain::new(&self.mdp, self.discount, stop, |state| once((policy[state], 1.0)))?;
+        let chain = MarkovChain::new(problem, |state| once((policy[state], 1.0)))?;
         let states = chain.reachable(self.mdp.initial_distribution(), stop)?;
         let mut values = collect(self.values.iter().copied())?;
-        solve(&chain, self.discount, states, &mut values, stop)?;
+        solve(&chain, states, &mut values, stop)?;
         Ok(initial_value(&self.mdp, &values))
     }
 }

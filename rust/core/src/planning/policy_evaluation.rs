@@ -1,11 +1,10 @@
 //! Policy evaluation: the values of a given policy (Sutton & Barto, section 4.1), and its expected number of visits of
 //! each state (section 9.2).
 
-use crate::StopFlag;
-
 use super::PlanningError;
-use super::bellman::choices;
 use super::markov_chain::{Equations, MarkovChain};
+use super::problem::{Problem, choices};
+use crate::StopFlag;
 use crate::envs::Env;
 use crate::envs::tabular::TabularMdp;
 use crate::memory::{collect, filled};
@@ -38,8 +37,9 @@ pub fn policy_evaluation(
     stop: &StopFlag<'_>,
 ) -> Result<PolicyEvaluation, PlanningError> {
     assert_eq!(policy.len(), mdp.num_states() * mdp.num_actions(), "policy must have a probability for each pair");
-    let chain = MarkovChain::new(mdp, discount, stop, |state| choices(mdp, policy, state))?;
-    evaluate(&chain, discount, filled(&0.0, mdp.num_states(), stop)?, stop)
+    let problem = Problem { mdp, discount, stop };
+    let chain = MarkovChain::new(problem, |state| choices(mdp, policy, state))?;
+    evaluate(&chain, problem.zeros()?, stop)
 }
 
 /// Evaluates the policy of a chain in all states, starting from a guess of their values.
@@ -48,11 +48,10 @@ pub fn policy_evaluation(
 /// As [`policy_evaluation`].
 pub(super) fn evaluate(
     chain: &MarkovChain,
-    discount: f64,
     mut values: Vec<f64>,
     stop: &StopFlag<'_>,
 ) -> Result<PolicyEvaluation, PlanningError> {
-    let mut equations = solve(chain, discount, collect(0..chain.num_states())?, &mut values, stop)?;
+    let mut equations = solve(chain, collect(0..chain.num_states())?, &mut values, stop)?;
     let errors = equations.errors(&values, stop)?;
     Ok(PolicyEvaluation { values, errors })
 }
@@ -66,12 +65,11 @@ pub(super) fn evaluate(
 /// As [`policy_evaluation`].
 pub(super) fn solve<'a>(
     chain: &'a MarkovChain,
-    discount: f64,
     mut states: Vec<usize>,
     values: &mut [f64],
     stop: &StopFlag<'_>,
 ) -> Result<Equations<'a>, PlanningError> {
-    if discount == 1.0 {
+    if chain.discount == 1.0 {
         let staying = chain.staying(stop)?;
         let settles = chain.reaching(&staying, stop)?;
         if let Some(&state) = states.iter().find(|&&state| !settles[state]) {
@@ -96,13 +94,14 @@ pub(super) fn solve<'a>(
 /// If `policy` does not hold a number for each pair.
 pub fn expected_visits(mdp: &TabularMdp, policy: &[f64], stop: &StopFlag<'_>) -> Result<Vec<f64>, PlanningError> {
     assert_eq!(policy.len(), mdp.num_states() * mdp.num_actions(), "policy must have a probability for each pair");
-    let chain = MarkovChain::new(mdp, 1.0, stop, |state| choices(mdp, policy, state))?;
+    let problem = Problem { mdp, discount: 1.0, stop };
+    let chain = MarkovChain::new(problem, |state| choices(mdp, policy, state))?;
     let reached = chain.reachable(mdp.initial_distribution(), stop)?;
     let ends = chain.reaching(&filled(&false, mdp.num_states(), stop)?, stop)?;
     if let Some(&state) = reached.iter().find(|&&state| !ends[state]) {
         return Err(PlanningError::NoProperPolicy(state));
     }
-    let mut visits = filled(&0.0, mdp.num_states(), stop)?;
+    let mut visits = problem.zeros()?;
     Equations::new(&chain.transposed(stop)?, reached).solve(mdp.initial_distribution(), &mut visits, stop)?;
     Ok(visits)
 }

@@ -2,7 +2,6 @@
 
 use super::PlanningError;
 use crate::StopFlag;
-use crate::envs::tabular::TabularMdp;
 
 /// The number of outcomes that are read between two checks of the flag: a fraction of a millisecond.
 const OUTCOMES_BETWEEN_CHECKS: usize = 1 << 16;
@@ -16,13 +15,8 @@ pub(super) struct StopChecks<'a> {
 }
 
 impl<'a> StopChecks<'a> {
-    /// Counts the work on a table.
-    pub(super) fn new(mdp: &TabularMdp, stop: &'a StopFlag<'a>) -> Self {
-        Self::with_outcomes(mdp.num_outcomes(), mdp.num_states(), stop)
-    }
-
     /// Counts the work on `num_states` states with `num_outcomes` outcomes in total.
-    pub(super) fn with_outcomes(num_outcomes: usize, num_states: usize, stop: &'a StopFlag<'a>) -> Self {
+    pub(super) fn new(num_outcomes: usize, num_states: usize, stop: &'a StopFlag<'a>) -> Self {
         Self { stop, outcomes: 1 + num_outcomes / num_states, counted: 0 }
     }
 

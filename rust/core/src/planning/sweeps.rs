@@ -1,11 +1,10 @@
 //! Sweeps of dynamic programming over all states (Sutton & Barto, chapter 4): a single one, to show its steps, or as
 //! many as the values need to settle.
 
-use crate::StopFlag;
-
 use super::PlanningError;
-use super::bellman::{best_value, expected_value};
+use super::problem::Problem;
 use super::stop_checks::StopChecks;
+use crate::StopFlag;
 use crate::envs::tabular::TabularMdp;
 use crate::memory::collect;
 
@@ -32,13 +31,14 @@ pub fn sweep(
     stop: &StopFlag<'_>,
 ) -> Result<(), PlanningError> {
     assert_eq!(values.len(), mdp.num_states(), "values must have a number for each state");
-    let mut checks = StopChecks::new(mdp, stop);
+    let problem = Problem { mdp, discount, stop };
+    let mut checks = problem.checks();
     let old: Vec<f64> = if in_place { Vec::new() } else { collect(values.iter().copied())? };
     for state in 0..values.len() {
         let from = if in_place { &*values } else { &old };
         values[state] = match policy {
-            Some(policy) => expected_value(mdp, policy, state, discount, from),
-            None => best_value(mdp, state, discount, from),
+            Some(policy) => problem.expected_value(policy, state, from),
+            None => problem.best_value(state, from),
         };
         if !values[state].is_finite() {
             return Err(PlanningError::Overflow(state));

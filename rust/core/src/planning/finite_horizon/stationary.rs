@@ -1,10 +1,11 @@
 //! The best known policy under a time limit that does not depend on the number of steps taken.
 
-use super::finite_horizon::{finite_horizon, policy_return, return_error};
-use super::{Mdp, PlanningError};
+use super::backward_induction::finite_horizon;
+use super::policy_return::{policy_return, return_error};
 use crate::StopFlag;
 use crate::envs::Env;
 use crate::memory::filled;
+use crate::planning::{Mdp, PlanningError};
 
 /// The discounts whose policies are tried.
 const DISCOUNTS: [f64; 15] =

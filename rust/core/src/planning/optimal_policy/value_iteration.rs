@@ -1,16 +1,15 @@
 //! Value iteration: V(s) ← maxₐ Σ p (r + γ V(s′)), in place (Sutton & Barto, equation 4.10).
 
-use crate::StopFlag;
-
-use super::bellman::{action_values, best_size, best_value};
+use super::Solution;
 use super::best_policy::best_policy;
 use super::endings::Endings;
 use super::policy_iteration::improve;
-use super::stop_checks::StopChecks;
-use super::sweeps::converge;
-use super::{MAX_SWEEPS, PlanningError, Solution};
+use crate::StopFlag;
 use crate::envs::tabular::TabularMdp;
-use crate::memory::{collect, filled};
+use crate::memory::collect;
+use crate::planning::problem::Problem;
+use crate::planning::sweeps::converge;
+use crate::planning::{MAX_SWEEPS, PlanningError};
 
 /// The relative error of values found by sweeps, before their policy is evaluated.
 const ROUGH: f64 = 1e-10;
@@ -28,30 +27,31 @@ const AGREEMENT: f64 = 4.0;
 /// # Errors
 /// As [`super::policy_iteration()`].
 pub fn value_iteration(mdp: &TabularMdp, discount: f64, stop: &StopFlag<'_>) -> Result<Solution, PlanningError> {
-    let endings = Endings::for_discount(mdp, discount, true, stop)?;
-    let mut values = filled(&0.0, mdp.num_states(), stop)?;
+    let problem = Problem { mdp, discount, stop };
+    let endings = Endings::new(problem, true)?;
+    let mut values = problem.zeros()?;
     let backup = |state: usize, values: &[f64]| {
-        let value = best_value(mdp, state, discount, values);
-        (value, if value == values[state] { 0.0 } else { best_size(mdp, state, discount, values) })
+        let value = problem.best_value(state, values);
+        (value, if value == values[state] { 0.0 } else { problem.best_size(state, values) })
     };
     // Values that do not settle are replaced as well.
-    converge(&mut values, mdp.num_states(), MAX_SWEEPS, StopChecks::new(mdp, stop), |_, state| state, backup)?;
-    let q_values = action_values(mdp, discount, &values, stop)?;
+    converge(&mut values, mdp.num_states(), MAX_SWEEPS, problem.checks(), |_, state| state, backup)?;
+    let q_values = problem.action_values(&values)?;
     let rough = collect(values.iter().map(|value| ROUGH * value.abs()))?;
-    let greedy = best_policy(mdp, discount, &values, &rough, &q_values, &endings, stop)?;
-    let improved = match improve(mdp, discount, greedy, collect(values.iter().copied())?, &endings, stop) {
+    let greedy = best_policy(problem, &values, &rough, &q_values, &endings)?;
+    let improved = match improve(problem, greedy, collect(values.iter().copied())?, &endings) {
         // No policy may have these values.
         Err(PlanningError::NoProperPolicy(_)) => {
             let proper = collect(endings.policy.iter().copied())?;
-            improve(mdp, discount, proper, filled(&0.0, mdp.num_states(), stop)?, &endings, stop)?
+            improve(problem, proper, problem.zeros()?, &endings)?
         }
         improved => improved?,
     };
-    let (policy, found) = improved.settled(mdp, discount, &endings, stop)?;
+    let (policy, found) = improved.settled(problem, &endings)?;
     let pairs = values.iter().zip(found.values.iter().zip(&found.errors));
     if pairs.into_iter().all(|(value, (found, error))| (value - found).abs() <= AGREEMENT * error) {
         return Ok(Solution { values, q_values, policy });
     }
-    let q_values = action_values(mdp, discount, &found.values, stop)?;
+    let q_values = problem.action_values(&found.values)?;
     Ok(Solution { values: found.values, q_values, policy })
 }

@@ -1,8 +1,7 @@
 //! Linear equations of a Markov chain, solved directly.
 
 use crate::StopFlag;
-
-use super::PlanningError;
+use crate::planning::PlanningError;
 
 /// A matrix I - γP after Gaussian elimination, which solves the equations for any right-hand side.
 #[derive(Debug)]

@@ -1,13 +1,10 @@
 //! The ends of episodes. Without discounting only policies that end them, or stop to collect rewards, have finite
 //! values.
 
-use crate::StopFlag;
-
-use super::PlanningError;
-use super::stop_checks::StopChecks;
 use crate::envs::Env;
-use crate::envs::tabular::TabularMdp;
 use crate::memory::{collect, filled};
+use crate::planning::PlanningError;
+use crate::planning::problem::Problem;
 
 /// The ends of episodes without discounting. The default is for discounted values, which always exist.
 #[derive(Debug, Default)]
@@ -25,18 +22,14 @@ impl Endings {
     /// # Errors
     /// Without discounting `NoProperPolicy` if, from some state, every policy collects rewards forever; `OutOfMemory`;
     /// `Stopped` after `stop` was set.
-    pub(super) fn for_discount(
-        mdp: &TabularMdp,
-        discount: f64,
-        stays_anywhere: bool,
-        stop: &StopFlag<'_>,
-    ) -> Result<Self, PlanningError> {
+    pub(super) fn new(problem: Problem<'_>, stays_anywhere: bool) -> Result<Self, PlanningError> {
+        let Problem { mdp, discount, stop } = problem;
         if discount < 1.0 {
             return Ok(Self { policy: filled(&0, mdp.num_states(), stop)?, ..Self::default() });
         }
-        let ending = ending_actions(mdp, filled(&None, mdp.num_states(), stop)?, stop)?;
-        let staying = staying_actions(mdp, stop, |state| stays_anywhere || ending[state].is_none())?;
-        let policy = ending_actions(mdp, collect(staying.iter().copied())?, stop)?;
+        let ending = ending_actions(problem, filled(&None, mdp.num_states(), stop)?)?;
+        let staying = staying_actions(problem, |state| stays_anywhere || ending[state].is_none())?;
+        let policy = ending_actions(problem, collect(staying.iter().copied())?)?;
         if let Some(state) = policy.iter().position(Option::is_none) {
             return Err(PlanningError::NoProperPolicy(state));
         }
@@ -52,13 +45,9 @@ impl Endings {
 /// For each state an action that may end the episode or lead to a state that has such an action, starting from the
 /// `known` ones; `None` if there is none. Following these actions ends the episode with probability 1, or reaches a
 /// known state, or a state from which no action leads to an end.
-fn ending_actions(
-    mdp: &TabularMdp,
-    known: Vec<Option<usize>>,
-    stop: &StopFlag<'_>,
-) -> Result<Vec<Option<usize>>, PlanningError> {
-    let mut ending = known;
-    StopChecks::new(mdp, stop).until_stable(mdp.num_states(), |state| {
+fn ending_actions(problem: Problem<'_>, known: Vec<Option<usize>>) -> Result<Vec<Option<usize>>, PlanningError> {
+    let (mdp, mut ending) = (problem.mdp, known);
+    problem.checks().until_stable(mdp.num_states(), |state| {
         let may_end = |&action: &usize| {
             mdp.outcomes(state, action).any(|(probability, step)| {
                 probability > 0.0 && (step.terminated || ending[step.state as usize].is_some())
@@ -74,13 +63,10 @@ fn ending_actions(
 }
 
 /// For each state of `within` that can stay forever among such states without a reward, the first action that does so.
-fn staying_actions(
-    mdp: &TabularMdp,
-    stop: &StopFlag<'_>,
-    within: impl Fn(usize) -> bool,
-) -> Result<Vec<Option<usize>>, PlanningError> {
+fn staying_actions(problem: Problem<'_>, within: impl Fn(usize) -> bool) -> Result<Vec<Option<usize>>, PlanningError> {
+    let mdp = problem.mdp;
     let mut staying = collect((0..mdp.num_states()).map(|state| within(state).then_some(0)))?;
-    StopChecks::new(mdp, stop).until_stable(mdp.num_states(), |state| {
+    problem.checks().until_stable(mdp.num_states(), |state| {
         let Some(action) = staying[state] else { return false };
         let stays = |&action: &usize| {
             mdp.outcomes(state, action)

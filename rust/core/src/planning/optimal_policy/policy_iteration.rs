@@ -2,18 +2,17 @@
 
 use std::iter::once;
 
-use crate::StopFlag;
-
-use super::bellman::{action_error, action_values};
 use super::best_policy::best_policy;
 use super::endings::Endings;
-use super::markov_chain::MarkovChain;
-use super::policy_evaluation::evaluate;
-use super::{MAX_SWEEPS, PlanningError, PolicyEvaluation};
+use crate::StopFlag;
 use crate::envs::Env;
 use crate::envs::tabular::TabularMdp;
-use crate::memory::{collect, filled};
+use crate::memory::collect;
 use crate::numeric::argmax;
+use crate::planning::markov_chain::MarkovChain;
+use crate::planning::policy_evaluation::evaluate;
+use crate::planning::problem::Problem;
+use crate::planning::{MAX_SWEEPS, PlanningError, PolicyEvaluation};
 
 /// A stationary policy and its values.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,11 +36,11 @@ pub struct Solution {
 /// Without discounting `NoProperPolicy` and `UnboundedReturn`; `NotConverged`; `Overflow`; `OutOfMemory`; `Stopped` after
 /// `stop` was set.
 pub fn policy_iteration(mdp: &TabularMdp, discount: f64, stop: &StopFlag<'_>) -> Result<Solution, PlanningError> {
-    let endings = Endings::for_discount(mdp, discount, false, stop)?;
+    let problem = Problem { mdp, discount, stop };
+    let endings = Endings::new(problem, false)?;
     let first = collect(endings.policy.iter().copied())?;
-    let improved = improve(mdp, discount, first, filled(&0.0, mdp.num_states(), stop)?, &endings, stop)?;
-    let (policy, evaluation) = improved.settled(mdp, discount, &endings, stop)?;
-    let q_values = action_values(mdp, discount, &evaluation.values, stop)?;
+    let (policy, evaluation) = improve(problem, first, problem.zeros()?, &endings)?.settled(problem, &endings)?;
+    let q_values = problem.action_values(&evaluation.values)?;
     Ok(Solution { values: evaluation.values, q_values, policy })
 }
 
@@ -57,17 +56,15 @@ impl Improved {
     /// evaluates it.
     pub(super) fn settled(
         self,
-        mdp: &TabularMdp,
-        discount: f64,
+        problem: Problem<'_>,
         endings: &Endings,
-        stop: &StopFlag<'_>,
     ) -> Result<(Vec<usize>, PolicyEvaluation), PlanningError> {
         let PolicyEvaluation { values, errors } = &self.evaluation;
-        let best = best_policy(mdp, discount, values, errors, &self.q_values, endings, stop)?;
+        let best = best_policy(problem, values, errors, &self.q_values, endings)?;
         if best == self.policy {
             return Ok((best, self.evaluation));
         }
-        let evaluation = evaluate_actions(mdp, &best, discount, self.evaluation.values, stop)?;
+        let evaluation = evaluate_actions(problem, &best, self.evaluation.values)?;
         Ok((best, evaluation))
     }
 }
@@ -79,20 +76,18 @@ impl Improved {
 /// Without discounting `NoProperPolicy` if the first policy collects rewards forever, and `UnboundedReturn` if a better
 /// one does; otherwise as [`policy_iteration`].
 pub(super) fn improve(
-    mdp: &TabularMdp,
-    discount: f64,
+    problem: Problem<'_>,
     mut policy: Vec<usize>,
     mut guess: Vec<f64>,
     endings: &Endings,
-    stop: &StopFlag<'_>,
 ) -> Result<Improved, PlanningError> {
     for improvements in 0..MAX_SWEEPS {
-        let evaluation = evaluate_actions(mdp, &policy, discount, guess, stop).map_err(|error| match error {
+        let evaluation = evaluate_actions(problem, &policy, guess).map_err(|error| match error {
             PlanningError::NoProperPolicy(state) if improvements > 0 => PlanningError::UnboundedReturn(state),
             _ => error,
         })?;
-        let q_values = action_values(mdp, discount, &evaluation.values, stop)?;
-        let Some(better) = improvement(mdp, discount, &policy, &evaluation, &q_values, endings)? else {
+        let q_values = problem.action_values(&evaluation.values)?;
+        let Some(better) = improvement(problem, &policy, &evaluation, &q_values, endings)? else {
             return Ok(Improved { policy, evaluation, q_values });
         };
         (policy, guess) = (better, evaluation.values);
@@ -116,36 +111,34 @@ pub fn policy_improvement(
     stop: &StopFlag<'_>,
 ) -> Result<(Vec<f64>, Option<Vec<usize>>), PlanningError> {
     assert_eq!(policy.len(), mdp.num_states(), "a policy must have one action per state");
-    let evaluation = evaluate_actions(mdp, policy, discount, filled(&0.0, mdp.num_states(), stop)?, stop)?;
-    let q_values = action_values(mdp, discount, &evaluation.values, stop)?;
-    let better = improvement(mdp, discount, policy, &evaluation, &q_values, &Endings::default())?;
+    let problem = Problem { mdp, discount, stop };
+    let evaluation = evaluate_actions(problem, policy, problem.zeros()?)?;
+    let q_values = problem.action_values(&evaluation.values)?;
+    let better = improvement(problem, policy, &evaluation, &q_values, &Endings::default())?;
     Ok((evaluation.values, better))
 }
 
 fn evaluate_actions(
-    mdp: &TabularMdp,
+    problem: Problem<'_>,
     policy: &[usize],
-    discount: f64,
     guess: Vec<f64>,
-    stop: &StopFlag<'_>,
 ) -> Result<PolicyEvaluation, PlanningError> {
-    let chain = MarkovChain::new(mdp, discount, stop, |state| once((policy[state], 1.0)))?;
-    evaluate(&chain, discount, guess, stop)
+    let chain = MarkovChain::new(problem, |state| once((policy[state], 1.0)))?;
+    evaluate(&chain, guess, problem.stop)
 }
 
 /// The policy after every change to an action that is better by more than the errors of both action values.
 fn improvement(
-    mdp: &TabularMdp,
-    discount: f64,
+    problem: Problem<'_>,
     policy: &[usize],
     PolicyEvaluation { values, errors }: &PolicyEvaluation,
     q_values: &[f64],
     endings: &Endings,
 ) -> Result<Option<Vec<usize>>, PlanningError> {
     let mut better = collect(policy.iter().copied())?;
-    for (state, row) in q_values.chunks(mdp.num_actions()).enumerate() {
+    for (state, row) in q_values.chunks(problem.mdp.num_actions()).enumerate() {
         let (best, taken) = (argmax(row), policy[state]);
-        let error_of = |action| action_error(mdp, state, action, discount, values, errors);
+        let error_of = |action| problem.action_error(state, action, values, errors);
         match endings.staying_action(state) {
             // All states that are worth less than staying without a reward start to stay in the same step, as they may
             // lead to each other.
