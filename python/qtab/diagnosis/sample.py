@@ -10,6 +10,7 @@ from qtab.config import Config
 from qtab.envs.actions import flat
 from qtab.planning.optimum import Optimum
 from qtab.results.run import Run
+from qtab.results.run_state import restored_generator
 from qtab.results.time_steps import rows_of
 from qtab.training.setup.run_env import make_run_env
 from qtab.training.train import train
@@ -66,9 +67,7 @@ def sample_steps(run: Run) -> Sample:
     try:
         plain: Any = env.unwrapped
         for recording in run.recordings:
-            bit_generator = np.random.PCG64()
-            bit_generator.state = dict(recording.start)  # type: ignore[assignment]
-            plain.np_random = np.random.Generator(bit_generator)
+            plain.np_random = restored_generator(recording.start)
             observation, _ = plain.reset()
             for step, action in enumerate(recording.actions[:SAMPLE_STEPS]):
                 steps.append(step)

@@ -23,6 +23,7 @@ from qtab.reference.parts.observer import observed_by
 from qtab.reference.parts.schedules import LearningRate
 from qtab.results.rates import ONLY_FIRST, repeatable
 from qtab.results.run import Run
+from qtab.results.run_state import restored_generator
 from qtab.results.time_steps import rows_of
 from qtab.results.words import Names, checked_action_names, numbered_states
 from qtab.training.setup.run_env import check_same, make_run_env
@@ -179,31 +180,23 @@ def _explained(run: Run, watcher: Watcher, index: int, names: Names) -> Explaine
     pending: tuple[int, ...] = ()
     if run.config.algorithm in N_STEP:
         pending = tuple(range(sum(len(seen.updates) for seen in watcher.steps[: index + 1]), index + 1))
+    seen = vars(step) | {
+        "updates": tuple(step.updates),
+        "policy_updates": tuple(step.policy_updates),
+        "planning": tuple(_named(update, update.rows[0], names) for update in step.planning),
+        "traces": tuple(_named(trace, trace.row, names) for trace in step.traces),
+    }
     return ExplainedStep(
+        **seen,
         step=index,
-        observation=step.observation,
-        rows=step.rows,
         cell=_cell(run, step.rows[0]),
         state=names.state(step.observation),
         action=run.actions[choice.action],
         action_name=names.actions[choice.action],
         choice=choice,
-        reward=step.reward,
-        bonus=step.bonus,
-        next_observation=step.next_observation,
-        next_rows=step.next_rows,
         next_cell=_cell(run, step.next_rows[0]),
         next_state=names.state(step.next_observation),
-        terminated=step.terminated,
-        truncated=step.truncated,
-        terminal=step.terminal,
-        updates=tuple(step.updates),
-        policy_updates=tuple(step.policy_updates),
-        planning=tuple(_named(update, update.rows[0], names) for update in step.planning),
-        traces=tuple(_named(trace, trace.row, names) for trace in step.traces),
-        n_traces=step.n_traces,
         pending=pending,
-        future_return=step.future_return,
         note=_note(run.config.algorithm, step),
     )
 
@@ -247,9 +240,7 @@ class _Watched(gym.Wrapper[Any, Any, Any, Any]):
             self._watcher.begin()
         start = self._watcher.start
         if start is not None:
-            bit_generator = np.random.PCG64()
-            bit_generator.state = dict(start.env_generator)  # type: ignore[assignment]
-            self.env.unwrapped.np_random = np.random.Generator(bit_generator)
+            self.env.unwrapped.np_random = restored_generator(start.env_generator)
             kwargs = {}
         observation, info = self.env.reset(**kwargs)
         if self._watcher.active:

@@ -1,26 +1,27 @@
 """Records the choices and updates of a reference learner in one episode."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from qtab.config import Config
-from qtab.config.options import MONTE_CARLO
+from qtab.config.options import MONTE_CARLO, WITH_STATE_VALUES
+from qtab.explanation import policy_update, updates
 from qtab.explanation.choices import ObservedPolicy, ObservedStream, explained, exploring_start
+from qtab.explanation.equations import total
 from qtab.explanation.fast_forward import Start
 from qtab.explanation.largest_traces import changed, largest_traces
 from qtab.explanation.policy_update import PolicyUpdate
-from qtab.explanation.policy_watcher import PolicyWatcher
 from qtab.explanation.records import Choice, Trace, Update
-from qtab.explanation.updates import Target, UnfinishedUpdate, finish_update
 from qtab.reference.parts.actions import ActionMasks
 from qtab.reference.parts.observer import Observer
 from qtab.reference.parts.policies import Policy
 from qtab.reference.parts.schedules import LearningRate, Schedule
 from qtab.reference.parts.streams import AgentStream
+from qtab.reference.parts.task import value, values
 
 Table = NDArray[np.float64]
 Cell = tuple[int, ...] | None
@@ -59,18 +60,22 @@ class Watcher(Observer):
         self.tables: list[Table] = []
         self.choices: list[Choice] = []
         self.steps: list[SeenStep] = []
+        self._masks: ActionMasks
         self._stream: ObservedStream
-        self._policy: Policy | None = None
+        self._policy: Policy
         self._draws: list[float] = []
-        self._target: Target | None = None
-        self._unfinished: UnfinishedUpdate
+        self._target: dict[str, Any] | None = None
+        """The terms of the target of the next update, by the names of the fields of Update."""
         self._average_reward: float | None = None
+        self._update: Update
         self._before_the_first: list[Update] = []
-        self._policy_watcher = PolicyWatcher(config, cell)
+        self._advantage: dict[str, Any] = {}
+        """The target and the error of the next policy update, by the names of the fields of PolicyUpdate."""
+        self._policy_update: PolicyUpdate
 
     def masks(self, masks: ActionMasks) -> None:
         """Keeps the action masks, which are filled in as states are seen."""
-        self._policy_watcher.masks = masks
+        self._masks = masks
 
     def stream(self, stream: AgentStream) -> AgentStream:
         """Returns a stream that records its last random number."""
@@ -79,7 +84,7 @@ class Watcher(Observer):
 
     def policy(self, policy: Policy) -> Policy:
         """Returns a policy that records its choices."""
-        self._policy = self._policy_watcher.policy = policy
+        self._policy = policy
         self._skip(policy)
         return ObservedPolicy(policy, self._chose)
 
@@ -112,7 +117,7 @@ class Watcher(Observer):
 
     def target(self, step: int | None, rewards: Sequence[float], following: float | None) -> None:
         """Keeps the terms of the target of the next update."""
-        self._target = Target(step, tuple(rewards), following)
+        self._target = {"step": step, "rewards": tuple(rewards), "bootstrap": following}
 
     def returned(self, step: int, target: float) -> None:
         """Keeps the return of a step."""
@@ -125,13 +130,23 @@ class Watcher(Observer):
 
     def exploring_start(self, values: Table, action: int, valid: int) -> None:
         """Records a first action that no policy chose."""
-        if self.active and self._policy is not None:
+        if self.active:
             self.choices.append(exploring_start(self._policy, values, action, valid))
 
     def advantage(self, state: Sequence[int], target: float, reference: float, power: float) -> None:
-        """Keeps the target and the reference of an action."""
+        """Keeps the target and the reference of an action, and their difference."""
         if self.active:
-            self._policy_watcher.advantage(self._reported(), self.tables, state, target, reference, power)
+            reported = self._reported()
+            rewards = reported.pop("rewards")
+            self._advantage = {
+                **reported,
+                "reward": rewards[0] if rewards else None,
+                "target": target,
+                "reference": reference,
+                "error": target - reference,
+                "power": power,
+                "value_before": self._state_value(state),
+            }
 
     def before_ascent(
         self,
@@ -143,41 +158,85 @@ class Watcher(Observer):
         z: Table | None,
     ) -> None:
         """Begins an update of preferences."""
-        if self.active:
-            self._policy_watcher.begin(H, state, action, step_size, gradient, z)
+        if not self.active:
+            return
+        rows = tuple(state)
+        self._policy_update = PolicyUpdate(
+            **self._advantage,
+            rows=rows,
+            cell=self.cell(rows[0]),
+            action=action,
+            step_size=step_size,
+            gradient=tuple(gradient),
+            traces=() if z is None else _rows(z, rows),
+            before=_rows(H, rows),
+            probabilities_before=self._probabilities(H, rows),
+            after=(),
+            probabilities_after=(),
+            value_after=None,
+            equations=(),
+            numbers=(),
+        )
+        if z is not None:
+            seen = self.steps[self._policy_update.step]
+            seen.traces, seen.n_traces = largest_traces(z, H, self.cell)
 
-    def after_ascent(self, H: Table) -> None:  # noqa: N803, ARG002
+    def after_ascent(self, H: Table) -> None:  # noqa: N803
         """Ends the update of preferences."""
         if self.active:
-            update, traces, n_traces = self._policy_watcher.end(self.tables)
-            seen = self.steps[update.step]
-            seen.policy_updates.append(update)
-            seen.traces, seen.n_traces = traces, n_traces
+            rows, seen = self._policy_update.rows, self.steps[self._policy_update.step]
+            update = replace(
+                self._policy_update,
+                after=_rows(H, rows),
+                probabilities_after=self._probabilities(H, rows),
+                value_after=self._state_value(rows),
+            )
+            symbols, numbers = zip(*policy_update.equations_of(self.config, update), strict=True)
+            seen.policy_updates.append(replace(update, equations=symbols, numbers=numbers))
+            seen.traces = changed(seen.traces, H)
 
     def before_update(self, Q: Table, state: Sequence[int], action: int, target: float) -> None:  # noqa: N803
         """Begins an update: of this step, of an earlier one for n-step methods, or in planning."""
         if self.active:
-            table = next(index for index, known in enumerate(self.tables) if known is Q)
-            weights = self._weights(table, state)
-            self._unfinished = UnfinishedUpdate(self._reported(), table, tuple(state), action, target, weights)
-            self._unfinished.average_reward = self._average_reward
+            weights = tuple(Q[list(state), action].tolist())
+            before = total(weights)
+            self._update = Update(
+                **self._reported(),
+                table=next(index for index, known in enumerate(self.tables) if known is Q),
+                rows=tuple(state),
+                cell=self.cell(state[0]),
+                action=action,
+                target=target,
+                error=target - before,
+                average_reward=self._average_reward,
+                before=before,
+                weights_before=weights,
+                step_sizes=(),
+                traces=(),
+                old_value=None,
+                after=before,
+                weights_after=weights,
+                equations=(),
+                numbers=(),
+            )
 
     def traces(self, z: Table, old_value: float | None = None) -> None:
         """Keeps the traces that the update begun last applies: those of S and A, and the largest ones of all."""
         if self.active:
-            unfinished, seen = self._unfinished, self.steps[-1]
-            unfinished.old_value = old_value
-            unfinished.traces = tuple(float(z[row, unfinished.action]) for row in unfinished.rows)
+            begun, seen = self._update, self.steps[-1]
+            own = tuple(z[list(begun.rows), begun.action].tolist())
+            self._update = replace(begun, traces=own, old_value=old_value)
             seen.traces, seen.n_traces = largest_traces(z, self.tables[0], self.cell)
 
     def after_update(self, Q: Table, step_sizes: Sequence[float] | None) -> None:  # noqa: N803
         """Ends the update."""
         if not self.active:
             return
-        unfinished, seen = self._unfinished, self.steps[-1] if self.steps else None
-        unfinished.step_sizes = tuple(step_sizes or ())
-        weights = self._weights(unfinished.table, unfinished.rows)
-        update = finish_update(unfinished, self.config, self.cell(unfinished.rows[0]), weights)
+        begun, seen = self._update, self.steps[-1] if self.steps else None
+        weights = tuple(Q[list(begun.rows), begun.action].tolist())
+        update = replace(begun, step_sizes=tuple(step_sizes or ()), after=total(weights), weights_after=weights)
+        symbols, numbers = zip(*updates.equations_of(self.config, update), strict=True)
+        update = replace(update, equations=symbols, numbers=numbers)
         if seen is None:
             self._before_the_first.append(update)
         elif update.step is None:
@@ -187,7 +246,7 @@ class Watcher(Observer):
             self.steps[update.step if by_episode else -1].updates.append(update)
             seen.traces = changed(seen.traces, Q)
 
-    def _reported(self) -> Target:
+    def _reported(self) -> dict[str, Any]:
         """Returns the target that the learner reported for this update, and removes it."""
         reported, self._target = self._target, None
         if reported is None:
@@ -199,9 +258,17 @@ class Watcher(Observer):
             schedule.end_episode()
 
     def _chose(self, values: NDArray[np.float64], state: list[int], bounds: list[float], action: int) -> None:
-        if self.active and self._policy is not None:
+        if self.active:
             drawn = self._draws[0] if self._draws else float("nan")
             self.choices.append(explained(self._policy, values, state, bounds, action, drawn))
 
-    def _weights(self, table: int, rows: Sequence[int]) -> tuple[tuple[float, ...], ...]:
-        return tuple(tuple(self.tables[table][row].tolist()) for row in rows)
+    def _probabilities(self, H: Table, rows: Sequence[int]) -> tuple[float, ...]:  # noqa: N803
+        state = list(rows)
+        return tuple(map(float, self._policy.probabilities(self._masks.masked(state, values(H, state)), state)))
+
+    def _state_value(self, rows: Sequence[int]) -> float | None:
+        return value(self.tables[1], list(rows), 0) if self.config.algorithm in WITH_STATE_VALUES else None
+
+
+def _rows(table: Table, rows: Sequence[int]) -> tuple[tuple[float, ...], ...]:
+    return tuple(tuple(table[row].tolist()) for row in rows)

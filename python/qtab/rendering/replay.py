@@ -5,12 +5,12 @@ from contextlib import closing
 from typing import Any
 
 import gymnasium as gym
-import numpy as np
 from gymnasium.envs.registration import EnvSpec
 
 from qtab._utils.progress import ProgressBar
 from qtab.config import Config
 from qtab.results.run import Recording, Run
+from qtab.results.run_state import restored_generator
 from qtab.training.restore import continue_after
 from qtab.training.setup.run_env import make_run_env
 
@@ -72,9 +72,7 @@ def replay_episode(env: gym.Env, recording: Recording, on_frame: Callable[[], ob
     The episode is the same if the environment draws random numbers from its ``np_random`` only, as all environments of
     Gymnasium do.
     """
-    bit_generator = np.random.PCG64()
-    bit_generator.state = dict(recording.start)  # type: ignore[assignment]
-    env.unwrapped.np_random = np.random.Generator(bit_generator)
+    env.unwrapped.np_random = restored_generator(recording.start)
     env.reset()
     on_frame()
     episode_return = 0.0

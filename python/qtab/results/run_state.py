@@ -65,6 +65,13 @@ def generator_state(generator: np.random.Generator) -> dict[str, Any]:
     return state
 
 
+def restored_generator(state: Mapping[str, Any]) -> np.random.Generator:
+    """Returns a generator whose bit generator, a PCG64, is in a recorded state."""
+    bit_generator = np.random.PCG64()
+    bit_generator.state = dict(state)  # type: ignore[assignment]
+    return np.random.Generator(bit_generator)
+
+
 def _to_json(value: Any) -> Any:
     if isinstance(value, Mapping):
         return {str(name): _to_json(item) for name, item in value.items()}
