@@ -1,13 +1,15 @@
 """The learning rate of a prediction: the schedules that a method supports, and the checks of their options."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any, get_args
 
 from qtab._utils import checks
 from qtab._utils.shown import shown
+from qtab.config import options as config
 from qtab.config.choices import LearningRateSchedule
 from qtab.config.implied import implied_schedule
-from qtab.config.options import listed
+from qtab.config.options import Option, listed
+from qtab.config.value_checks import Check
 
 ONE_STEP_SIZE = ("td_lambda", "true_online_td_lambda")
 """The methods with traces, which need a single step size for all weights."""
@@ -16,12 +18,8 @@ AVERAGES_ONLY = ("importance_sampling", "batch_td")
 LARGEST = 2.0
 """The largest learning rate, which is divided among the active features."""
 
-OPTIONS: Mapping[str, tuple[tuple[str, ...], float]] = {
-    "min_learning_rate": (("linear", "exponential", "visits"), 0.0),
-    "learning_rate_decay": (("exponential",), 0.999),
-    "learning_rate_warm_up": (("linear", "exponential"), 0),
-}
-"""The schedules that an option applies to, and its default there, the same as in :class:`qtab.Config`."""
+OPTIONS = {name: config.OPTIONS[name] for name in ("min_learning_rate", "learning_rate_decay", "learning_rate_warm_up")}
+"""The options of the schedules, with the defaults of :class:`qtab.Config`."""
 
 
 def checked_learning_rate(method: str, episodes: int, given: Mapping[str, Any]) -> dict[str, Any]:
@@ -64,24 +62,17 @@ def checked_learning_rate(method: str, episodes: int, given: Mapping[str, Any]) 
             return checks.integer(name, option, least=0, most=episodes - 1)
         return checks.real(name, option, 0.0, rate if name == "min_learning_rate" else 1.0)
 
-    return checked | applied("learning_rate_schedule", kind, OPTIONS, given, check, fill=schedule is not None)
+    return checked | applied(kind, OPTIONS, given, check, fill=schedule is not None)
 
 
 def applied(
-    choice: str,
-    chosen: str,
-    options: Mapping[str, tuple[tuple[str, ...], Any]],
-    given: Mapping[str, Any],
-    check: Callable[[str, Any], Any],
-    *,
-    fill: bool = True,
+    chosen: str, options: Mapping[str, Option], given: Mapping[str, Any], check: Check, *, fill: bool = True
 ) -> dict[str, Any]:
     """Returns the checked options that apply to a choice.
 
     Args:
-        choice: The setting that decides which options apply.
-        chosen: The value of that setting.
-        options: For each option the values to which it applies, and its default; None if it must be given.
+        chosen: The value of the setting that decides which options apply.
+        options: The options; one without a default must be given.
         given: The settings.
         check: A function that checks the value of an option, given its name.
         fill: Whether to fill in defaults for options that are not given.
@@ -90,14 +81,15 @@ def applied(
         ValueError: if an option is missing, or given although it does not apply.
     """
     checked = {}
-    for name, (values, default) in options.items():
-        option = given[name]
-        if chosen in values and (fill or option is not None):
-            if option is None and default is None:
-                raise ValueError(f"{name} must be given for {choice} {chosen!r}, got None")
-            checked[name] = check(name, default if option is None else option)
-        elif option is not None:
-            raise ValueError(f"{name} applies to {choice} {listed(values)}, not to {chosen!r}, got {shown(option)}")
+    for name, option in options.items():
+        value = given[name]
+        if chosen in option.values and (fill or value is not None):
+            if value is None and option.default is None:
+                raise ValueError(f"{name} must be given for {option.choice} {chosen!r}, got None")
+            checked[name] = check(name, option.default if value is None else value)
+        elif value is not None:
+            applies = f"{option.choice} {listed(option.values)}"
+            raise ValueError(f"{name} applies to {applies}, not to {chosen!r}, got {shown(value)}")
     return checked
 
 

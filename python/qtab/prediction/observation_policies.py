@@ -21,7 +21,7 @@ from qtab.planning.policies import (
     probabilities,
     refuse_time_aware,
 )
-from qtab.results.action_values import read_by_policy
+from qtab.results.action_values import masked_tables
 from qtab.results.run import Run
 
 
@@ -46,11 +46,7 @@ class GreedyPolicy:
     @property
     def tables(self) -> NDArray[np.float64]:
         """The action values, (tables, rows, actions). Their sums over tables and active rows are compared."""
-        tables = read_by_policy(self.run.config, self.run.tables)
-        if self.run.action_masks is not None:
-            masks = self.run.action_masks.reshape(tables.shape[1:])
-            tables = np.where(masks, tables, -np.inf)
-        return np.ascontiguousarray(tables)
+        return np.ascontiguousarray(masked_tables(self.run))
 
     def spec(self) -> ObservationPolicySpec:
         """Returns the policy in the form that the extension reads."""

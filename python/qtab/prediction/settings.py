@@ -7,7 +7,9 @@ from typing import Any, Literal, TypeAlias, get_args
 
 from qtab._utils import checks
 from qtab._utils.fields import with_fields
+from qtab.config import value_checks as check
 from qtab.config.choices import BitGenerator, LearningRateSchedule, OnTruncation
+from qtab.config.options import Option
 from qtab.prediction.learning_rates import applied, checked_learning_rate
 
 Method: TypeAlias = Literal[
@@ -23,13 +25,14 @@ Method: TypeAlias = Literal[
 METHODS: tuple[str, ...] = get_args(Method)
 """The names of the methods."""
 
-_OPTIONS: Mapping[str, tuple[tuple[str, ...], Any]] = {
-    "n_steps": (("n_step_td",), None),
-    "trace_decay": (("td_lambda", "true_online_td_lambda", "offline_lambda_return"), None),
-    "first_visit": (("monte_carlo", "importance_sampling"), False),
-    "weighted": (("importance_sampling",), True),
+_WITH_LAMBDA = ("td_lambda", "true_online_td_lambda", "offline_lambda_return")
+_OPTIONS: Mapping[str, Option] = {
+    "n_steps": Option(check.count, "method", ("n_step_td",), None),
+    "trace_decay": Option(check.real(0.0, 1.0), "method", _WITH_LAMBDA, None),
+    "first_visit": Option(checks.boolean, "method", ("monte_carlo", "importance_sampling"), False),
+    "weighted": Option(checks.boolean, "method", ("importance_sampling",), True),
 }
-"""The methods that an option applies to, and its default there; None if it must be given."""
+"""The options of the methods; one without a default must be given."""
 
 
 @with_fields
@@ -94,7 +97,8 @@ class PredictionSettings:
             "on_truncation": checks.choice("on_truncation", self.on_truncation, get_args(OnTruncation)),
             "bit_generator": checks.choice("bit_generator", self.bit_generator, get_args(BitGenerator)),
         }
-        given.update(checked | applied("method", method, _OPTIONS, given, _option))
+        options = applied(method, _OPTIONS, given, lambda name, value: _OPTIONS[name].check(name, value))
+        given.update(checked | options)
 
     def replace(self, **changes: Any) -> "PredictionSettings":
         """Returns a copy with some settings changed.
@@ -107,7 +111,7 @@ class PredictionSettings:
 
     def method_spec(self) -> dict[str, Any]:
         """Returns the method and its options in the form that the extension reads."""
-        options = {name: getattr(self, name) for name, (methods, _) in _OPTIONS.items() if self.method in methods}
+        options = {name: getattr(self, name) for name, option in _OPTIONS.items() if self.method in option.values}
         return {"type": self.method, **options}
 
     def config(self) -> dict[str, Any]:
@@ -132,11 +136,3 @@ class PredictionSettings:
             "count_bonus": 0.0,
             "time_aware": False,
         }
-
-
-def _option(name: str, value: Any) -> Any:
-    if name == "n_steps":
-        return checks.count(name, value, least=1)
-    if name == "trace_decay":
-        return checks.real(name, value, 0.0, 1.0)
-    return checks.boolean(name, value)

@@ -35,6 +35,12 @@ def read_by_policy(config: Config, tables: NDArray[np.float64]) -> NDArray[np.fl
     return tables[:1] if config.algorithm in WITH_STATE_VALUES else tables
 
 
+def masked_tables(run: "Run") -> NDArray[np.float64]:
+    """Returns (k, rows, actions): the tables that the greedy policy adds, with -inf where a mask excludes an action."""
+    tables = read_by_policy(run.config, run.tables)
+    return tables if run.action_masks is None else np.where(run.action_masks.reshape(tables.shape[1:]), tables, -np.inf)
+
+
 def greedy_table(run: "Run") -> NDArray[np.float64]:
     """Returns (1, rows, actions): the table that the greedy policy uses; with two tables their sum."""
     return summed(read_by_policy(run.config, run.tables))[np.newaxis]

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils.files import replacing
-from qtab.results.action_values import read_by_policy
+from qtab.results.action_values import masked_tables
 from qtab.results.consistency import check_consistent
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ def plain_data(run: "Run") -> dict[str, Any]:
         "discretizer": dict(discretizer.spec()),
         "shape": list(discretizer.shape),
         "actions": [_plain(actions[column]) for column in range(len(actions))],
-        "q_tables": [_rows(_masked(table, run.action_masks)) for table in read_by_policy(run.config, run.tables)],
+        "q_tables": list(map(_rows, masked_tables(run))),
         "versions": dict(run.versions),
     }
 
@@ -79,11 +79,6 @@ def _plain(action: Any) -> Any:
     if isinstance(action, tuple):
         return [_plain(part) for part in action]
     return action.tolist() if isinstance(action, np.ndarray | np.generic) else action
-
-
-def _masked(table: NDArray[np.float64], action_masks: NDArray[np.bool_] | None) -> NDArray[np.float64]:
-    """Returns a table with -inf where the mask of a cell excludes an action."""
-    return table if action_masks is None else np.where(action_masks.reshape(table.shape), table, -np.inf)
 
 
 def _rows(table: NDArray[np.float64]) -> list[list[float | None]]:

@@ -8,15 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab.config import Config
-from qtab.prediction.reference.batch_td import batch_td
 from qtab.prediction.reference.common import Prediction
-from qtab.prediction.reference.importance_sampling import importance_sampling
-from qtab.prediction.reference.monte_carlo import monte_carlo
-from qtab.prediction.reference.n_step_td import n_step_td
-from qtab.prediction.reference.offline_lambda_return import offline_lambda_return
-from qtab.prediction.reference.td import td
-from qtab.prediction.reference.td_lambda import td_lambda
-from qtab.prediction.reference.true_online_td_lambda import true_online_td_lambda
+from qtab.prediction.reference.returns import importance_sampling, monte_carlo, offline_lambda_return
+from qtab.prediction.reference.td import batch_td, n_step_td, td
+from qtab.prediction.reference.traces import td_lambda, true_online_td_lambda
 
 if TYPE_CHECKING:
     from qtab.prediction.estimates import ValueEstimates

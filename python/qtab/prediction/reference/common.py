@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from qtab.config import Config
 from qtab.config.config import replace_checked
-from qtab.prediction.observation_policies import TablePolicy
+from qtab.prediction.learning_rates import rate_settings
+from qtab.prediction.observation_policies import ObservationPolicies, TablePolicy
 from qtab.prediction.reference.policies import policy_of, probability
 from qtab.reference.parts.schedules import LearningRate
 from qtab.reference.parts.task import Rows, Task
@@ -58,22 +59,13 @@ class Prediction:
         self.rows: list[list[int]] = [] if estimates.rows is None else estimates.rows.tolist()
         count, n_active = estimates.weights.shape[2], estimates.n_active
         self.w = np.full(count, self.settings.initial_value / n_active)
-        settings, by_visits = self.settings, self.settings.learning_rate is None
-        learning_rate: dict[str, Any] = {
-            "learning_rate": 1.0 if settings.learning_rate is None else settings.learning_rate,
-            "learning_rate_schedule": settings.learning_rate_schedule or ("visits" if by_visits else "constant"),
-            "min_learning_rate": settings.min_learning_rate,
-            "learning_rate_decay": settings.learning_rate_decay,
-            "learning_rate_warm_up": settings.learning_rate_warm_up,
-        }
-        self.rate = LearningRate(replace_checked(config, **learning_rate), (count, 1), n_active)
+        self.rate = LearningRate(replace_checked(config, **rate_settings(vars(self.settings))), (count, 1), n_active)
         policies = estimates.policies
         if policies is None:
-            given = TablePolicy(_by_row(estimates.probabilities)), TablePolicy(_by_row(estimates.behavior))
-            self.target, self.behavior = (policy_of(policy, env) for policy in given)
-        else:
-            self.target, self.behavior = policy_of(policies.target, env), policy_of(policies.behavior, env)
-        self.is_off_policy = settings.method == "importance_sampling"
+            both = TablePolicy(_by_row(estimates.probabilities)), TablePolicy(_by_row(estimates.behavior))
+            policies = ObservationPolicies(*both)
+        self.target, self.behavior = policy_of(policies.target, env), policy_of(policies.behavior, env)
+        self.is_off_policy = self.settings.method == "importance_sampling"
 
     def value(self, state: int) -> float:
         """Returns v(S), the sum of the weights of its active features from left to right."""
