@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 
+from qtab.config.choices import CHOICES
 from qtab.reference.actor_critic import actor_critic, actor_critic_lambda
 from qtab.reference.average_reward import differential_q_learning, differential_sarsa
 from qtab.reference.double_q_learning import double_q_learning
@@ -17,36 +18,6 @@ from qtab.reference.sarsa import expected_sarsa, sarsa
 from qtab.reference.sarsa_lambda import sarsa_lambda
 from qtab.reference.true_online_sarsa_lambda import true_online_sarsa_lambda
 from qtab.reference.watkins_q_lambda import watkins_q_lambda
-
-LEARNERS: Mapping[str, Callable[..., Result]] = {
-    learner.__name__: learner
-    for learner in (
-        q_learning,
-        sarsa,
-        expected_sarsa,
-        double_q_learning,
-        n_step_sarsa,
-        sarsa_lambda,
-        true_online_sarsa_lambda,
-        watkins_q_lambda,
-        dyna_q,
-        dyna_q_plus,
-        monte_carlo,
-        monte_carlo_es,
-        off_policy_monte_carlo,
-        n_step_tree_backup,
-        n_step_q_sigma,
-        prioritized_sweeping,
-        differential_sarsa,
-        differential_q_learning,
-        gradient_bandit,
-        reinforce,
-        reinforce_with_baseline,
-        actor_critic,
-        actor_critic_lambda,
-    )
-}
-"""Each algorithm by its name."""
 
 __all__ = [
     "LEARNERS",
@@ -75,3 +46,6 @@ __all__ = [
     "true_online_sarsa_lambda",
     "watkins_q_lambda",
 ]
+
+LEARNERS: Mapping[str, Callable[..., Result]] = {name: globals()[name] for name in CHOICES["algorithm"]}
+"""Each algorithm by its name."""

@@ -56,11 +56,11 @@ Weight = Callable[[float, float], float]
 """Returns the weight of the return after A from π(A | S) and the importance sampling ratio ρ."""
 
 
-def n_step_backups(
-    env: gym.Env, config: Config, stop_after: int | None, n: int, greedy: bool, weight: Weight
-) -> Result:
+def n_step_backups(env: gym.Env, config: Config, stop_after: int | None, weight: Weight) -> Result:
     """Trains towards returns over n steps. The target policy π is greedy, or else the behaviour policy."""
     task = Task(env, config, stop_after)
+    options = algorithm_options(config)
+    n, greedy = options.n_steps, options.target_policy == "greedy"
     Q = task.table()
 
     def chosen(state: Rows) -> tuple[int, float]:
@@ -125,18 +125,10 @@ def probability(task: Task, Q: Table, state: Rows, action: int, greedy: bool) ->
 
 def n_step_tree_backup(env: gym.Env, config: Config, stop_after: int | None = None) -> Result:
     """Trains on ``env``; see :func:`qtab.reference.q_learning`."""
-    options = algorithm_options(config)
-    greedy = options.target_policy == "greedy"
-    return n_step_backups(env, config, stop_after, options.n_steps, greedy, lambda share, _ratio: share)
+    return n_step_backups(env, config, stop_after, lambda share, _ratio: share)
 
 
 def n_step_q_sigma(env: gym.Env, config: Config, stop_after: int | None = None) -> Result:
     """Trains on ``env``; see :func:`qtab.reference.q_learning`."""
-    options = algorithm_options(config)
-    sigma: float = options.sigma
-    greedy: bool = options.target_policy == "greedy"
-
-    def weight(share: float, ratio: float) -> float:
-        return sigma * ratio + (1.0 - sigma) * share
-
-    return n_step_backups(env, config, stop_after, options.n_steps, greedy, weight)
+    sigma: float = algorithm_options(config).sigma
+    return n_step_backups(env, config, stop_after, lambda share, ratio: sigma * ratio + (1.0 - sigma) * share)

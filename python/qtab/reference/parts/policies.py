@@ -1,6 +1,7 @@
 """Policies, which choose actions from their values (Sutton & Barto, 2nd ed., sections 2.2, 2.7 and 2.8)."""
 
 import math
+from collections.abc import Callable
 from typing import Protocol
 
 import numpy as np
@@ -24,10 +25,10 @@ class Policy(Protocol):
         """Returns the probability of each action in a state."""
 
     def end_episode(self) -> None:
-        """Called after every episode."""
+        """Called after every episode; softmax and UCB do not change then."""
 
 
-class EpsilonGreedy:
+class EpsilonGreedy(Policy):
     """With probability ε a random action, else a greedy one."""
 
     def __init__(self, config: Config, rng: AgentStream) -> None:
@@ -64,7 +65,7 @@ class EpsilonGreedy:
         self.epsilon.end_episode()
 
 
-class Softmax:
+class Softmax(Policy):
     """Each action with probability proportional to exp(Q / τ)."""
 
     def __init__(self, config: Config, rng: AgentStream) -> None:
@@ -89,11 +90,8 @@ class Softmax:
             total += weight
         return [weight / total for weight in weights]
 
-    def end_episode(self) -> None:
-        """Keeps the temperature, which is constant."""
 
-
-class Ucb:
+class Ucb(Policy):
     """The action with the largest upper confidence bound of its value (section 2.7)."""
 
     def __init__(self, config: Config, rng: AgentStream) -> None:
@@ -132,9 +130,6 @@ class Ucb:
         candidates = self.candidates(values, state)
         return [1.0 / len(candidates) if action in candidates else 0.0 for action in range(len(values))]
 
-    def end_episode(self) -> None:
-        """Keeps the counts."""
-
 
 def valid_actions(config: Config, values: Values) -> list[int]:
     """Returns the actions that a state has. All others have the value -inf, by a mask or in the initial table."""
@@ -146,6 +141,6 @@ def valid_actions(config: Config, values: Values) -> list[int]:
 
 def policy(config: Config, rng: AgentStream) -> Policy:
     """Returns the policy of a complete config."""
-    kinds: dict[str, type[EpsilonGreedy] | type[Softmax] | type[Ucb]]
+    kinds: dict[str, Callable[[Config, AgentStream], Policy]]
     kinds = {"epsilon_greedy": EpsilonGreedy, "softmax": Softmax, "ucb": Ucb}
     return kinds[config.exploration](config, rng)

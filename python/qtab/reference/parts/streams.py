@@ -19,23 +19,12 @@ class AgentStream(Protocol):
         """Returns floats in [``low``, ``high``), in C order."""
 
 
-class LegacyStream:
+class LegacyStream(np.random.RandomState):
     """NumPy's legacy generator: the numbers after ``np.random.seed(seed)``, without touching NumPy's global state."""
-
-    def __init__(self, seed: int) -> None:
-        self._state = np.random.RandomState(seed)
-
-    def random(self) -> float:
-        """Returns a float in [0, 1)."""
-        return self._state.random()
 
     def integers(self, low: int, high: int) -> int:
         """Returns an integer from ``low`` to ``high`` - 1."""
-        return int(self._state.randint(low, high))
-
-    def uniform(self, low: float, high: float, size: tuple[int, ...]) -> NDArray[np.float64]:
-        """Returns floats in [``low``, ``high``), in C order."""
-        return self._state.uniform(low, high, size)
+        return int(self.randint(low, high))
 
 
 def agent_stream(seed: int, bit_generator: str) -> AgentStream:

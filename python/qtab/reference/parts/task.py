@@ -72,8 +72,14 @@ class Task:
         return rate
 
     def table(self, index: int = 0, tables: int = 1) -> Table:
-        """Returns one of the tables as it is before the first episode."""
-        Q = self.initial_table(index, tables)
+        """Returns one of the tables as it is before the first episode: of a number, random numbers, or given ones."""
+        shape, initial_q = (self.n_rows, self.n_actions), self.config.initial_q
+        if isinstance(initial_q, float):
+            Q = np.full(shape, initial_q)
+        elif isinstance(initial_q, tuple):
+            Q = self.rng.uniform(*initial_q, size=shape)
+        else:
+            Q = initial_q.reshape(tables, *shape)[index].copy()
         self.observer.table(Q)
         return Q
 
@@ -84,16 +90,6 @@ class Task:
         w = np.zeros((self.n_rows, self.n_actions))
         self.observer.table(w)
         return w
-
-    def initial_table(self, index: int, tables: int) -> Table:
-        """Returns the initial values: a number, random numbers, or given ones."""
-        shape = (self.n_rows, self.n_actions)
-        if isinstance(self.config.initial_q, float):
-            return np.full(shape, self.config.initial_q)
-        if isinstance(self.config.initial_q, tuple):
-            return self.rng.uniform(*self.config.initial_q, size=shape)
-        given: Table = self.config.initial_q.reshape(tables, *shape)[index].copy()
-        return given
 
     def episodes(self) -> Iterator[int]:
         """Yields the numbers of the episodes; after each one the rates decrease."""
