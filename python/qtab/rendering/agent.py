@@ -1,6 +1,7 @@
 """An agent that acts greedily in an environment: a run, or an optimum."""
 
 from collections.abc import Callable, Mapping
+from contextlib import closing
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,7 +13,7 @@ from qtab._utils.shown import shown
 from qtab.config import Config
 from qtab.envs.registry import spec_of
 from qtab.planning.optimum import Optimum
-from qtab.rendering.replay import check_render_mode, make_render_env, render_env
+from qtab.rendering.replay import check_render_mode, make_render_env
 from qtab.results.action_values import greedy_table
 from qtab.results.run import Run
 from qtab.results.time_steps import rows_of
@@ -31,16 +32,6 @@ class Agent:
     """Takes an observation, a state, None at first, and the action mask, None without one; returns the action as
     ``env.step`` takes it, and the state."""
 
-    @property
-    def env(self) -> str:
-        """The environment's id, or the name of its class."""
-        return self.config.env
-
-    @property
-    def max_episode_steps(self) -> int:
-        """The time limit, in steps."""
-        return int(self.config.max_episode_steps or 0)
-
 
 def agent_of(source: Any) -> Agent:
     """Returns the agent of a run or of an optimum.
@@ -51,8 +42,7 @@ def agent_of(source: Any) -> Agent:
     if isinstance(source, Run):
         return Agent(source, source.config, _greedy(source))
     if isinstance(source, Optimum):
-        best = source
-        return Agent(best, best.config, lambda seen, state, _: best.predict(seen, state))
+        return Agent(source, source.config, lambda seen, state, _: source.predict(seen, state))
     hint = "; qtab.load reads one from a file" if isinstance(source, str) or hasattr(source, "__fspath__") else ""
     raise TypeError(f"run must be a Run or an Optimum, got {shown(source)}{hint}")
 
@@ -99,13 +89,11 @@ def rendered_environment(
     if env is None:
         return make_render_env(agent.config, render_mode, env_kwargs, max_episode_steps)
     spec = env if isinstance(env, EnvSpec) else spec_of(env)
-    made = render_env(spec, env_kwargs or {}, max_episode_steps, render_mode)
-    try:
-        _check_spaces(agent, made)
-    except ValueError:
-        made.close()
-        raise
-    return made
+    kwargs = dict(env_kwargs or {})
+    with closing(gym.make(spec, **kwargs)) as plain:
+        check_render_mode(spec.id, plain, render_mode)
+        _check_spaces(agent, plain)
+    return gym.make(spec, max_episode_steps=max_episode_steps, **kwargs | {"render_mode": render_mode})
 
 
 def _check_spaces(agent: Agent, env: gym.Env) -> None:

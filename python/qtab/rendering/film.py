@@ -2,9 +2,10 @@
 
 import os
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import gymnasium as gym
@@ -17,8 +18,8 @@ from qtab.rendering.window import is_headless
 
 
 @dataclass(frozen=True)
-class Scene:
-    """The agent, the environment, the seed and the speed of a film."""
+class Film:
+    """An agent's episodes, whose pictures are rendered once on first use."""
 
     agent: Agent
     env: Any
@@ -37,8 +38,16 @@ class Scene:
         with self._environment("human") as env, _with_speed(env.unwrapped, self.fps):
             return play_episodes(self.agent, env, self.episodes, self.seed, lambda *_: not _is_window_closed())
 
-    def record(self) -> tuple[Episodes, Frames]:
-        """Plays without a window; returns the episodes, and a picture of each state."""
+    def record(self) -> Episodes:
+        """Plays without a window, and keeps the pictures; returns the episodes."""
+        return self._recorded[0]
+
+    def frames(self) -> Frames:
+        """Returns a picture of each state."""
+        return self._recorded[1]
+
+    @cached_property
+    def _recorded(self) -> tuple[Episodes, Frames]:
         with _without_display(), self._environment("rgb_array") as env:
             frames = Frames(frames_per_second(env, self.fps))
             with ProgressBar(self.episodes, "episode", None, "render") as bar:
@@ -58,34 +67,6 @@ class Scene:
         finally:
             if not isinstance(self.env, gym.Env):
                 env.close()
-
-
-class Film:
-    """The pictures of a scene, rendered once on first use."""
-
-    def __init__(self, scene: Scene) -> None:
-        self._scene = scene
-        self._frames: Frames | None = None
-        self._player: str | None = None
-
-    def record(self) -> Episodes:
-        """Plays the scene and keeps its pictures."""
-        played, self._frames = self._scene.record()
-        return played
-
-    def frames(self) -> Frames:
-        """Returns the pictures."""
-        if self._frames is None:
-            self.record()
-        if self._frames is None:
-            raise AssertionError("record keeps the pictures")
-        return self._frames
-
-    def player(self, make: Callable[[Frames], str]) -> str:
-        """Returns the player of the pictures, made once."""
-        if self._player is None:
-            self._player = make(self.frames())
-        return self._player
 
 
 @contextmanager

@@ -4,6 +4,7 @@ import logging
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import gymnasium as gym
@@ -19,7 +20,7 @@ from qtab._utils.shown import counted
 from qtab.config.unknown import suggesting
 from qtab.planning.optimum import Optimum
 from qtab.rendering.agent import agent_of
-from qtab.rendering.film import Film, Scene
+from qtab.rendering.film import Film
 from qtab.rendering.formats import check_video_path, save_video
 from qtab.rendering.player import episode_player
 from qtab.rendering.window import display_problem
@@ -78,11 +79,15 @@ class Playback:
         save_video(self.film.frames(), target, self._page)
 
     def _page(self) -> str:
-        return page(self.env, f"{paragraph(self.summary)}\n{self._repr_html_()}")
+        return page(self.env, f"{paragraph(self.summary)}\n{self._player}")
 
     def _repr_html_(self) -> str:
         """HTML for notebooks: a player."""
-        return self.film.player(lambda frames: episode_player(frames, self.summary))
+        return self._player
+
+    @cached_property
+    def _player(self) -> str:
+        return episode_player(self.film.frames(), self.summary)
 
 
 @suggesting
@@ -131,17 +136,16 @@ def play(
     seed = checks.integer("seed", seed, least=0)
     if fps is not None:
         fps = checks.real("fps", fps, 0.01, MAX_FPS)
-    limit = agent.max_episode_steps if max_episode_steps is None else max_episode_steps
+    limit = agent.config.max_episode_steps if max_episode_steps is None else max_episode_steps
     limit = checks.count("max_episode_steps", limit, least=1)
     if window is not None:
         window = checks.boolean("window", window)
-    scene = Scene(agent, env, env_kwargs, limit, episodes, seed, fps)
-    film = Film(scene)
+    film = Film(agent, env, env_kwargs, limit, episodes, seed, fps)
     opens, problem = _opens_window(env, window)
-    played = scene.show() if opens else film.record()
+    played = film.show() if opens else film.record()
     if problem is not None:  # now that there are pictures to save
         _LOGGER.warning("no window is shown (%s); .save('agent.mp4') writes the video", problem)
-    return Playback(agent.env, played.returns, played.lengths, played.terminated, seed, film)
+    return Playback(agent.config.env, played.returns, played.lengths, played.terminated, seed, film)
 
 
 def _opens_window(env: Any, window: bool | None) -> tuple[bool, str | None]:

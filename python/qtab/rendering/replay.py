@@ -5,7 +5,6 @@ from contextlib import closing
 from typing import Any
 
 import gymnasium as gym
-from gymnasium.envs.registration import EnvSpec
 
 from qtab._utils.progress import ProgressBar
 from qtab.config import Config
@@ -37,19 +36,6 @@ def make_render_env(
     return make_run_env(
         config, of="id", env_kwargs=env_kwargs, max_episode_steps=max_episode_steps, render_mode=render_mode
     )
-
-
-def render_env(
-    spec: EnvSpec, env_kwargs: Mapping[str, Any], max_episode_steps: int | None, render_mode: str
-) -> gym.Env:
-    """Creates an environment with a render mode and a time limit.
-
-    Raises:
-        ValueError: if the environment does not have this render mode.
-    """
-    with closing(gym.make(spec, **env_kwargs)) as env:
-        check_render_mode(spec.id, env, render_mode)
-    return gym.make(spec, max_episode_steps=max_episode_steps, **{**env_kwargs, "render_mode": render_mode})
 
 
 def check_render_mode(name: str, env: gym.Env, render_mode: str) -> None:

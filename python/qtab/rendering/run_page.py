@@ -1,7 +1,6 @@
 """The HTML page of a run."""
 
 import dataclasses
-import io
 import os
 from collections.abc import Mapping
 from types import SimpleNamespace
@@ -21,10 +20,10 @@ from qtab.diagnosis.diagnosis import Diagnosis
 from qtab.envs.goals import threshold_of
 from qtab.planning.optimum import Optimum
 from qtab.plots.arrangements.grid_map import Layout
-from qtab.plots.parts.axes import new_figure
+from qtab.plots.parts.axes import new_figure, png
 from qtab.plots.run import plot
 from qtab.rendering.agent import agent_of
-from qtab.rendering.film import Scene
+from qtab.rendering.film import Film
 from qtab.rendering.formats import png_uris
 from qtab.rendering.learning import PANELS, draw_learning, runs_at_snapshots
 from qtab.rendering.player import episode_player, slider
@@ -54,19 +53,6 @@ def write_page(
     target = checks.file_path("path", path)
     check_env(env)
     check_writable("path", target)
-    text = _page(run, optimum, at, layout, env, progress)
-    with replacing(target) as temporary:
-        temporary.write_text(text, encoding="utf-8")
-
-
-def _page(
-    run: Run,
-    optimum: Optimum | float | None,
-    at: Mapping[str, float] | None,
-    layout: Layout | None,
-    env: Any,
-    progress: bool | None,
-) -> str:
     episode = _episode(run, env)  # first, so that a wrong environment raises at once
     found = _diagnosis(run, optimum)
     if optimum is None and found is not None:
@@ -80,7 +66,8 @@ def _page(
         section("Settings", table((), _settings(run.config))),
         section("How it was made", table((), [*run.versions.items(), ("training", f"{run.seconds:.3g} s")])),
     ]
-    return page(run.config.env, "\n".join(parts))
+    with replacing(target) as temporary:
+        temporary.write_text(page(run.config.env, "\n".join(parts)), encoding="utf-8")
 
 
 def _summary(run: Run) -> list[tuple[str, Any]]:
@@ -105,13 +92,13 @@ def _summary(run: Run) -> list[tuple[str, Any]]:
 def _learning_curve(run: Run, optimum: Optimum | float | None) -> str:
     figure = new_figure()
     plot(run, figure.subplots(), optimum=optimum)
-    written = io.BytesIO()
-    figure.savefig(written, format="png", dpi=DOTS_PER_INCH)
     returns, text = run.episode_returns, "no episode was finished"
     if len(returns):
         count = min(FINAL_EPISODES, len(returns))
         text = f"the first {count} have a mean of {returns[:count].mean():.2f}, the last {returns[-count:].mean():.2f}"
-    return picture(written.getvalue(), f"Learning curve, the return of each of {len(returns):,} episodes: {text}.")
+    return picture(
+        png(figure, DOTS_PER_INCH), f"Learning curve, the return of each of {len(returns):,} episodes: {text}."
+    )
 
 
 def _learned(run: Run, at: Mapping[str, float] | None, layout: Layout | None, progress: bool | None) -> str:
@@ -128,9 +115,9 @@ def _learned(run: Run, at: Mapping[str, float] | None, layout: Layout | None, pr
 
 def _episode(run: Run, env: Any) -> str:
     limit, seed = int(run.config.max_episode_steps or 1), int(run.config.seed or 0)
-    scene = Scene(agent_of(run), env, None, limit, 1, seed, None, MAX_FRAMES)
+    film = Film(agent_of(run), env, None, limit, 1, seed, None, MAX_FRAMES)
     try:
-        played, frames = scene.record()
+        played, frames = film.record(), film.frames()
     except (gym.error.Error, ModuleNotFoundError, TypeError, ValueError) as error:
         if env is not None:
             raise
@@ -164,11 +151,10 @@ def _findings(found: Diagnosis | None) -> str:
 
 def _settings(config: Config) -> list[tuple[str, str]]:
     given = {one.name: getattr(config, one.name) for one in dataclasses.fields(config)}
-    return [(name, _setting(value)) for name, value in given.items() if not _is_empty(value)]
-
-
-def _is_empty(value: Any) -> bool:
-    return value is None or (isinstance(value, Mapping | tuple) and not value)
+    empty = [
+        name for name, value in given.items() if value is None or (isinstance(value, Mapping | tuple) and not value)
+    ]
+    return [(name, _setting(value)) for name, value in given.items() if name not in empty]
 
 
 def _setting(value: Any) -> str:

@@ -14,7 +14,7 @@ import numpy as np
 from qtab._utils.files import replacing
 from qtab._utils.page import page, paragraph, picture, section, table
 from qtab.envs.goals import what_changes_returns
-from qtab.plots.parts.axes import not_shown
+from qtab.plots.parts.axes import not_shown, png
 from qtab.sweeps.environments import environments_of, sweep_threshold
 from qtab.sweeps.results import Sweep
 from qtab.sweeps.run_versions import by_name, in_words, versions_note
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 MAX_SETTINGS = 8
 """The number of settings, best first, that the pictures show: as many as there are different colors."""
+DOTS_PER_INCH = 120
 
 
 @dataclass(frozen=True)
@@ -197,7 +198,7 @@ def draw(sweep: Sweep) -> dict[str, Picture]:
     means = ", ".join(
         f"{_label(sweep, setting)}: mean {sweep.values('final_return', setting).mean():.4g}" for setting in best
     )
-    axes = {
+    axes: dict[str, tuple[Any, str]] = {
         "distribution": (
             plots.distribution(sweep, settings=best),
             f"Distribution of the final returns of {shown}. {means}.",
@@ -220,7 +221,7 @@ def draw(sweep: Sweep) -> dict[str, Picture]:
         if len(values) > 1:
             text = f"The final return over {parameter}, which takes the values {', '.join(map(str, values[:20]))}."
             axes[f"sensitivity_{parameter}"] = (plots.sensitivity(sweep, parameter), text)
-    return {title: Picture(_png(ax), text) for title, (ax, text) in axes.items()}
+    return {title: Picture(png(ax.figure, DOTS_PER_INCH), text) for title, (ax, text) in axes.items()}
 
 
 def _label(sweep: Sweep, setting: int) -> str:
@@ -248,9 +249,3 @@ def _optimum(sweep: Sweep) -> "Optimum | None":
     with suppress(ValueError, TypeError, gym.error.Error):
         return optimum(spec, env_kwargs=kwargs, max_episode_steps=max_episode_steps)
     return None
-
-
-def _png(ax: Any) -> bytes:
-    buffer = io.BytesIO()
-    ax.figure.savefig(buffer, format="png", dpi=120)
-    return buffer.getvalue()

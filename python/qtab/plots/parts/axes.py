@@ -1,5 +1,6 @@
 """Figures and axes: those that are shown, and those that only go to files."""
 
+import io
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -106,6 +107,13 @@ def check_format(name: str, path: Path) -> None:
     formats = sorted(new_figure().canvas.get_supported_filetypes())
     if path.suffix.lower().removeprefix(".") not in formats:
         raise ValueError(f"{name} must end in one of .{', .'.join(formats)}, got {str(path)!r}")
+
+
+def png(figure: "Figure", dots_per_inch: int) -> bytes:
+    """Returns a figure as a PNG."""
+    written = io.BytesIO()
+    figure.savefig(written, format="png", dpi=dots_per_inch)
+    return written.getvalue()
 
 
 def save_figure(figure: "Figure", path: Path, dots_per_inch: int) -> None:
