@@ -19,15 +19,6 @@ export function complete(environment, given) {
   return settings;
 }
 
-/** The reason why two of the settings exclude each other; null if none do. */
-export function conflict(settings) {
-  for (const { setting, value, unless, reason } of definitions.rules) {
-    const [other, chosen] = Object.entries(unless)[0];
-    if (settings[setting] === value && settings[other] === chosen) return { setting, reason };
-  }
-  return null;
-}
-
 /** The environment in the form that the WebAssembly module expects. */
 function environmentOf({ id, ...painted }) {
   const known = definitions.environments[id];
@@ -50,7 +41,6 @@ function startWorker() {
 export class Engine {
   #worker = startWorker();
   #id = 0;
-  #request = null;
   #best = null;
   #inspection = null;
   #inspected = null;
@@ -61,7 +51,7 @@ export class Engine {
   constructor({ onMessage }) {
     this.#onMessage = onMessage;
     this.#worker.onmessage = ({ data }) => this.#receive(data);
-    this.#worker.onerror = (event) => onMessage({ type: "error", id: this.#id, message: event.message, setting: null });
+    this.#worker.onerror = (event) => onMessage({ type: "error", id: this.#id, message: event.message });
     if (DATA.wasm) {
       const bytes = bytesOf(DATA.wasm);
       this.#worker.postMessage({ type: "load", bytes, version: definitions.version }, [bytes.buffer]);
@@ -72,7 +62,6 @@ export class Engine {
 
   /** Starts a new training; an older request is dropped. Returns the id of its messages. */
   start(request) {
-    this.#request = request;
     this.#best = this.#inspection = null;
     this.#id += 1;
     try {
@@ -80,14 +69,9 @@ export class Engine {
       this.#post({ type: "start", id: this.#id, request: { ...request, environment }, inspected: this.#inspected });
     } catch (error) {
       const [id, { message }] = [this.#id, error];
-      queueMicrotask(() => id === this.#id && this.#onMessage({ type: "error", id, message, setting: null }));
+      queueMicrotask(() => id === this.#id && this.#onMessage({ type: "error", id, message }));
     }
     return this.#id;
-  }
-
-  /** Resets to the state before the first step and waits there. */
-  reset() {
-    return this.#request && this.start({ ...this.#request, run: false });
   }
 
   /** Trains for some more steps or episodes, then waits. */
@@ -117,10 +101,6 @@ export class Engine {
     return new Promise((resolve) => this.#tables.set(token, resolve));
   }
 
-  close() {
-    this.#worker.terminate();
-  }
-
   #post(message) {
     this.#worker.postMessage(message);
   }
@@ -131,7 +111,7 @@ export class Engine {
       this.#tables.delete(message.token);
       return;
     }
-    if (message.type !== "ready" && message.id !== this.#id) return;
+    if (message.id !== this.#id) return;
     if (message.type === "inspection") {
       if (message.cell !== this.#inspected) return;
       this.#inspection = message;

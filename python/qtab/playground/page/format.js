@@ -85,7 +85,7 @@ export function positions({ low, high, integer, log }) {
   };
   const position = (number) =>
     Math.round(steps * (log ? (Math.log(Math.max(number, 1e-12)) - start) / (end - start || 1) : (number - low) / (high - low || 1)));
-  return { steps, value, position };
+  return { value, position };
 }
 
 function decimals(width) {

@@ -1,5 +1,6 @@
 // The run as a Python program, which learns the same table.
 
+import { make } from "./controls/elements.js";
 import { counted } from "./format.js";
 import { windowOf } from "./results/statistics.js";
 
@@ -68,7 +69,7 @@ export async function copyText(text) {
     await navigator.clipboard.writeText(text);
     return true;
   } catch {
-    const area = Object.assign(document.createElement("textarea"), { value: text });
+    const area = make("textarea", { value: text });
     area.style.position = "fixed";
     area.style.opacity = "0";
     (document.querySelector("dialog[open]") ?? document.body).append(area);

@@ -2,11 +2,9 @@
 
 import { EXAMPLES, exampleState } from "./controls/examples.js";
 import { readNumber } from "./format.js";
-import { MANY_SEEDS, PAINTED } from "./store.js";
+import { MANY_SEEDS, MAX_SIDE, PAINTED, REWARD_LIMITS, SEED_LIMITS } from "./store.js";
 
-const MAX_SIDE = 20;
 const MAX_LENGTH = 8000;
-const LARGEST_SEED = 2 ** 32 - 1 - MANY_SEEDS;
 /** The parts of an address besides settings. */
 const GRID_NAMES = ["layout", "wind", "step_reward", "goal_reward", "rewards"];
 const NAMES = new Set(["env", "example", "seed", "seeds", ...GRID_NAMES]);
@@ -61,7 +59,7 @@ function whole(text, low, high) {
 
 /** The seeds of an address; only the first one if it names none. */
 function readSeeds(given, left) {
-  const { value: seed } = whole(given.get("seed") ?? "0", 0, LARGEST_SEED);
+  const { value: seed } = readNumber("seed", given.get("seed") ?? "0", SEED_LIMITS);
   const seeds = [1, MANY_SEEDS].find((count) => (given.get("seeds") ?? "1") === String(count));
   if (seed === undefined) left.push("seed");
   if (seeds === undefined) left.push("seeds");
@@ -116,7 +114,7 @@ function readGrid(given, state, left) {
   }
   const grid = { layout, wind: Array(columns).fill(0), step_reward: -1, goal_reward: 0, rewards: [] };
   for (const name of ["step_reward", "goal_reward"]) {
-    const { value } = readNumber(name, given.get(name) ?? "", { low: -1000, high: 1000, integer: false });
+    const { value } = readNumber(name, given.get(name) ?? "", REWARD_LIMITS);
     if (value !== undefined) grid[name] = value;
     else if (given.has(name)) left.push(name);
   }
@@ -135,7 +133,7 @@ function readRewards(text, grid, columns, left) {
     const [row, column, reward, ...others] = part.split(",");
     const { value: down } = whole(row ?? "", 0, grid.layout.length - 1);
     const { value: right } = whole(column ?? "", 0, columns - 1);
-    const { value } = readNumber("rewards", reward ?? "", { low: -1000, high: 1000, integer: false });
+    const { value } = readNumber("rewards", reward ?? "", REWARD_LIMITS);
     if (others.length || [down, right, value].includes(undefined)) {
       left.push("rewards");
       return;

@@ -33,7 +33,11 @@ function withoutConflicts({ rules, settings: known }, given) {
 }
 
 export const MANY_SEEDS = 16;
+export const SEED_LIMITS = { low: 0, high: 2 ** 32 - 1 - MANY_SEEDS, integer: true };
 export const PAINTED = "grid";
+/** The largest number of rows and columns of a painted grid, and the limits of its rewards. */
+export const MAX_SIDE = 20;
+export const REWARD_LIMITS = { low: -1000, high: 1000, integer: false };
 /** The number of rows and columns of a map if the table has no cells of two components. */
 const RASTER = 48;
 
@@ -91,15 +95,13 @@ export class Store {
         : "the states are numbered and need none";
     }
     const { rules, settings: known } = this.definitions;
+    const isChosen = (setting, choice) => this.state.settings[setting] === choice;
+    const notWith = (setting, choice) => `not with ${known[setting].choices.find((each) => each.value === choice).title}`;
     for (const rule of rules) {
       const [[other, chosen]] = Object.entries(rule.unless);
-      if (rule.setting === name && rule.value === value && this.state.settings[other] === chosen) {
-        const title = known[other].choices.find((choice) => choice.value === chosen).title;
-        return `not with ${title}`;
-      }
-      if (other === name && chosen === value && rule.setting === "algorithm" && this.state.settings.algorithm === rule.value) {
-        return `not with ${known.algorithm.choices.find((choice) => choice.value === rule.value).title}`;
-      }
+      if (rule.setting === name && rule.value === value && isChosen(other, chosen)) return notWith(other, chosen);
+      const isReverse = other === name && chosen === value && rule.setting === "algorithm";
+      if (isReverse && isChosen("algorithm", rule.value)) return notWith("algorithm", rule.value);
     }
     return null;
   }

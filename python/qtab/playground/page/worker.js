@@ -22,9 +22,8 @@ function pause() {
 }
 
 async function load() {
-  const imports = {};
   const module = typeof source === "string" ? await fetch(source).then((answer) => answer.arrayBuffer()) : source;
-  const { instance } = await WebAssembly.instantiate(module, imports);
+  const { instance } = await WebAssembly.instantiate(module);
   wasm = instance.exports;
   let built = "of an earlier version";
   try {
@@ -37,7 +36,7 @@ async function load() {
   throw new Error(`qtab.wasm is ${built}, and the page ${version}: rebuild it with python rust/web/build_backend.py`);
 }
 
-/** Calls the module. Throws an Error with `setting` if it rejects the request. */
+/** Calls the module. Throws an Error if it rejects the request. */
 function call(request) {
   const text = new TextEncoder().encode(JSON.stringify(request));
   const address = wasm.request(text.length);
@@ -45,7 +44,7 @@ function call(request) {
   const response = wasm.call();
   const bytes = new Uint8Array(wasm.memory.buffer, response, wasm.response_length());
   const answer = JSON.parse(new TextDecoder().decode(bytes));
-  if (answer.error !== undefined) throw Object.assign(new Error(answer.error), { setting: answer.setting ?? null });
+  if (answer.error !== undefined) throw new Error(answer.error);
   return answer;
 }
 
@@ -116,11 +115,11 @@ function report() {
   run.nextReport = run.reported + REPORT_EVERY;
   if (withEpisode) run.episodeReported = run.reported;
   run.bestSent ||= withBest;
-  const { returns, lengths, actionValues, visits, greedy, values, xEdges = null, yEdges = null } = arrays;
+  const { returns, lengths, visits, greedy, values, xEdges = null, yEdges = null } = arrays;
   send({
     type: "result", id: run.id, state: run.state, episodes: run.episodes, done: answer.done, seeds: run.seeds,
     returns, lengths, seconds: run.seconds,
-    map: { columns: answer.columns, rows: answer.rows, xEdges, yEdges, actionValues, visits, greedy, values },
+    map: { columns: answer.columns, rows: answer.rows, xEdges, yEdges, visits, greedy, values },
     best: answer.best ? { ...answer.best, values: arrays.bestValues, greedy: arrays.bestGreedy } : null,
     hasBest: withBest,
     episode: answer.episode
@@ -149,7 +148,7 @@ async function inspect() {
 }
 
 function fail(id, error) {
-  send({ type: "error", id, message: error.message, setting: error.setting ?? null });
+  send({ type: "error", id, message: error.message });
 }
 
 /** Works until nothing is left to do. */
@@ -160,7 +159,7 @@ async function work() {
     await pause();
     let id = pending?.id ?? run?.id;
     try {
-      if (!wasm) await load().then(() => send({ type: "ready", memory: wasm.memory.buffer.byteLength }));
+      if (!wasm) await load();
       if (pending) {
         const request = pending;
         pending = null;

@@ -22,33 +22,30 @@ const TITLES = {
 };
 
 /** The title of a setting: a special one, or its name in words. */
-export function titleOf(name) {
+function titleOf(name) {
   if (TITLES[name]) return TITLES[name];
   const words = name.replaceAll("_", " ");
   return words[0].toUpperCase() + words.slice(1);
 }
 
 /** The parts of every control: the label with its symbol, the sentence, and the place for an error message. */
-function frame(name, definition, { forId = null, labelTag = "label" } = {}) {
+function frame(name, definition, label = {}) {
   const symbol = definition.symbol ? [make("span", { className: "symbol", textContent: definition.symbol }), " "] : [];
-  const label = make(labelTag, { className: "name", id: `label-${name}` }, ...symbol, titleOf(name));
-  if (forId) label.htmlFor = forId;
+  const { tag = "label", ...target } = label;
+  const head = make("div", { className: "head" }, make(tag, { className: "name", id: `label-${name}`, ...target }, ...symbol, titleOf(name)));
   const sentence = make("p", { id: `about-${name}`, textContent: definition.sentence });
   const refused = refusalPlace({ id: `refused-${name}` });
-  const head = make("div", { className: "head" }, label);
   return { head, sentence, refused, element: make("div", { className: "setting" }, head, sentence, refused) };
 }
 
 /** A list of names to choose from. Choices that conflict with other settings are disabled, with the reason. */
-export function choiceControl(store, name, definition) {
+function choiceControl(store, name, definition) {
   const id = `set-${name}`;
-  const parts = frame(name, definition, { forId: id });
-  const select = make("select", { id });
-  select.setAttribute("aria-describedby", parts.sentence.id);
+  const parts = frame(name, definition, { htmlFor: id });
   const options = definition.choices.map(({ value }) => make("option", { value }));
-  select.append(...options);
+  const onchange = () => store.set(name, select.value);
+  const select = make("select", { id, "aria-describedby": parts.sentence.id, onchange }, ...options);
   parts.head.after(select);
-  select.addEventListener("change", () => store.set(name, select.value));
   const refresh = () => {
     options.forEach((option, index) => {
       const { value, title } = definition.choices[index];
@@ -61,21 +58,22 @@ export function choiceControl(store, name, definition) {
   return { element: parts.element, refresh, focus: () => select.focus() };
 }
 
-/** A text field with checked numbers. */
-function numberField(parts, id, read, apply) {
-  const input = make("input", { type: "text", id, inputMode: "decimal", autocomplete: "off", spellcheck: false });
-  input.setAttribute("aria-describedby", `${parts.refused.id} ${parts.sentence.id}`);
-  input.addEventListener("change", () => {
+/** A text field with checked numbers. `apply(value)` may return a reason to reject one. */
+function numberField({ refused: place, sentence }, id, read, apply) {
+  const onchange = () => {
     const { value, refused } = read(input.value);
-    refuse(parts.refused, input, refused);
-    if (!refused) apply(value);
-  });
+    refuse(place, input, refused);
+    const problem = refused ? null : apply(value);
+    if (problem) refuse(place, input, problem);
+  };
+  const described = { "aria-describedby": `${place.id} ${sentence.id}` };
+  const input = make("input", { type: "text", id, inputMode: "decimal", autocomplete: "off", spellcheck: false, ...described, onchange });
   const show = (value) => {
     const text = shortest(value);
     if (input.getAttribute("aria-invalid") && document.activeElement === input) return;
     if (input.value !== text) {
       input.value = text;
-      refuse(parts.refused, input, null);
+      refuse(place, input, null);
     }
   };
   return { input, show };
@@ -88,9 +86,9 @@ function shortest(value) {
 }
 
 /** A number: a text field for exact values, and a slider. */
-export function numberControl(store, name, definition) {
+function numberControl(store, name, definition) {
   const id = `set-${name}`;
-  const parts = frame(name, definition, { forId: id });
+  const parts = frame(name, definition, { htmlFor: id });
   const limits = () => ({
     low: definition.low,
     high: highest(name, definition, store.state.settings),
@@ -99,15 +97,15 @@ export function numberControl(store, name, definition) {
   });
   const field = numberField(parts, id, (text) => readNumber(name, text, limits()), (value) => store.set(name, value));
   parts.head.append(field.input);
-  const slider = make("input", { type: "range", min: 0, max: 1000, step: 1, id: `slide-${name}` });
-  slider.setAttribute("aria-label", titleOf(name));
-  slider.addEventListener("input", () => store.set(name, positions(limits()).value(Number(slider.value))));
-  slider.addEventListener("keydown", (event) => {
+  const oninput = () => store.set(name, positions(limits()).value(Number(slider.value)));
+  const onkeydown = (event) => {
     const step = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 10, PageDown: -10 }[event.key];
     if (!step) return;
     event.preventDefault();
     store.set(name, stepped(limits(), store.state.settings[name], step));
-  });
+  };
+  const range = { type: "range", min: 0, max: 1000, step: 1, id: `slide-${name}`, "aria-label": titleOf(name) };
+  const slider = make("input", { ...range, oninput, onkeydown });
   parts.head.after(slider);
   const refresh = () => {
     const value = store.state.settings[name];
@@ -126,71 +124,51 @@ function stepped({ low, high, integer, log }, value, steps) {
   return integer ? Math.round(next) : Number(next.toPrecision(10));
 }
 
-/** A number for each component of the observation, or one for all. */
-export function componentsControl(store, name, definition) {
-  const parts = frame(name, definition, { labelTag: "span" });
-  const rows = make("div", { className: "components" });
-  rows.setAttribute("role", "group");
-  rows.setAttribute("aria-labelledby", `label-${name}`);
-  parts.head.after(rows);
-  const observations = store.entry.observations ?? [];
-  const fields = observations.map((observation, index) => {
-    const read = (text) =>
-      readNumber(`${name} of ${observation.name}`, text, {
-        low: definition.low,
-        high: definition.high,
-        integer: definition.type === "integers",
-      });
-    const field = numberField(parts, `set-${name}-${index}`, read, (value) => {
-      const all = spread(store.state.settings[name], observations.length);
-      all[index] = value;
-      const other = { low: "high", high: "low" }[name];
-      const bounds = other && store.state.settings[other];
-      if (bounds && (name === "low" ? all[index] >= bounds[index] : all[index] <= bounds[index])) {
-        refuse(parts.refused, field.input, `low of ${observation.name} must be less than high`);
-        return;
-      }
-      store.set(name, all);
-    });
-    rows.append(make("label", {}, observation.name, field.input));
-    return field;
+/**
+ * A row of numbers. `labels`: [label, name in messages] of each; `values()`: the numbers of the state; `change(values,
+ * index)` sets them after one was typed, or returns a reason to reject it.
+ */
+function rowControl(name, definition, labels, values, change) {
+  const parts = frame(name, definition, { tag: "span" });
+  const limits = { low: definition.low, high: definition.high, integer: definition.type === "integers" };
+  const fields = labels.map(([, named], index) => {
+    const apply = (value) => change(values().map((each, place) => (place === index ? value : each)), index);
+    return numberField(parts, `set-${name}-${index}`, (text) => readNumber(named, text, limits), apply);
   });
-  const refresh = () => {
-    spread(store.state.settings[name], fields.length).forEach((value, index) => fields[index].show(value));
-  };
-  return { element: parts.element, refresh, focus: () => fields[0]?.input.focus() };
+  const labelled = fields.map(({ input }, index) => make("label", {}, labels[index][0], input));
+  parts.head.after(make("div", { className: "components", role: "group", "aria-labelledby": `label-${name}` }, ...labelled));
+  const refresh = () => values().forEach((value, index) => fields[index].show(value));
+  return { element: parts.element, refresh, focus: () => fields[0].input.focus() };
 }
 
-function spread(values, length) {
-  const listed = Array.isArray(values) ? values : [values];
-  return listed.length === length ? [...listed] : Array(length).fill(listed[0]);
+/** A number for each component of the observation, or one for all. */
+function componentsControl(store, name, definition) {
+  const { observations } = store.entry;
+  const values = () => {
+    const listed = [store.state.settings[name]].flat();
+    return listed.length === observations.length ? listed : observations.map(() => listed[0]);
+  };
+  const change = (all, index) => {
+    const { low, high } = { ...store.state.settings, [name]: all };
+    const crossed = ["low", "high"].includes(name) && low && high && low[index] >= high[index];
+    if (crossed) return `low of ${observations[index].name} must be less than high`;
+    return store.set(name, all);
+  };
+  return rowControl(name, definition, observations.map((each) => [each.name, `${name} of ${each.name}`]), values, change);
 }
 
 /** The initial values: a range from which they are drawn, whose limits may be equal. */
-export function initialValuesControl(store, name, definition) {
-  const parts = frame(name, definition, { labelTag: "span" });
-  const rows = make("div", { className: "components" });
-  rows.setAttribute("role", "group");
-  rows.setAttribute("aria-labelledby", `label-${name}`);
-  parts.head.after(rows);
-  const range = () => {
+function initialValuesControl(store, name, definition) {
+  const values = () => {
     const value = store.state.settings[name];
     return Array.isArray(value) ? value : [value, value];
   };
-  const fields = ["from", "to"].map((end, index) => {
-    const read = (text) => readNumber(`${name} (${end})`, text, { low: definition.low, high: definition.high, integer: false });
-    const field = numberField(parts, `set-${name}-${index}`, read, (value) => {
-      const next = [...range()];
-      next[index] = value;
-      // A range whose limits have crossed becomes a single number.
-      if (next[0] > next[1]) next[1 - index] = value;
-      store.set(name, next[0] === next[1] ? next[0] : next);
-    });
-    rows.append(make("label", {}, end, field.input));
-    return field;
-  });
-  const refresh = () => range().forEach((value, index) => fields[index].show(value));
-  return { element: parts.element, refresh, focus: () => fields[0].input.focus() };
+  const change = ([from, to], index) => {
+    // A range whose limits have crossed becomes a single number.
+    if (from >= to) store.set(name, index ? to : from);
+    else store.set(name, [from, to]);
+  };
+  return rowControl(name, definition, ["from", "to"].map((end) => [end, `${name} (${end})`]), values, change);
 }
 
 /** Settings that are not needed at first. */
@@ -199,6 +177,7 @@ const LESS_NEEDED = new Set([
   ...["initial_q", "terminal_update", "on_truncation", "epsilon_warm_up", "ties", "max_episode_steps", "bit_generator"],
   ...["low", "high"],
 ]);
+const CONTROLS = { choice: choiceControl, number: numberControl, integer: numberControl, initial_q: initialValuesControl };
 const GROUP_ORDER = ["Learning", "Exploration", "Discretizer", "Run"];
 
 /** Builds the controls of a store's settings and keeps them up to date. */
@@ -227,39 +206,29 @@ export class Controls {
     const focused = document.activeElement?.closest?.("[data-setting]")?.dataset.setting;
     const open = this.form.querySelector("details.more")?.open ?? false;
     this.controls.clear();
-    const { settings: known } = this.store.definitions;
-    const names = Object.keys(known).filter((name) => name in this.store.state.settings);
-    const main = names.filter((name) => !LESS_NEEDED.has(name));
-    const more = names.filter((name) => LESS_NEEDED.has(name));
-    const groups = this.groups(main);
-    groups.find(({ title }) => title === "Run")?.fieldset.append(this.extras);
-    const details = document.createElement("details");
-    details.className = "more";
-    details.open = open;
-    const summary = document.createElement("summary");
-    summary.textContent = "More settings";
-    details.append(summary, ...this.groups(more).map(({ fieldset }) => fieldset));
-    this.form.replaceChildren(...groups.map(({ fieldset }) => fieldset), details);
+    const names = Object.keys(this.store.definitions.settings).filter((name) => name in this.store.state.settings);
+    const main = this.groups(names.filter((name) => !LESS_NEEDED.has(name)));
+    main.get("Run")?.append(this.extras);
+    const more = this.groups(names.filter((name) => LESS_NEEDED.has(name)));
+    const summary = make("summary", { textContent: "More settings" });
+    this.form.replaceChildren(...main.values(), make("details", { className: "more", open }, summary, ...more.values()));
     if (focused) this.controls.get(focused)?.focus();
   }
 
+  /** The fieldset of each group of settings, by its title. */
   groups(names) {
     const { settings: known } = this.store.definitions;
     const titles = [...new Set(names.map((name) => known[name].group))];
     titles.sort((left, right) => GROUP_ORDER.indexOf(left) - GROUP_ORDER.indexOf(right));
-    return titles.map((title) => {
-      const fieldset = document.createElement("fieldset");
-      const legend = document.createElement("legend");
-      legend.textContent = title;
-      fieldset.append(legend, ...names.filter((name) => known[name].group === title).map((name) => this.control(name)));
-      return { title, fieldset };
-    });
+    return new Map(titles.map((title) => {
+      const controls = names.filter((name) => known[name].group === title).map((name) => this.control(name));
+      return [title, make("fieldset", {}, make("legend", { textContent: title }), ...controls)];
+    }));
   }
 
   control(name) {
     const definition = this.store.definitions.settings[name];
-    const make = { choice: choiceControl, number: numberControl, integer: numberControl, initial_q: initialValuesControl };
-    const control = (make[definition.type] ?? componentsControl)(this.store, name, definition);
+    const control = (CONTROLS[definition.type] ?? componentsControl)(this.store, name, definition);
     control.element.dataset.setting = name;
     this.controls.set(name, control);
     return control.element;

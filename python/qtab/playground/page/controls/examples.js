@@ -1,6 +1,18 @@
 // Examples: settings that fail and settings that learn, each with a sentence on what to look at.
 
+import { make } from "./elements.js";
 import { copyGrid, fit } from "../store.js";
+
+const NEVER_REACHED = "Without exploration or optimism the goal is never reached, and all values stay 0.";
+
+/** The three examples of a lake, with the sentences on what to look at. */
+function lake(unexplored, optimistic, exploring) {
+  return [
+    { preset: "solved", settings: { initial_q: 0 }, title: "No exploration: fails", look: unexplored },
+    { preset: "solved", title: "Optimistic: solved", look: optimistic },
+    { preset: "tuned", title: "Exploring with ε", look: exploring },
+  ];
+}
 
 /**
  * The examples of each environment: `preset` names settings of the package, `settings` change some of them, `grid`
@@ -43,58 +55,26 @@ export const EXAMPLES = {
       look: "True online Sarsa(λ) with 16 tilings. The curve rises to 500, the time limit, and the greedy agent keeps the pole up to the end.",
     },
   ],
-  "FrozenLake-v1": [
-    {
-      preset: "solved",
-      settings: { initial_q: 0 },
-      title: "No exploration: fails",
-      look: "With ε = 0 and initial values of 0 all actions look alike, and the agent always takes the first. It never sees the goal, so there is nothing to learn from: all values stay 0.",
-    },
-    {
-      preset: "solved",
-      title: "Optimistic: solved",
-      look: "The only change: initial values of 1. Every action that has been tried looks worse than the untried ones, so the agent tries everything. It then reaches the goal in about three out of four episodes, as often as an optimal policy does. On slippery ice both sometimes fall into a hole: with seed 0, the greedy agent shown below does.",
-    },
-    {
-      preset: "tuned",
-      title: "Exploring with ε",
-      look: "Here ε falls from 1 to 0. Returns stay low while the agent explores, and rise at the end; halfway through, the greedy agent was already as good.",
-    },
-  ],
-  "FrozenLake-v1 (not slippery)": [
-    {
-      preset: "solved",
-      settings: { initial_q: 0 },
-      title: "No exploration: fails",
-      look: "All values are 0, and the agent pushes against the left edge in every step. Without exploration or optimism it never learns that there is a goal.",
-    },
-    {
-      preset: "solved",
-      title: "Optimistic: solved",
-      look: "With initial values of 1 the agent tries everything. Without slipping, the values fall by γ with each step from the goal.",
-    },
-    { preset: "tuned", title: "Exploring with ε", look: "All values stay 0 until an episode reaches the goal. From then on they spread backwards from it: a state has a value once a state after it has one." },
-  ],
-  "FrozenLake8x8-v1": [
-    {
-      preset: "solved",
-      settings: { initial_q: 0 },
-      title: "No exploration: fails",
-      look: "Without exploration or optimism the goal is never reached, and all values stay 0.",
-    },
-    { preset: "solved", title: "Optimistic: solved", look: "Beside a hole most arrows point straight away from it rather than to the goal: on slippery ice this is the only move that cannot end in the hole." },
-    { preset: "tuned", title: "Exploring with ε", look: "The larger the lake, the longer it takes until chance finds the goal: several hundred episodes, compared with about a hundred on the small lake. Look at the visits." },
-  ],
-  "FrozenLake8x8-v1 (not slippery)": [
-    {
-      preset: "solved",
-      settings: { initial_q: 0 },
-      title: "No exploration: fails",
-      look: "Without exploration or optimism the goal is never reached, and all values stay 0.",
-    },
-    { preset: "solved", title: "Optimistic: solved", look: "The agent tries nearly everything, then takes a shortest path around the holes." },
-    { preset: "tuned", title: "Exploring with ε", look: "Nearly half of the visits fall on the ten cells nearest to the start: a random walk rarely gets far." },
-  ],
+  "FrozenLake-v1": lake(
+    "With ε = 0 and initial values of 0 all actions look alike, and the agent always takes the first. It never sees the goal, so there is nothing to learn from: all values stay 0.",
+    "The only change: initial values of 1. Every action that has been tried looks worse than the untried ones, so the agent tries everything. It then reaches the goal in about three out of four episodes, as often as an optimal policy does. On slippery ice both sometimes fall into a hole: with seed 0, the greedy agent shown below does.",
+    "Here ε falls from 1 to 0. Returns stay low while the agent explores, and rise at the end; halfway through, the greedy agent was already as good.",
+  ),
+  "FrozenLake-v1 (not slippery)": lake(
+    "All values are 0, and the agent pushes against the left edge in every step. Without exploration or optimism it never learns that there is a goal.",
+    "With initial values of 1 the agent tries everything. Without slipping, the values fall by γ with each step from the goal.",
+    "All values stay 0 until an episode reaches the goal. From then on they spread backwards from it: a state has a value once a state after it has one.",
+  ),
+  "FrozenLake8x8-v1": lake(
+    NEVER_REACHED,
+    "Beside a hole most arrows point straight away from it rather than to the goal: on slippery ice this is the only move that cannot end in the hole.",
+    "The larger the lake, the longer it takes until chance finds the goal: several hundred episodes, compared with about a hundred on the small lake. Look at the visits.",
+  ),
+  "FrozenLake8x8-v1 (not slippery)": lake(
+    NEVER_REACHED,
+    "The agent tries nearly everything, then takes a shortest path around the holes.",
+    "Nearly half of the visits fall on the ten cells nearest to the start: a random walk rarely gets far.",
+  ),
   "CliffWalking-v1": [
     {
       preset: "book",
@@ -171,21 +151,17 @@ export function exampleState(store, environment, index) {
 /** Shows the examples of the environment as buttons, and the sentence of the chosen one. */
 export function setUpExamples(store, buttons, look) {
   const show = ({ environment, example }) => {
-    const examples = EXAMPLES[environment] ?? [];
+    const examples = EXAMPLES[environment];
     if (buttons.dataset.environment !== environment) {
       buttons.dataset.environment = environment;
-      buttons.replaceChildren(
-        ...examples.map(({ title }, index) => {
-          const button = Object.assign(document.createElement("button"), { type: "button", textContent: title });
-          button.addEventListener("click", () => store.update(exampleState(store, environment, index)));
-          return button;
-        }),
-      );
+      const onclick = (index) => () => store.update(exampleState(store, environment, index));
+      const made = examples.map(({ title }, index) => make("button", { type: "button", textContent: title, onclick: onclick(index) }));
+      buttons.replaceChildren(...made);
     }
     [...buttons.children].forEach((button, index) => button.setAttribute("aria-pressed", index === example));
     const chosen = examples[example]?.look ?? "You have changed the settings. Choose an example to return to it.";
     if (look.textContent !== chosen) look.textContent = chosen;
   };
-  store.subscribe((state) => show(state));
+  store.subscribe(show);
   show(store.state);
 }

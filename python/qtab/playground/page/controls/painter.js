@@ -1,11 +1,9 @@
 // Painting a grid world: walls, starts, goals and rewards, the size of the grid, and the rewards of steps and goals.
 
-import { make, refusalPlace, refuse } from "./elements.js";
-import { moveWithArrows } from "./environments.js";
+import { make, radioButtons, refusalPlace, refuse } from "./elements.js";
 import { readNumber } from "../format.js";
-import { copyGrid, PAINTED } from "../store.js";
+import { copyGrid, MAX_SIDE, PAINTED, REWARD_LIMITS } from "../store.js";
 
-const MAX_SIDE = 20;
 const TOOLS = [
   ["select", "Select"],
   ["#", "Wall"],
@@ -42,68 +40,53 @@ export class Painter {
   refresh() {
     const { environment, grid } = this.store.state;
     this.place.hidden = environment !== PAINTED;
-    if (grid) for (const field of this.fields) field.show();
-  }
-
-  labelled(text, ...children) {
-    return make("div", { className: "group" }, make("span", { textContent: text }), ...children);
+    if (grid) for (const show of this.fields) show();
   }
 
   toolButtons() {
-    const group = make("div", { className: "segments" });
-    group.setAttribute("role", "radiogroup");
-    group.setAttribute("aria-label", "Tool");
-    const choose = (chosen) => {
-      this.tool = chosen;
-      for (const button of group.children) {
-        button.setAttribute("aria-checked", button.dataset.tool === chosen);
-        button.tabIndex = button.dataset.tool === chosen ? 0 : -1;
-      }
+    const group = make("div", { className: "segments", role: "radiogroup", "aria-label": "Tool" });
+    const choose = (tool) => {
+      this.tool = tool;
+      mark(tool);
       document.querySelector("#values").parentElement.classList.toggle("painting", this.isPainting);
     };
-    for (const [tool, name] of TOOLS) {
-      const button = make("button", { type: "button", textContent: name });
-      button.dataset.tool = tool;
-      button.setAttribute("role", "radio");
-      button.addEventListener("click", () => choose(tool));
-      group.append(button);
-    }
-    moveWithArrows(group, (button) => button.click());
+    const mark = radioButtons(group, "tool", TOOLS, choose);
     choose(this.tool);
-    return this.labelled("Tool", group);
+    return make("div", { className: "group" }, make("span", { textContent: "Tool" }), group);
   }
 
-  number(label, name, get, set, limits = { low: -1000, high: 1000, integer: false }) {
-    const input = make("input", { type: "text", inputMode: "decimal", id: `paint-${name}` });
-    input.addEventListener("change", () => {
+  /** A control below its label. */
+  labelled(text, id, control) {
+    return make("div", { className: "group" }, make("span", {}, make("label", { htmlFor: id, textContent: text })), control);
+  }
+
+  number(label, name, get, set, limits = REWARD_LIMITS) {
+    const onchange = () => {
       const { value, refused } = readNumber(label, input.value, limits);
       refuse(this.refused, input, refused);
       if (!refused) set(value);
-    });
-    const show = () => {
-      if (!input.hasAttribute("aria-invalid")) input.value = String(get());
     };
-    this.fields.push({ show });
-    const text = make("label", { htmlFor: input.id, textContent: label[0].toUpperCase() + label.slice(1) });
-    return make("div", { className: "group" }, make("span", {}, text), input);
+    const input = make("input", { type: "text", inputMode: "decimal", id: `paint-${name}`, onchange });
+    this.fields.push(() => {
+      if (!input.hasAttribute("aria-invalid")) input.value = String(get());
+    });
+    return this.labelled(label[0].toUpperCase() + label.slice(1), input.id, input);
   }
 
   starts() {
-    const select = make("select", { id: "paint-begin" });
     const { grids } = this.store.definitions.environments[PAINTED];
-    select.append(make("option", { value: "", textContent: "Choose…" }), ...Object.keys(grids).map((value) => make("option", { value, textContent: value })));
-    select.addEventListener("change", () => {
+    const options = Object.keys(grids).map((value) => make("option", { value, textContent: value }));
+    const onchange = () => {
       if (select.value) this.change(copyGrid(grids[select.value]));
       select.value = "";
-    });
-    const clear = make("button", { type: "button", textContent: "Clear walls and rewards" });
-    clear.addEventListener("click", () => {
-      const grid = copyGrid(this.store.state.grid);
-      grid.layout = grid.layout.map((line) => line.replaceAll("#", "."));
-      this.change({ ...grid, rewards: [] });
-    });
-    const label = make("label", { htmlFor: select.id, textContent: "Begin with" });
-    return make("div", { className: "group" }, make("span", {}, label), make("div", { className: "buttons" }, select, clear));
+    };
+    const select = make("select", { id: "paint-begin", onchange }, make("option", { value: "", textContent: "Choose…" }), ...options);
+    const onclick = () => {
+      const { grid } = this.store.state;
+      this.change({ ...grid, layout: grid.layout.map((line) => line.replaceAll("#", ".")), rewards: [] });
+    };
+    const clear = make("button", { type: "button", textContent: "Clear walls and rewards", onclick });
+    return this.labelled("Begin with", select.id, make("div", { className: "buttons" }, select, clear));
   }
 
   sizes() {
@@ -117,8 +100,7 @@ export class Painter {
       if (!grid.layout.join("").includes("S")) grid.layout[0] = `S${grid.layout[0].slice(1)}`;
       this.change(grid);
     };
-    const { state } = this.store;
-    const layout = () => this.store.state.grid?.layout ?? state.grid?.layout ?? ["S"];
+    const layout = () => this.store.state.grid.layout;
     return [
       this.number("rows", "rows", () => layout().length, (rows) => resized(rows, layout()[0].length), limits),
       this.number("columns", "columns", () => layout()[0].length, (columns) => resized(layout().length, columns), limits),
@@ -127,7 +109,7 @@ export class Painter {
 
   rewards() {
     const field = (label, name) =>
-      this.number(label, name, () => this.store.state.grid?.[name] ?? 0, (value) => this.change({ ...this.store.state.grid, [name]: value }));
+      this.number(label, name, () => this.store.state.grid[name], (value) => this.change({ ...this.store.state.grid, [name]: value }));
     return [field("reward of a step", "step_reward"), field("reward at the goal", "goal_reward")];
   }
 
@@ -141,32 +123,31 @@ export class Painter {
     const columns = grid.layout[0].length;
     const [row, column] = [Math.floor(cell / columns), cell % columns];
     const old = grid.layout[row][column];
-    const place = (letter, at = [row, column]) => {
-      const line = grid.layout[at[0]];
-      grid.layout[at[0]] = line.slice(0, at[1]) + letter + line.slice(at[1] + 1);
+    const place = (letter) => {
+      const line = grid.layout[row];
+      grid.layout[row] = line.slice(0, column) + letter + line.slice(column + 1);
     };
     if (how !== "drag") this.stroke = this.tool === "#" && old === "#" ? "." : this.tool;
     const tool = this.stroke ?? this.tool;
     const others = grid.rewards.filter(([down, right]) => down !== row || right !== column);
     if (tool === "reward") {
       if (old === "#") return;
-      const had = others.length < grid.rewards.length && grid.rewards.some((each) => each[0] === row && each[1] === column && each[2] === this.reward);
+      const had = grid.rewards.some((each) => each[0] === row && each[1] === column && each[2] === this.reward);
       grid.rewards = had && how !== "drag" ? others : [...others, [row, column, this.reward]];
+    } else if (old === tool) {
+      return;
     } else if (tool === "S") {
-      if (old === "S") return;
       grid.layout = grid.layout.map((line) => line.replaceAll("S", "."));
       place("S");
+    } else if (old === "S" && grid.layout.join("").split("S").length === 2) {
+      this.announce("The grid needs a start. Place the start elsewhere first.");
+      return;
     } else {
-      if (old === tool || (old === "S" && grid.layout.join("").split("S").length === 2)) return this.refuseStart(old, tool);
       place(tool);
-      if (tool !== "G") grid.rewards = tool === "." ? grid.rewards : others;
+      if (tool === "#") grid.rewards = others;
     }
     this.change(grid);
     const names = { "#": "wall", ".": "free", S: "start", G: "goal", reward: `reward ${this.reward}` };
     if (how === "key") this.announce(`Row ${row + 1}, column ${column + 1}: ${names[tool]}.`);
-  }
-
-  refuseStart(old, tool) {
-    if (old === "S" && old !== tool) this.announce("The grid needs a start. Place the start elsewhere first.");
   }
 }

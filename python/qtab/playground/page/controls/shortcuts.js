@@ -1,5 +1,7 @@
 // Single-key shortcuts, which can be turned off, and the dialog that lists them.
 
+import { make } from "./elements.js";
+
 /** Lists `shortcuts`, [key, description, function], in a table and listens for them. */
 export function setUpShortcuts(shortcuts, { table, isOn, isBlocked }) {
   const rows = [
@@ -8,10 +10,8 @@ export function setUpShortcuts(shortcuts, { table, isOn, isBlocked }) {
     [["Enter"], "on the first map: select the state, or paint it"],
   ];
   for (const [keys, text] of rows) {
-    const row = table.insertRow();
-    const cell = row.insertCell();
-    for (const key of keys) cell.append(Object.assign(document.createElement("kbd"), { textContent: key }), " ");
-    row.insertCell().textContent = text;
+    const shown = keys.flatMap((key) => [make("kbd", { textContent: key }), " "]);
+    table.append(make("tr", {}, make("td", {}, ...shown), make("td", { textContent: text })));
   }
   document.addEventListener("keydown", (event) => {
     if (!isOn() || event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented || isBlocked()) return;

@@ -1,7 +1,9 @@
 // The learning curve: the return of each episode, its moving mean, and the lines to compare it with.
 
+import { disc, line, polygon } from "./shapes.js";
 import { axes, onResize, scale, surface, ticks } from "./surface.js";
 import { onThemeChange, themeColors } from "./theme.js";
+import { make } from "../controls/elements.js";
 import { count, counted, number } from "../format.js";
 import { meanAndInterval, movingMeans, quantile, windowEnds, windowOf } from "../results/statistics.js";
 
@@ -39,26 +41,23 @@ export class LearningCurve {
   }
 
   describe() {
-    const { returns, episodes, marks, word, finished, width, over } = this.shown;
+    const { returns, episodes, marks, word, finished, width, ends, over } = this.shown;
     const seeds = returns.length;
-    let text = "No episode is finished yet.";
-    if (finished) {
-      const last = over.mean.at(-1);
-      const half = over.half.at(-1);
-      const first = over.mean.find((_, index) => this.shown.ends[index] >= Math.min(width, finished));
-      const interval = seeds > 1 ? ` ± ${number(half, 3)} (95 % interval of the mean of ${seeds} seeds)` : "";
-      const covered = Math.min(width, finished);
-      text = `Mean ${word} of the last ${counted(covered, "episode")}: ${number(last)}${interval}.`;
-      this.canvas.setAttribute(
-        "aria-label",
-        `Learning curve of ${count(finished)} of ${counted(episodes, "episode")}, ${counted(seeds, "seed")}. ` +
-          `Mean ${word} at first ${number(first)}, at last ${number(last)}. ` +
-          marks.map(({ name, value }) => `${name}: ${number(value)}.`).join(" "),
-      );
-    } else {
+    if (!finished) {
       this.canvas.setAttribute("aria-label", "Learning curve: no episode is finished yet.");
+      this.summary.textContent = "No episode is finished yet.";
+      return;
     }
-    this.summary.textContent = text;
+    const covered = Math.min(width, finished);
+    const [first, last] = [over.mean.find((_, index) => ends[index] >= covered), over.mean.at(-1)].map((mean) => number(mean));
+    const interval = seeds > 1 ? ` ± ${number(over.half.at(-1), 3)} (95 % interval of the mean of ${seeds} seeds)` : "";
+    this.summary.textContent = `Mean ${word} of the last ${counted(covered, "episode")}: ${last}${interval}.`;
+    this.canvas.setAttribute(
+      "aria-label",
+      `Learning curve of ${count(finished)} of ${counted(episodes, "episode")}, ${counted(seeds, "seed")}. ` +
+        `Mean ${word} at first ${first}, at last ${last}. ` +
+        marks.map(({ name, value }) => `${name}: ${number(value)}.`).join(" "),
+    );
   }
 
   point(x) {
@@ -95,10 +94,18 @@ export class LearningCurve {
     g.rect(box.left, box.top - 4, box.right - box.left, box.bottom - box.top + 8);
     g.clip();
     const colors = themeColors();
+    const points = (values) => values.map((value, index) => [x(ends[index]), y(value)]);
     if (returns.length === 1) drawDots(g, returns[0], x, y, colors);
-    else for (const each of means) drawLine(g, ends, each, x, y, colors.accent, 1, 0.28);
-    if (returns.length > 1) drawBand(g, ends, over, x, y, colors.warm);
-    drawLine(g, ends, over.mean, x, y, colors.warm, 2.5, 1);
+    else {
+      g.globalAlpha = 0.28;
+      for (const each of means) line(g, points(each), colors.accent, 1);
+      const upper = points(over.mean.map((value, index) => value + over.half[index]));
+      const lower = points(over.mean.map((value, index) => value - over.half[index]));
+      g.globalAlpha = 0.22;
+      polygon(g, [...upper, ...lower.reverse()], colors.warm);
+      g.globalAlpha = 1;
+    }
+    line(g, points(over.mean), colors.warm, 2.5);
     g.restore();
     drawMarks(g, box, marks, y, colors);
     this.drawPointer(g, box, x, y, colors);
@@ -110,21 +117,12 @@ export class LearningCurve {
     const episode = ((this.pointer - box.left) / (box.right - box.left)) * episodes;
     const index = ends.findIndex((end) => end >= episode);
     const at = index < 0 ? ends.length - 1 : index;
-    g.strokeStyle = colors.muted;
-    g.lineWidth = 1;
-    g.beginPath();
-    g.moveTo(x(ends[at]), box.top);
-    g.lineTo(x(ends[at]), box.bottom);
-    g.stroke();
-    g.fillStyle = colors.warm;
-    g.beginPath();
-    g.arc(x(ends[at]), y(over.mean[at]), 4, 0, 2 * Math.PI);
-    g.fill();
+    const left = x(ends[at]);
+    line(g, [[left, box.top], [left, box.bottom]], colors.muted, 1);
+    disc(g, left, y(over.mean[at]), 4, colors.warm);
     const label = `episode ${count(ends[at])}: ${number(over.mean[at])}`;
-    const right = x(ends[at]) > (box.left + box.right) / 2;
-    g.textAlign = right ? "right" : "left";
     const wide = g.measureText(label).width;
-    const from = x(ends[at]) + (right ? -8 - wide : 8);
+    const from = left > (box.left + box.right) / 2 ? left - 8 - wide : left + 8;
     g.fillStyle = colors.card;
     g.globalAlpha = 0.9;
     g.fillRect(from - 4, box.bottom - 24, wide + 8, 18);
@@ -147,37 +145,12 @@ function drawDots(g, returns, x, y, colors) {
   g.globalAlpha = 1;
 }
 
-function drawLine(g, ends, values, x, y, color, width, alpha) {
-  g.strokeStyle = color;
-  g.lineWidth = width;
-  g.globalAlpha = alpha;
-  g.beginPath();
-  values.forEach((value, index) => (index ? g.lineTo(x(ends[index]), y(value)) : g.moveTo(x(ends[index]), y(value))));
-  g.stroke();
-  g.globalAlpha = 1;
-}
-
-function drawBand(g, ends, { mean, half }, x, y, color) {
-  g.fillStyle = color;
-  g.globalAlpha = 0.22;
-  g.beginPath();
-  mean.forEach((value, index) => g.lineTo(x(ends[index]), y(value + half[index])));
-  for (let index = mean.length - 1; index >= 0; index--) g.lineTo(x(ends[index]), y(mean[index] - half[index]));
-  g.fill();
-  g.globalAlpha = 1;
-}
-
 /** Draws the lines to compare with. A label that would be too close to the one above is drawn below its line. */
 function drawMarks(g, box, marks, y, colors) {
   const shown = marks.filter(({ value }) => Number.isFinite(value)).sort((left, right) => left.value - right.value);
   shown.forEach(({ name, value, dash }, index) => {
-    g.strokeStyle = colors.good;
-    g.lineWidth = 1.5;
     g.setLineDash(dash);
-    g.beginPath();
-    g.moveTo(box.left, y(value));
-    g.lineTo(box.right, y(value));
-    g.stroke();
+    line(g, [[box.left, y(value)], [box.right, y(value)]], colors.good, 1.5);
     g.setLineDash([]);
     const isClose = index + 1 < shown.length && y(value) - y(shown[index + 1].value) < LABEL_SPACE;
     const at = y(value) + (isClose ? 9 : -9);
@@ -234,7 +207,7 @@ export class Marks {
     this.shown = shown;
     this.list.replaceChildren(
       ...lines.map(([color, stroke, text]) => {
-        const item = Object.assign(document.createElement("li"), { textContent: text });
+        const item = make("li", { textContent: text });
         item.style.setProperty("--color", `var(--${color})`);
         item.style.setProperty("--stroke", stroke);
         return item;

@@ -1,5 +1,6 @@
 // A map on its canvas: the positions of its cells, its axes, and the content of the cells.
 
+import { arrow, disc, dot, line, roundBox } from "./shapes.js";
 import { FONT, scale, ticks } from "./surface.js";
 import { css, inkOn, shade, themeColors } from "./theme.js";
 import { number } from "../format.js";
@@ -77,7 +78,7 @@ const MIN_ARROW_CELL = 13;
 const UNVISITED_ALPHA = 0.28;
 
 /** The direction of an action by the last word of its name; null without one, as for "no push". */
-export function direction(action) {
+function direction(action) {
   const words = action.split(" ");
   return words.includes("no") ? null : (DIRECTIONS[words.at(-1)] ?? null);
 }
@@ -113,7 +114,6 @@ export function drawPolicy(g, frame, map, palette, { actions, greedy, share, isF
   const everyColumn = Math.max(Math.ceil(MIN_ARROW_CELL / sample.width), 1);
   const everyRow = Math.max(Math.ceil(MIN_ARROW_CELL / sample.height), 1);
   const directions = actions.map(direction);
-  g.lineWidth = 1.4;
   for (let row = Math.floor(everyRow / 2); row < map.rows; row += everyRow) {
     for (let column = Math.floor(everyColumn / 2); column < map.columns; column += everyColumn) {
       const index = row * map.columns + column;
@@ -122,31 +122,11 @@ export function drawPolicy(g, frame, map, palette, { actions, greedy, share, isF
       const size = Math.min(width * everyColumn, height * everyRow, 40) * 0.3;
       const faint = isFaint(index);
       const ink = faint ? themeColors().ink : inkOn(shade(palette, share(index)));
-      g.strokeStyle = ink;
-      g.fillStyle = ink;
       g.globalAlpha = faint ? 0.3 : 0.9;
-      drawArrow(g, x + width / 2, y + height / 2, size, directions[greedy[index]]);
+      arrow(g, x + width / 2, y + height / 2, size, directions[greedy[index]], ink, 1.4);
     }
   }
   g.globalAlpha = 1;
-}
-
-export function drawArrow(g, x, y, size, towards) {
-  g.beginPath();
-  if (!towards) {
-    g.arc(x, y, Math.max(size * 0.3, 1.2), 0, 2 * Math.PI);
-    g.fill();
-    return;
-  }
-  const [right, down] = towards;
-  const [tipX, tipY] = [x + right * size, y + down * size];
-  const head = size * 0.75;
-  g.moveTo(x - right * size, y - down * size);
-  g.lineTo(tipX, tipY);
-  g.moveTo(tipX - right * head - down * head * 0.8, tipY - down * head - right * head * 0.8);
-  g.lineTo(tipX, tipY);
-  g.lineTo(tipX - right * head + down * head * 0.8, tipY - down * head + right * head * 0.8);
-  g.stroke();
 }
 
 /** Draws the letters of a grid world: S start, in its corner, and G goal, H hole, C cliff, which have no value. */
@@ -163,10 +143,7 @@ export function drawLetters(g, frame, layout) {
       g.fillText(letter, x + width / 2, y + width / 2);
       return;
     }
-    g.fillStyle = "rgba(255, 255, 255, 0.88)";
-    g.beginPath();
-    g.arc(x + size * 0.9, y + size * 0.9, size * 0.75, 0, 2 * Math.PI);
-    g.fill();
+    disc(g, x + size * 0.9, y + size * 0.9, size * 0.75, "rgba(255, 255, 255, 0.88)");
     g.fillStyle = "#1f4f8f";
     g.fillText(letter, x + size * 0.9, y + size * 0.95);
   });
@@ -181,10 +158,7 @@ export function drawRewards(g, frame, columns, rewards) {
     const text = number(reward, 3);
     g.font = `700 ${size}px ${FONT}`;
     const wide = g.measureText(text).width + size * 0.6;
-    g.fillStyle = "rgba(255, 255, 255, 0.9)";
-    g.beginPath();
-    g.roundRect(x + width / 2 - wide / 2, y + height - size * 1.25, wide, size * 1.2, size * 0.4);
-    g.fill();
+    roundBox(g, x + width / 2 - wide / 2, y + height - size * 1.25, wide, size * 1.2, size * 0.4, "rgba(255, 255, 255, 0.9)");
     g.fillStyle = reward < 0 ? "#a33c0c" : "#1b6b3a";
     g.textAlign = "center";
     g.fillText(text, x + width / 2, y + height - size * 0.6);
@@ -201,34 +175,18 @@ export function drawPath(g, frame, points) {
   g.rect(frame.box.left, frame.box.top, frame.box.right - frame.box.left, frame.box.bottom - frame.box.top);
   g.clip();
   const thin = points.length > 250 ? 0.5 : 1;
-  for (const [color, width] of [["rgba(255, 255, 255, 0.85)", 3.6 * thin], [warm, 1.8 * thin]]) {
-    g.strokeStyle = color;
-    g.lineWidth = width;
-    g.beginPath();
-    points.forEach(([x, y], index) => (index ? g.lineTo(x, y) : g.moveTo(x, y)));
-    g.stroke();
-  }
-  drawDot(g, points[0], 4, warm);
+  line(g, points, "rgba(255, 255, 255, 0.85)", 3.6 * thin);
+  line(g, points, warm, 1.8 * thin);
+  dot(g, points[0], 4, warm);
   g.restore();
-}
-
-/** Draws a dot with a light edge, such as the agent on a map. */
-export function drawDot(g, [x, y], radius, color) {
-  g.beginPath();
-  g.arc(x, y, radius, 0, 2 * Math.PI);
-  g.fillStyle = color;
-  g.fill();
-  g.lineWidth = 1.5;
-  g.strokeStyle = "#ffffff";
-  g.stroke();
 }
 
 /** Outlines a cell. */
 export function drawOutline(g, { x, y, width, height }) {
   const pad = width < 12 ? 1.5 : -1;
-  for (const [color, line] of [["#ffffff", 4], ["#10151d", 2]]) {
+  for (const [color, thickness] of [["#ffffff", 4], ["#10151d", 2]]) {
     g.strokeStyle = color;
-    g.lineWidth = line;
+    g.lineWidth = thickness;
     g.strokeRect(x - pad, y - pad, width + 2 * pad - 1, height + 2 * pad - 1);
   }
 }

@@ -1,6 +1,6 @@
 // Scenes of the agent in motion: the mountain car and the cart with its pole as Gymnasium draws them, and grid worlds.
 
-import { drawArrow, drawDot } from "./map_drawing.js";
+import { arrow, disc, dot, line, polygon, roundBox } from "./shapes.js";
 import { FONT, scale } from "./surface.js";
 import { themeColors } from "./theme.js";
 
@@ -9,7 +9,6 @@ const hill = (position) => Math.sin(3 * position) * 0.45 + 0.55;
 
 export const mountainCar = {
   stepsPerSecond: 30,
-  aspect: 16 / 9,
 
   draw(g, width, height, { observation, action }) {
     const colors = themeColors();
@@ -27,68 +26,34 @@ export const mountainCar = {
     g.rotate(-Math.atan2(Math.cos(3 * position) * 3 * 0.45 * unitY, unitX));
     drawCar(g, Math.max(width / 15, 26), colors);
     g.restore();
-    if (action !== null) {
-      g.strokeStyle = colors.warm;
-      g.fillStyle = colors.warm;
-      g.lineWidth = 3;
-      drawArrow(g, x(position), y(hill(position)) - width / 10, width / 40, [[-1, 0], null, [1, 0]][action]);
-    }
+    if (action === null) return;
+    arrow(g, x(position), y(hill(position)) - width / 10, width / 40, [[-1, 0], null, [1, 0]][action], colors.warm, 3);
   },
 
   alternative: ({ observation }) => `the car is at position ${observation[0].toFixed(2)}`,
 };
 
 function drawHill(g, width, height, x, y, colors) {
-  g.beginPath();
-  g.moveTo(0, height);
-  for (let place = LEFT_WALL; place <= RIGHT_WALL + 0.005; place += 0.01) g.lineTo(x(place), y(hill(place)));
-  g.lineTo(width, height);
-  g.fillStyle = colors.ground;
-  g.fill();
-  g.beginPath();
-  for (let place = LEFT_WALL; place <= RIGHT_WALL + 0.005; place += 0.01) g.lineTo(x(place), y(hill(place)));
-  g.strokeStyle = colors.muted;
-  g.lineWidth = 2;
-  g.stroke();
+  const surface = [];
+  for (let place = LEFT_WALL; place <= RIGHT_WALL + 0.005; place += 0.01) surface.push([x(place), y(hill(place))]);
+  polygon(g, [[0, height], ...surface, [width, height]], colors.ground);
+  line(g, surface, colors.muted, 2);
 }
 
-export function drawFlag(g, x, y, size, colors) {
-  g.strokeStyle = colors.ink;
-  g.lineWidth = 2;
-  g.beginPath();
-  g.moveTo(x, y);
-  g.lineTo(x, y - size);
-  g.stroke();
-  g.fillStyle = colors.good;
-  g.beginPath();
-  g.moveTo(x, y - size);
-  g.lineTo(x + size * 0.38, y - size * 0.78);
-  g.lineTo(x, y - size * 0.56);
-  g.fill();
+function drawFlag(g, x, y, size, colors) {
+  line(g, [[x, y], [x, y - size]], colors.ink, 2);
+  polygon(g, [[x, y - size], [x + size * 0.38, y - size * 0.78], [x, y - size * 0.56]], colors.good);
 }
 
 /** Draws a car whose wheels stand on the origin. */
 function drawCar(g, length, colors) {
   const wheel = length * 0.16;
-  g.fillStyle = colors.accent;
-  g.beginPath();
-  g.roundRect(-length / 2, -wheel * 1.2 - length * 0.3, length, length * 0.3, length * 0.06);
-  g.fill();
-  g.beginPath();
-  g.moveTo(-length * 0.3, -wheel * 1.2 - length * 0.28);
-  g.lineTo(-length * 0.18, -wheel * 1.2 - length * 0.52);
-  g.lineTo(length * 0.16, -wheel * 1.2 - length * 0.52);
-  g.lineTo(length * 0.32, -wheel * 1.2 - length * 0.28);
-  g.fill();
+  roundBox(g, -length / 2, -wheel * 1.2 - length * 0.3, length, length * 0.3, length * 0.06, colors.accent);
+  const [roof, doors] = [-wheel * 1.2 - length * 0.52, -wheel * 1.2 - length * 0.28];
+  polygon(g, [[-length * 0.3, doors], [-length * 0.18, roof], [length * 0.16, roof], [length * 0.32, doors]], colors.accent);
   for (const place of [-0.28, 0.28]) {
-    g.beginPath();
-    g.arc(place * length, -wheel, wheel, 0, 2 * Math.PI);
-    g.fillStyle = colors.ink;
-    g.fill();
-    g.beginPath();
-    g.arc(place * length, -wheel, wheel * 0.4, 0, 2 * Math.PI);
-    g.fillStyle = colors.card;
-    g.fill();
+    disc(g, place * length, -wheel, wheel, colors.ink);
+    disc(g, place * length, -wheel, wheel * 0.4, colors.card);
   }
 }
 
@@ -96,7 +61,6 @@ const LIMIT = 2.4;
 
 export const cartPole = {
   stepsPerSecond: 50,
-  aspect: 16 / 9,
 
   draw(g, width, height, { observation, action }) {
     const colors = themeColors();
@@ -107,64 +71,26 @@ export const cartPole = {
     g.fillRect(0, 0, width, height);
     g.fillStyle = colors.ground;
     g.fillRect(0, ground, width, height - ground);
-    g.strokeStyle = colors.muted;
-    g.lineWidth = 2;
-    g.beginPath();
-    g.moveTo(0, ground);
-    g.lineTo(width, ground);
-    g.stroke();
-    drawLimits(g, x, ground, colors);
+    line(g, [[0, ground], [width, ground]], colors.muted, 2);
+    g.setLineDash([4, 5]);
+    for (const limit of [-LIMIT, LIMIT]) line(g, [[x(limit), ground], [x(limit), ground - 60]], colors.muted, 1.5);
+    g.setLineDash([]);
     const [length, tall] = [width / 9, width / 17];
     const pivot = [x(position), ground - tall * 0.95];
-    g.fillStyle = colors.accent;
-    g.beginPath();
-    g.roundRect(pivot[0] - length / 2, ground - tall, length, tall * 0.72, 4);
-    g.fill();
-    g.fillStyle = colors.ink;
-    for (const side of [-0.3, 0.3]) {
-      g.beginPath();
-      g.arc(pivot[0] + side * length, ground - tall * 0.18, tall * 0.18, 0, 2 * Math.PI);
-      g.fill();
-    }
-    drawPole(g, pivot, angle, height * 0.5, Math.max(width / 70, 5), colors);
-    if (action !== null) {
-      g.strokeStyle = colors.warm;
-      g.fillStyle = colors.warm;
-      g.lineWidth = 3;
-      const side = action ? 1 : -1;
-      drawArrow(g, pivot[0] + side * length * 0.85, ground - tall * 0.62, width / 45, [side, 0]);
-    }
+    roundBox(g, pivot[0] - length / 2, ground - tall, length, tall * 0.72, 4, colors.accent);
+    for (const side of [-0.3, 0.3]) disc(g, pivot[0] + side * length, ground - tall * 0.18, tall * 0.18, colors.ink);
+    const [pole, thickness] = [height * 0.5, Math.max(width / 70, 5)];
+    const tip = [pivot[0] + Math.sin(angle) * pole, pivot[1] - Math.cos(angle) * pole];
+    line(g, [pivot, tip], colors.warm, thickness);
+    disc(g, ...pivot, thickness * 0.6, colors.ink);
+    if (action === null) return;
+    const side = action ? 1 : -1;
+    arrow(g, pivot[0] + side * length * 0.85, ground - tall * 0.62, width / 45, [side, 0], colors.warm, 3);
   },
 
   alternative: ({ observation }) =>
     `the cart is at ${observation[0].toFixed(2)} m, the pole leans by ${((observation[2] * 180) / Math.PI).toFixed(1)} degrees`,
 };
-
-function drawPole(g, [left, top], angle, length, width, colors) {
-  g.strokeStyle = colors.warm;
-  g.lineWidth = width;
-  g.beginPath();
-  g.moveTo(left, top);
-  g.lineTo(left + Math.sin(angle) * length, top - Math.cos(angle) * length);
-  g.stroke();
-  g.fillStyle = colors.ink;
-  g.beginPath();
-  g.arc(left, top, width * 0.6, 0, 2 * Math.PI);
-  g.fill();
-}
-
-function drawLimits(g, x, ground, colors) {
-  g.setLineDash([4, 5]);
-  g.lineWidth = 1.5;
-  for (const limit of [-LIMIT, LIMIT]) {
-    g.beginPath();
-    g.moveTo(x(limit), ground);
-    g.lineTo(x(limit), ground - 60);
-    g.strokeStyle = colors.muted;
-    g.stroke();
-  }
-  g.setLineDash([]);
-}
 
 const FLOORS = {
   frozen_lake: { light: "#dcebf5", dark: "#2b4252" },
@@ -191,11 +117,13 @@ export const gridWorld = {
     for (const [row, column, reward] of rewards ?? []) {
       drawReward(g, ...center(row * columns + column), size, reward, colors);
     }
-    drawTrail(g, trail.map(center), size, colors);
+    g.globalAlpha = 0.65;
+    if (trail.length > 1) line(g, trail.map(center), colors.warm, Math.max(size * 0.07, 2));
+    g.globalAlpha = 1;
     if (cell === null) return;
     const [fromX, fromY] = center(from ?? cell);
     const [toX, toY] = center(cell);
-    drawDot(g, [fromX + (toX - fromX) * share, fromY + (toY - fromY) * share], size * 0.24, colors.accent);
+    dot(g, [fromX + (toX - fromX) * share, fromY + (toY - fromY) * share], size * 0.24, colors.accent);
   },
 
   alternative: ({ layout, cell }) => {
@@ -206,13 +134,10 @@ export const gridWorld = {
 };
 
 function drawFloor(g, x, y, size, letter, drawing, colors) {
-  const floor = FLOORS[drawing] ?? FLOORS.grid;
-  g.fillStyle = colors.isDark ? floor.dark : floor.light;
-  if (letter === "#") g.fillStyle = colors.wall;
-  if (letter === "C") g.fillStyle = colors.isDark ? "#6b3a28" : "#b5694a";
-  g.beginPath();
-  g.roundRect(x + 1, y + 1, size - 2, size - 2, Math.min(size * 0.12, 6));
-  g.fill();
+  const floor = FLOORS[drawing];
+  const special = { "#": colors.wall, C: colors.isDark ? "#6b3a28" : "#b5694a" };
+  const color = special[letter] ?? (colors.isDark ? floor.dark : floor.light);
+  roundBox(g, x + 1, y + 1, size - 2, size - 2, Math.min(size * 0.12, 6), color);
   if (letter === "H") {
     g.fillStyle = colors.isDark ? "#0d1a24" : "#35637f";
     g.beginPath();
@@ -230,36 +155,19 @@ function drawFloor(g, x, y, size, letter, drawing, colors) {
 }
 
 function drawWind(g, x, y, size, strength, colors) {
-  g.strokeStyle = colors.muted;
   g.globalAlpha = 0.4;
-  g.lineWidth = 1.2;
   for (let index = 0; index < Math.min(Math.abs(strength), 3); index++) {
     const at = y + size * (0.34 + index * 0.2);
     const tip = strength > 0 ? -size * 0.1 : size * 0.1;
-    g.beginPath();
-    g.moveTo(x + size * 0.36, at);
-    g.lineTo(x + size * 0.5, at + tip);
-    g.lineTo(x + size * 0.64, at);
-    g.stroke();
+    line(g, [[x + size * 0.36, at], [x + size * 0.5, at + tip], [x + size * 0.64, at]], colors.muted, 1.2);
   }
   g.globalAlpha = 1;
 }
 
-export function drawReward(g, x, y, size, reward, colors) {
+function drawReward(g, x, y, size, reward, colors) {
   g.font = `600 ${Math.max(Math.min(size * 0.32, 15), 8)}px ${FONT}`;
   g.textAlign = "center";
   g.fillStyle = reward < 0 ? colors.warm : colors.good;
   g.fillText(`${reward > 0 ? "+" : reward < 0 ? "−" : ""}${Math.abs(reward)}`, x, y);
   g.font = `12px ${FONT}`;
-}
-
-function drawTrail(g, points, size, colors) {
-  if (points.length < 2) return;
-  g.strokeStyle = colors.warm;
-  g.globalAlpha = 0.65;
-  g.lineWidth = Math.max(size * 0.07, 2);
-  g.beginPath();
-  points.forEach(([x, y], index) => (index ? g.lineTo(x, y) : g.moveTo(x, y)));
-  g.stroke();
-  g.globalAlpha = 1;
 }

@@ -1,5 +1,6 @@
 // Canvases that are sharp on every screen, and the axes of a chart.
 
+import { line } from "./shapes.js";
 import { themeColors } from "./theme.js";
 import { number } from "../format.js";
 
@@ -73,16 +74,11 @@ export function scale(low, high, from, to) {
 /** Draws the grid lines and labels of a chart. */
 export function axes(g, box, x, y, xTicks, yTicks, names) {
   const colors = themeColors();
-  g.lineWidth = 1;
-  g.strokeStyle = colors.line;
   g.fillStyle = colors.muted;
   g.textAlign = "right";
   for (const tick of yTicks) {
     const at = Math.round(y(tick)) + 0.5;
-    g.beginPath();
-    g.moveTo(box.left, at);
-    g.lineTo(box.right, at);
-    g.stroke();
+    line(g, [[box.left, at], [box.right, at]], colors.line, 1);
     g.fillText(number(tick), box.left - 8, at);
   }
   for (const tick of xTicks) {
@@ -90,7 +86,7 @@ export function axes(g, box, x, y, xTicks, yTicks, names) {
     g.fillText(number(tick, 6), x(tick), box.bottom + 14);
   }
   g.textAlign = "right";
-  if (names.x) g.fillText(names.x, box.right, box.bottom + 31);
+  g.fillText(names.x, box.right, box.bottom + 31);
   g.textAlign = "left";
-  if (names.y) g.fillText(names.y, 4, 9);
+  g.fillText(names.y, 4, 9);
 }

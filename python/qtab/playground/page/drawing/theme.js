@@ -6,7 +6,7 @@ const changed = new Set();
 let colors = null;
 
 /** The current theme: "light" or "dark". */
-export function shownTheme() {
+function shownTheme() {
   const chosen = document.documentElement.dataset.theme;
   if (chosen === "light" || chosen === "dark") return chosen;
   return matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
@@ -22,7 +22,7 @@ export function themeColors() {
       probe.style.color = `var(--${name})`;
       return shown.color;
     };
-    const names = ["paper", "card", "ink", "muted", "line", "accent", "warm", "good", "sky", "ground", "wall"];
+    const names = ["card", "ink", "muted", "line", "accent", "warm", "good", "sky", "ground", "wall"];
     colors = Object.fromEntries(names.map((name) => [name, colorOf(name)]));
     colors.isDark = shownTheme() === "dark";
     probe.remove();
@@ -72,8 +72,8 @@ export function shade(name, share) {
 }
 
 /** A color in the form that canvases use. */
-export function css([red, green, blue], alpha = 1) {
-  return `rgba(${red}, ${green}, ${blue}, ${alpha})`;
+export function css([red, green, blue]) {
+  return `rgb(${red}, ${green}, ${blue})`;
 }
 
 /** Black or white, whichever is readable on a color. */

@@ -1,18 +1,10 @@
 // A map of the states: values, visits or the optimum, with the policy and the greedy agent's path, and a cell to select.
 
-import {
-  drawCells,
-  drawDot,
-  drawLetters,
-  drawOutline,
-  drawPath,
-  drawPlaneAxes,
-  drawPolicy,
-  drawRewards,
-  frameOf,
-} from "./map_drawing.js";
+import { drawCells, drawLetters, drawOutline, drawPath, drawPlaneAxes, drawPolicy, drawRewards, frameOf } from "./map_drawing.js";
+import { dot } from "./shapes.js";
 import { onResize, surface } from "./surface.js";
 import { onThemeChange, themeColors } from "./theme.js";
+import { make } from "../controls/elements.js";
 
 const KEYS = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [-1, 0], ArrowDown: [1, 0] };
 
@@ -93,7 +85,7 @@ export class StateMap {
     const { g } = surface(this.canvas);
     const { a: ratio } = g.getTransform();
     g.drawImage(this.states, 0, 0, this.states.width / ratio, this.states.height / ratio);
-    if (this.agent !== null) drawDot(g, this.point(this.frame, this.agent), 6, themeColors().warm);
+    if (this.agent !== null) dot(g, this.point(this.frame, this.agent), 6, themeColors().warm);
     if (this.selected !== null) drawOutline(g, this.frame.cell(this.selected));
   }
 
@@ -104,17 +96,11 @@ export class StateMap {
   }
 
   setUpPicking() {
-    this.grid = document.createElement("div");
-    this.grid.className = "map-grid";
-    this.grid.setAttribute("role", "grid");
-    this.grid.setAttribute("aria-label", `${this.name}: arrow keys move, Enter selects`);
-    this.row = document.createElement("div");
-    this.row.setAttribute("role", "row");
-    this.grid.append(this.row);
-    this.canvas.after(this.grid);
     this.cell = this.newCell();
-    this.row.append(this.cell);
-    this.grid.addEventListener("keydown", (event) => this.pressed(event));
+    const named = { "aria-label": `${this.name}: arrow keys move, Enter selects` };
+    const onkeydown = (event) => this.pressed(event);
+    this.grid = make("div", { className: "map-grid", role: "grid", ...named, onkeydown }, make("div", { role: "row" }, this.cell));
+    this.canvas.after(this.grid);
     let last = null;
     const at = (event) => {
       const box = this.canvas.getBoundingClientRect();
@@ -136,11 +122,8 @@ export class StateMap {
   }
 
   newCell() {
-    const cell = document.createElement("div");
-    cell.className = "map-cell";
-    cell.setAttribute("role", "gridcell");
-    cell.tabIndex = 0;
-    cell.addEventListener("focus", () => cell.setAttribute("aria-label", this.describe(this.focused)));
+    const onfocus = () => cell.setAttribute("aria-label", this.describe(this.focused));
+    const cell = make("div", { className: "map-cell", role: "gridcell", tabIndex: 0, onfocus });
     return cell;
   }
 
@@ -149,8 +132,7 @@ export class StateMap {
     this.focused = cell;
     const old = this.cell;
     this.cell = this.newCell();
-    this.cell.setAttribute("aria-label", this.describe(cell));
-    this.row.append(this.cell);
+    old.after(this.cell);
     this.placeCell();
     this.cell.focus();
     old.remove();

@@ -15,7 +15,7 @@ function nameOf(table, bootstraps) {
  * The equation of updates in symbols. `bootstraps`: the term for the value of the next state, one text for each table
  * that the algorithm learns: Double Q-learning has two.
  */
-export function symbolEquation({ kind, table, learningRate }, bootstraps) {
+function symbolEquation({ kind, table, learningRate }, bootstraps) {
   const value = nameOf(table, bootstraps);
   const source = kind === "planning" ? "Planning with the model: " : "";
   if (learningRate === null) return `${source}${value} ← R`;
@@ -26,7 +26,7 @@ export function symbolEquation({ kind, table, learningRate }, bootstraps) {
 }
 
 /** The equation with the numbers of an update, as parts: the last one is the new value. */
-export function numberEquation(update, bootstraps) {
+function numberEquation(update, bootstraps) {
   const { kind, table, learningRate, trace, qOld } = update;
   const after = number(update.new ?? NaN, DIGITS);
   if (learningRate === null) return [`${nameOf(table, bootstraps)} ← `, after];
@@ -50,6 +50,7 @@ const SHOWN_UPDATES = 5;
 const HINT =
   "Select a cell of the first map, with the pointer or with the arrow keys and Enter. Here you then see how much each " +
   "action is worth, how often it was taken, and the last updates with their numbers.";
+const UNVISITED = "No update yet: the agent has not left this state by a step.";
 const ENDS = {
   terminal: "a terminal state follows",
   truncated: "the time limit ends the episode",
@@ -57,7 +58,7 @@ const ENDS = {
 };
 
 /** Shows an inspection below a title; null shows how to select a state. */
-export function showInspection(title, place, inspection, { actions, bootstraps, unvisitedText }) {
+export function showInspection(title, place, inspection, actions, bootstraps) {
   if (!inspection) {
     title.textContent = "A state and its numbers";
     place.replaceChildren(make("p", { className: "hint", textContent: HINT }));
@@ -71,7 +72,7 @@ export function showInspection(title, place, inspection, { actions, bootstraps, 
     updates.append(make("p", { className: "equation symbols", textContent: symbolEquation(newest[0], bootstraps) }));
     updates.append(make("ol", { className: "updates" }, ...newest.map((update) => updateItem(update, actions, newest[0], bootstraps))));
   } else {
-    updates.append(make("p", { className: "hint", textContent: unvisitedText }));
+    updates.append(make("p", { className: "hint", textContent: UNVISITED }));
   }
   place.replaceChildren(make("div", { className: "inspected" }, values, updates));
 }

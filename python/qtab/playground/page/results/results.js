@@ -1,5 +1,6 @@
 // A result in words, and the content of its maps: colors, policies and paths, with one scale for all values.
 
+import { make } from "../controls/elements.js";
 import { isEnd } from "../drawing/map_drawing.js";
 import { gradient, themeColors } from "../drawing/theme.js";
 import { count, counted, number } from "../format.js";
@@ -90,15 +91,10 @@ function describeSize({ columns, rows }) {
 
 /** Shows the color bar with its limits, and the meaning of pale cells. */
 export function showLegend(place, palette, low, high, unvisited = false) {
-  const bar = Object.assign(document.createElement("span"), { className: "bar" });
+  const bar = make("span", { className: "bar" });
   bar.style.background = gradient(palette);
-  const parts = [low, bar, high];
-  if (unvisited) {
-    const key = Object.assign(document.createElement("span"), { className: "key" });
-    key.append(Object.assign(document.createElement("span"), { className: "unvisited" }), "pale: never visited");
-    parts.push(key);
-  }
-  place.replaceChildren(...parts);
+  const pale = () => make("span", { className: "key" }, make("span", { className: "unvisited" }), "pale: never visited");
+  place.replaceChildren(low, bar, high, ...(unvisited ? [pale()] : []));
 }
 
 /** The greedy episode as a path on a map: positions on a plane, or cells. */

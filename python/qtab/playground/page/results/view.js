@@ -1,6 +1,6 @@
 // The view of a result: status, learning curve, motion, maps and the selected state.
 
-import { moveWithArrows } from "../controls/environments.js";
+import { radioButtons } from "../controls/elements.js";
 import { Painter } from "../controls/painter.js";
 import { bestReturn, LearningCurve, Marks } from "../drawing/curve.js";
 import { Motion } from "../drawing/motion.js";
@@ -49,8 +49,11 @@ export class View {
     this.best = new StateMap(element("best"), { name: "Map of the optimum", describe });
     this.marks = new Marks(element("curve-key"));
     this.measure = null;
-    this.setUpMeasure(element("measure"));
-    showInspection(element("inspector-title"), element("inspection"), null, {});
+    this.markMeasure = radioButtons(element("measure"), "measure", [["returns", "Return"], ["lengths", "Steps"]], (measure) => {
+      this.measure = measure;
+      if (!this.isStale) this.showCurve(this.result);
+    });
+    showInspection(element("inspector-title"), element("inspection"), null);
     onThemeChange(() => this.isStale || this.draw());
   }
 
@@ -133,25 +136,11 @@ export class View {
   showCurve(result) {
     const { seeds, done, episodes } = result;
     const measure = this.shownMeasure;
-    for (const button of element("measure").children) {
-      const chosen = button.dataset.measure === measure;
-      button.setAttribute("aria-checked", chosen);
-      button.tabIndex = chosen ? 0 : -1;
-    }
+    this.markMeasure(measure);
     const marks = measure === "returns" ? this.marks.of(this.store, result) : [];
     const bySeed = seeds.map((_, index) => result[measure].subarray(index * done, (index + 1) * done));
     this.marks.showKey(seeds.length, episodes, marks, measure === "returns" ? "return" : "number of steps");
     this.curve.show(bySeed, episodes, marks, measure);
-  }
-
-  setUpMeasure(group) {
-    for (const button of group.children) {
-      button.addEventListener("click", () => {
-        this.measure = button.dataset.measure;
-        if (!this.isStale) this.showCurve(this.result);
-      });
-    }
-    moveWithArrows(group, (button) => button.click());
   }
 
   showStatus(result) {
@@ -290,8 +279,7 @@ export class View {
     if (this.values.selected !== (inspection?.cell ?? null) && inspection) this.values.select(inspection.cell);
     const { actions } = this.store.entry;
     const bootstraps = this.store.definitions.bootstraps[this.store.state.settings.algorithm];
-    const unvisitedText = "No update yet: the agent has not left this state by a step.";
     const named = inspection && { ...inspection, state: this.stateText(inspection) };
-    showInspection(element("inspector-title"), element("inspection"), named, { actions, bootstraps, unvisitedText });
+    showInspection(element("inspector-title"), element("inspection"), named, actions, bootstraps);
   }
 }
