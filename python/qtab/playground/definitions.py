@@ -10,6 +10,7 @@ import numpy as np
 
 from qtab._utils.versions import versions
 from qtab.config.options import n_tables
+from qtab.config.preset_settings import CLIFF_WALKING
 from qtab.config.presets import presets
 from qtab.envs.grid_worlds import ACTION_NAMES
 from qtab.envs.quantities import quantities_of
@@ -19,14 +20,6 @@ from qtab.playground.settings import LEFT_OUT, OFFERED, rules, settings
 
 GRID_TIME_LIMIT = 1000
 """The time limit of grid worlds, in steps."""
-_GRID_PRESET = {
-    "learning_rate": 0.5,
-    "discount": 1.0,
-    "epsilon": 0.1,
-    "epsilon_schedule": "constant",
-    "initial_q": 0.0,
-    "episodes": 500,
-}
 
 
 @cache
@@ -44,7 +37,6 @@ def definitions() -> dict[str, Any]:
 
 
 def _environment(key: str, entry: Entry) -> dict[str, Any]:
-    made = _grid_world(entry) if entry.grids else _gymnasium(entry)
     return {
         "id": key,
         "title": entry.title,
@@ -54,7 +46,17 @@ def _environment(key: str, entry: Entry) -> dict[str, Any]:
         "env_kwargs": dict(entry.env_kwargs),
         "best_known": entry.best_known,
         "grids": {name: _plain(asdict(grid)) for name, grid in entry.grids.items()},
-        **made,
+        # Those of an environment whose observations are the numbers of its states.
+        "observations": None,
+        "map": None,
+        "discretizers": ["identity"],
+        "options": {},
+        # None is unknown.
+        "states": None,
+        "layout": None,
+        "table": None,
+        "threshold": None,
+        **(_grid_world(entry) if entry.grids else _gymnasium(entry)),
     }
 
 
@@ -62,16 +64,10 @@ def _grid_world(entry: Entry) -> dict[str, Any]:
     grid = next(iter(entry.grids.values()))
     return {
         "actions": list(ACTION_NAMES),
-        "observations": None,
         "states": len(grid.layout) * len(grid.layout[0]),
         "layout": list(grid.layout),
-        "table": None,
         "max_episode_steps": GRID_TIME_LIMIT,
-        "threshold": None,
-        "discretizers": ["identity"],
-        "options": {},
-        "presets": {"learns": {**_GRID_PRESET, "discretizer": "identity"}},
-        "map": None,
+        "presets": {"learns": {**CLIFF_WALKING, "discretizer": "identity"}},
     }
 
 
@@ -89,10 +85,6 @@ def _gymnasium(entry: Entry) -> dict[str, Any]:
     }
     made = {
         "actions": list(description.actions),
-        "observations": None,
-        "states": None,
-        "layout": None,
-        "table": None,
         "max_episode_steps": spec.max_episode_steps or GRID_TIME_LIMIT,
         "threshold": spec.reward_threshold,
         "presets": {
@@ -102,15 +94,7 @@ def _gymnasium(entry: Entry) -> dict[str, Any]:
     }
     env.close()
     if tabular:
-        made |= {
-            "states": int(space.n),
-            "layout": _layout(unwrapped),
-            "table": _table(unwrapped),
-            "discretizers": ["identity"],
-            "options": {},
-            "map": None,
-        }
-        return made
+        return {**made, "states": int(space.n), "layout": _layout(unwrapped), "table": _table(unwrapped)}
     low, high = space.low, space.high
     bounded = bool(np.isfinite([low, high]).all()) and bool((np.abs([low, high]) < 1e6).all())
     components = [quantity.name for quantity in description.observation]

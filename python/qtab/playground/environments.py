@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal, TypeAlias
 
+from qtab.envs.goals import BEST_KNOWN_MOUNTAIN_CAR
 from qtab.envs.grid_worlds import DYNA_MAZE, WIND, WINDY_GRID_WORLD
 
 Drawing: TypeAlias = Literal["mountain_car", "cart_pole", "frozen_lake", "cliff", "grid"]
@@ -76,14 +77,13 @@ _LAKE = "Cross the frozen lake to the goal without falling into a hole. The rewa
 _SLIPPERY = "; the ice is slippery, so only one move in three goes in the intended direction."
 _ICE = {"is_slippery": False}
 
-# The best known return is that of `qtab.optimum("MountainCar-v0")`, as docs/environments.md reports it.
 ENVIRONMENTS: Mapping[str, Entry] = {
     "MountainCar-v0": Entry(
         "Mountain car",
         "Drive an underpowered car out of a valley: it must swing back and forth to reach the flag. Each step costs 1.",
         "mountain_car",
         "MountainCar-v0",
-        best_known=-97.67,
+        best_known=round(BEST_KNOWN_MOUNTAIN_CAR, 2),
     ),
     "CartPole-v1": Entry(
         "Cart pole",

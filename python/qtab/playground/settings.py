@@ -124,7 +124,7 @@ def setting(name: str, group: str) -> dict[str, Any]:
 
 def is_offered(name: str) -> bool:
     """Returns whether the page shows a setting, which must apply to some choice that the page offers."""
-    if name in LEFT_OUT or (name not in OFFERED and name not in _CONTROLS):
+    if name not in OFFERED and name not in _CONTROLS:
         return False
     option = OPTIONS.get(name)
     return option is None or not set(option.values).isdisjoint(OFFERED[option.choice])
@@ -137,14 +137,13 @@ def settings() -> dict[str, dict[str, Any]]:
 
 
 def rules() -> list[dict[str, Any]]:
-    """Returns the pairs of choices that exclude each other, with the reason in words."""
-    found = []
-    for name in ("terminal_update", "learning_rate_schedule", "algorithm"):
-        for value in OFFERED[name]:
-            for other in ("algorithm", "discretizer"):
-                for chosen in OFFERED[other]:
-                    if other == name:
-                        continue
-                    if reason := mismatch(name, value, {**DEFAULTS, other: chosen}):
-                        found.append({"setting": name, "value": value, "unless": {other: chosen}, "reason": reason})
-    return found
+    """Returns the pairs of choices that exclude each other."""
+    return [
+        {"setting": name, "value": value, "unless": {other: chosen}}
+        for name in ("terminal_update", "learning_rate_schedule", "algorithm")
+        for value in OFFERED[name]
+        for other in ("algorithm", "discretizer")
+        if other != name
+        for chosen in OFFERED[other]
+        if mismatch(name, value, {**DEFAULTS, other: chosen})
+    ]
