@@ -134,6 +134,15 @@ def test_copies_train_alike(copied: Any, table: qtab.TabulatedEnv, run: qtab.Run
     assert again.q_table.tobytes() == run.q_table.tobytes()
 
 
+def test_an_environment_made_from_its_id_has_the_same_table(table: qtab.TabulatedEnv) -> None:
+    gym.register("Ferry-v0", entry_point=Ferry, max_episode_steps=20)
+    try:
+        made = qtab.tabulate(gym.make("Ferry-v0"))
+    finally:
+        del gym.registry["Ferry-v0"]
+    assert (made.P, made.states, made.max_episode_steps) == (table.P, table.states, 20)
+
+
 def test_a_registered_table_trains_by_its_id_and_steps_in_vectors(run: qtab.Run) -> None:
     gym.register("TabulatedFerry-v0", entry_point=lambda **_: ferry(), max_episode_steps=20)
     try:

@@ -24,8 +24,8 @@ from qtab.envs.tabulation.walk import Outcome, Visit
 _SAMPLES = 2
 """The sampled transitions that must be among the listed outcomes of each state and action."""
 _INITIAL_SAMPLES = 50
-_OF_BASE = ("_state", "_structure", "_np_random", "_np_random_seed")
-"""Attributes that resets and steps of the base class change."""
+_OF_BASE = ("_state", "_structure", "_np_random", "_np_random_seed", "spec")
+"""Attributes that the base class or ``gymnasium.make`` sets."""
 _TOLERANCE = 1e-9
 """How far the sum of listed probabilities may be from 1, as for :class:`qtab.TabularEnv`."""
 
