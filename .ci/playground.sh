@@ -10,9 +10,7 @@ skipped() {
 # Whether Rust compiles for WebAssembly here, after rustup was asked for it. (Debian's rustc-web 1.85 with rust-web-src
 # does not: Cargo.toml's rust-version is newer.)
 wasm_target() {
-    local folder
-    folder=$(rustc --print target-libdir --target wasm32-unknown-unknown 2>/dev/null) || return 1
-    [ -d "$folder" ] || rustup target add wasm32-unknown-unknown
+    (cd rust/web && "$host_python" -c 'import sys, build_backend; sys.exit(not build_backend.add_target())')
 }
 no_wasm="Rust's target wasm32-unknown-unknown is missing, rustup cannot add it, and Debian's rustc-web 1.85 is older than \
 $(sed -n 's/^rust-version = "\(.*\)"/\1/p' Cargo.toml)"

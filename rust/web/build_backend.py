@@ -18,6 +18,7 @@ from wasm_sections import custom_section, exports, with_custom_section
 ROOT = Path(__file__).resolve().parents[2]
 MODULE = ROOT / "python/qtab/playground/page/qtab.wasm"
 TARGET = "wasm32-unknown-unknown"
+MISSING = f"Rust's target {TARGET} is missing, and rustup cannot add it here"
 # What the module is built from.
 SOURCES = ("Cargo.toml", "Cargo.lock", "rust/core/Cargo.toml", "rust/core/src", "rust/web")
 # The custom section of the module that holds the digest of its sources.
@@ -38,6 +39,14 @@ def has_target():
     except OSError:
         return False
     return printed.returncode == 0 and any(Path(printed.stdout.strip()).glob("libcore-*.rlib"))
+
+
+def add_target():
+    """Returns whether Rust can compile for WebAssembly here, after rustup was asked for what is missing."""
+    if has_target():
+        return True
+    rustup = shutil.which("rustup")
+    return bool(rustup) and subprocess.run([rustup, "target", "add", TARGET], cwd=ROOT).returncode == 0 and has_target()
 
 
 def digest_of_sources():
@@ -116,21 +125,20 @@ def build_module():
 
 
 def prepare():
-    """Builds the module if that is possible; an sdist holds it already.
+    """Builds the module if that is possible, after adding Rust's target for it; an sdist holds the module already.
 
     Raises:
         RuntimeError: if there is a module of other sources that cannot be built anew.
     """
     if (ROOT / "PKG-INFO").exists():
         return
-    missing = f"Rust's target {TARGET} is missing (rustup target add {TARGET})"
-    if has_target():
+    if add_target():
         build_module()
     elif not MODULE.exists():
-        print(f"warning: `qtab playground` is left out: {missing}", file=sys.stderr)
+        print(f"warning: `qtab playground` is left out: {MISSING}", file=sys.stderr)
     elif not is_current(MODULE.read_bytes()):
         raise RuntimeError(
-            f"{MODULE.relative_to(ROOT).as_posix()} was built from other sources, and cannot be built anew: {missing}. "
+            f"{MODULE.relative_to(ROOT).as_posix()} was built from other sources, and cannot be built anew: {MISSING}. "
             "Add the target, or delete the file to leave `qtab playground` out."
         )
 
@@ -167,6 +175,6 @@ def __getattr__(name):
 
 
 if __name__ == "__main__":
-    if not has_target():
-        sys.exit(f"Rust's target {TARGET} is missing: rustup target add {TARGET}")
+    if not add_target():
+        sys.exit(f"error: {MISSING}")
     build_module()

@@ -81,10 +81,35 @@ def test_flags_for_the_machine_do_not_reach_the_module(backend, cargo, monkeypat
     assert environment["PATH"] == os.environ["PATH"]
 
 
+@pytest.mark.parametrize(
+    ("present", "rustup", "works", "called", "ready"),
+    [
+        (True, "rustup", True, 0, True),
+        (False, "rustup", True, 1, True),
+        (False, "rustup", False, 1, False),  # such as offline
+        (False, None, False, 0, False),  # a distribution's own Rust
+    ],
+)
+def test_rustup_adds_a_missing_target(backend, monkeypatch, present, rustup, works, called, ready):
+    targets, commands = [backend.TARGET] * present, []
+
+    def run(command: list[str], **_: Any) -> Any:
+        commands.append(command)
+        if works:
+            targets.append(command[-1])
+        return SimpleNamespace(returncode=0 if works else 1)
+
+    monkeypatch.setattr(backend, "has_target", lambda: backend.TARGET in targets)
+    monkeypatch.setattr(shutil, "which", lambda name: rustup)
+    monkeypatch.setattr(subprocess, "run", run)
+    assert backend.add_target() is ready
+    assert commands == [["rustup", "target", "add", backend.TARGET]] * called
+
+
 @pytest.mark.parametrize("name", ["Cargo.lock", "rust/core/src/lib.rs", "rust/web/src/new.rs"])
 def test_a_module_of_other_sources_is_not_packaged(backend, sources, cargo, monkeypatch, name):
     backend.build_module()
-    monkeypatch.setattr(backend, "has_target", lambda: False)
+    monkeypatch.setattr(backend, "add_target", lambda: False)
     backend.prepare()
     (sources / name).write_text("// changed\n", encoding="utf-8")
     with pytest.raises(
@@ -95,13 +120,13 @@ def test_a_module_of_other_sources_is_not_packaged(backend, sources, cargo, monk
 
 def test_a_module_without_a_digest_is_not_packaged(backend, sources, monkeypatch):
     backend.MODULE.write_bytes(HEADER + EXPORTS)
-    monkeypatch.setattr(backend, "has_target", lambda: False)
+    monkeypatch.setattr(backend, "add_target", lambda: False)
     with pytest.raises(RuntimeError, match="delete the file to leave `qtab playground` out"):
         backend.prepare()
 
 
 def test_without_target_and_module_the_playground_is_left_out(backend, sources, monkeypatch, capsys):
-    monkeypatch.setattr(backend, "has_target", lambda: False)
+    monkeypatch.setattr(backend, "add_target", lambda: False)
     backend.prepare()
     assert "`qtab playground` is left out" in capsys.readouterr().err
     assert not backend.MODULE.exists()

@@ -58,11 +58,18 @@ def test_a_folder_that_does_not_exist_is_an_error_in_one_line(tmp_path, opened, 
     assert opened == []
 
 
-def test_without_the_module_the_error_says_how_to_build_it(tmp_path, opened, capsys, monkeypatch):
+@pytest.mark.parametrize("in_a_checkout", [True, False])
+def test_without_the_module_the_error_says_how_to_build_it(tmp_path, opened, capsys, monkeypatch, in_a_checkout):
     monkeypatch.setattr(qtab.playground.assemble, "MODULE", "missing.wasm")
+    monkeypatch.setattr(qtab.playground.assemble, "__file__", str(tmp_path / "python/qtab/playground/assemble.py"))
+    build = tmp_path / "rust/web/build_backend.py"
+    if in_a_checkout:
+        build.parent.mkdir(parents=True)
+        build.touch()
     assert main(["playground", "--out", str(tmp_path / "page.html")]) == 1
     message = capsys.readouterr().err
-    assert "rustup target add wasm32-unknown-unknown && python rust/web/build_backend.py" in message
+    remedy = f"python {build}" if in_a_checkout else "pip install --force-reinstall --no-deps ."
+    assert message.endswith(f"rustup target add wasm32-unknown-unknown && {remedy}\n")
     assert message.count("\n") == 1
     assert not (tmp_path / "page.html").exists()
 

@@ -13,9 +13,6 @@ from qtab.playground.definitions import definitions
 if TYPE_CHECKING:
     from importlib.resources.abc import Traversable  # Python 3.11 and later
 
-BUILD_COMMAND = "rustup target add wasm32-unknown-unknown && python rust/web/build_backend.py"
-"""The command that builds the WebAssembly module in a checkout."""
-
 MODULE = "qtab.wasm"
 STYLE = '<link rel="stylesheet" href="style.css">'
 SCRIPT = '<script type="module" src="main.js"></script>'
@@ -84,9 +81,20 @@ def wasm() -> bytes:
         return (_folder() / MODULE).read_bytes()
     except FileNotFoundError:
         raise FileNotFoundError(
-            "this installation has no WebAssembly module, because Rust's target wasm32-unknown-unknown was missing "
-            f"when it was built; in a checkout, build it with: {BUILD_COMMAND}"
+            "this installation of qtab has no WebAssembly module, because Rust's target wasm32-unknown-unknown was "
+            f"missing when it was installed; {_remedy()}"
         ) from None
+
+
+def _remedy() -> str:
+    """Says how this installation, in a checkout or elsewhere, gets its module."""
+    build = Path(__file__).resolve().parents[3] / "rust/web/build_backend.py"
+    if build.exists():
+        return f"build it with: rustup target add wasm32-unknown-unknown && python {build}"
+    return (
+        "in the clone that it came from, run: rustup target add wasm32-unknown-unknown && "
+        "pip install --force-reinstall --no-deps ."
+    )
 
 
 def _folder() -> "Traversable":
