@@ -1,7 +1,8 @@
 # A release rehearsed on this machine, for .ci/run, which sources this file.
 
 # What PyPI checks; an upload to an index, which this task starts and ends; and for each Python that is installed, an empty
-# environment without Rust, into which pip installs qtab from that index and which runs the README's first lines.
+# environment without Rust, into which pip installs qtab from that index and which runs the README's first Python code and the
+# end of its first command.
 rehearsal() {
     built_wheel
     local tools=.venv-rehearsal/$bin version python
@@ -45,22 +46,23 @@ END
 
 # Installs qtab for one Python as a user does; only qtab comes from the index, so that nothing else is looked up there.
 install_from_index() {
-    local tried began=$SECONDS
+    local tried programs line began=$SECONDS
     tried=$(mktemp -d "$work/rehearsal-XXXX")
     "$1" -m venv "$tried/.venv"
+    programs=$tried/.venv/$bin
+    line=$(sed -n '/<!-- train -->/,/^```$/s/^python3 .* && \(.*\)$/\1/p' README.md)
+    line=${line//.venv\/bin\//.venv/$bin/}
+    sed -n '/^```python$/,/^```$/p' README.md | sed -n '2,/^```$/{/^```$/!p;}' >"$tried/first.py"
     (
-        export PATH="$tried/.venv/$bin:/usr/bin:/bin"
+        export PATH="$programs:/usr/bin:/bin"
         ! type -P cargo || { echo "Rust is in the way" && exit 1; }
         pip install --quiet --no-deps --only-binary :all: --index-url "$index/simple/" qtab
         pip install --quiet --only-binary :all: 'qtab[all]'
         pip check
-        # The README's Python, and its first command from `qtab train` on.
-        sed -n '/^```python$/,/^```$/p' README.md | sed -n '2,/^```$/{/^```$/!p;}' >"$tried/first.py"
-        command=$(sed -n '/<!-- train -->/,/^```$/s/^python3 .* && \(.*\)$/\1/p' README.md)
         cd "$tried"
         python first.py
-        echo "${command//.venv\/bin\//.venv/$bin/}"
-        bash -euc "${command//.venv\/bin\//.venv/$bin/}" | tail -n 3
+        echo "$line"
+        bash -euc "$line" | tail -n 3
     ) || exit 1
     echo "installed from the index on $("$1" --version): $((SECONDS - began)) s"
 }
