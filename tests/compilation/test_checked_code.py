@@ -13,9 +13,9 @@ from numpy.random import random as draw
 
 import qtab
 from qtab.compilation import NotCompilable
-from qtab.compilation.compiled_env import Stepper
 from qtab.compilation.functional import compiled_env
-from qtab.compilation.struct import FAILED
+from qtab.compilation.interface.compiled_env import Stepper
+from qtab.compilation.interface.qtab_env import FAILED
 
 pytest.importorskip("numba")
 

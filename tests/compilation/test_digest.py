@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from qtab.compilation.digest import digest_of
+from qtab.compilation.cache.digest import digest_of
 
 pytest.importorskip("numba")
 

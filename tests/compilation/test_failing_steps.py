@@ -8,9 +8,9 @@ import pytest
 from gymnasium import spaces
 
 import qtab
-from qtab.compilation.compiled_env import Stepper
 from qtab.compilation.functional import compiled_env
-from qtab.compilation.struct import FAILED
+from qtab.compilation.interface.compiled_env import Stepper
+from qtab.compilation.interface.qtab_env import FAILED
 from support.own_environments import Gambler, TicTacToe
 
 pytest.importorskip("numba")

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from qtab.compilation import cache
+from qtab.compilation.cache import code_files
 
 pytest.importorskip("numba")
 
@@ -45,7 +45,7 @@ PROGRAM = """
 import json, sys
 import numpy as np
 import counter
-from qtab.compilation.compiled_env import Stepper
+from qtab.compilation.interface.compiled_env import Stepper
 from qtab.compilation.functional import compiled_env
 
 found = []
@@ -143,31 +143,31 @@ def test_a_folder_that_cannot_be_made_leads_to_the_users_cache(run: Callable[...
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such modes")
 def test_files_that_other_users_can_write_are_not_loaded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     folder = tmp_path / "code"
-    monkeypatch.setattr(cache, "_folders", lambda _: iter([folder]))
-    path = cache.write("", "0", None, {"refusal": []})
+    monkeypatch.setattr(code_files, "_folders", lambda _: iter([folder]))
+    path = code_files.write("", "0", None, {"refusal": []})
     assert path is not None
     folder.chmod(0o755)
-    assert cache.read("", "0") is not None
+    assert code_files.read("", "0") is not None
     path.chmod(0o666)
-    assert cache.read("", "0") is None
+    assert code_files.read("", "0") is None
     path.chmod(0o600)
     folder.chmod(0o777)
-    assert cache.read("", "0") is None
+    assert code_files.read("", "0") is None
     folder.chmod(0o755)
     path.rename(tmp_path / "moved")
     path.symlink_to(tmp_path / "moved")
-    assert cache.read("", "0") is None
+    assert code_files.read("", "0") is None
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such modes")
 def test_beside_a_folder_of_a_group_the_users_cache_is_used(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(cache, "_cache", lambda: tmp_path / "cache")
+    monkeypatch.setattr(code_files, "_cache", lambda: tmp_path / "cache")
     source = tmp_path / "source.py"
     source.write_text("")
     (tmp_path / "__pycache__").mkdir()
     (tmp_path / "__pycache__").chmod(0o775)
-    path = cache.write(str(source), "0", None, {"refusal": []})
+    path = code_files.write(str(source), "0", None, {"refusal": []})
     assert path is not None
     assert path.parent == tmp_path / "cache" / "qtab" / "compiled"
     assert path.parent.stat().st_mode & 0o777 == 0o700
-    assert cache.read(str(source), "0") is not None
+    assert code_files.read(str(source), "0") is not None

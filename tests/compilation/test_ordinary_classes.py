@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import qtab
-from qtab.compilation.compiled_env import Stepper
+from qtab.compilation.interface.compiled_env import Stepper
 from qtab.compilation.ordinary import ClassTwin, OrdinaryEnv
 from qtab.compilation.rewriting.helpers import helpers
 from support.gym_classes import control, failing, games, grids, operations

@@ -8,9 +8,9 @@ import pytest
 
 import qtab
 from qtab.compilation import NotCompilable, functional, ordinary
+from qtab.compilation.cache.store import Store
 from qtab.compilation.functional import compiled_env
 from qtab.compilation.ordinary import OrdinaryEnv
-from qtab.compilation.store import Store
 
 pytest.importorskip("numba")
 
@@ -83,7 +83,7 @@ def test_another_value_is_compared_as_well(make: Any, compiled: Any, proofs: lis
 def test_each_value_is_compared_once_by_all_processes(
     proofs: list[Any], monkeypatch: pytest.MonkeyPatch, tmp_path: Any
 ) -> None:
-    monkeypatch.setattr("qtab.compilation.cache._folders", lambda _: iter([tmp_path / "code"]))
+    monkeypatch.setattr("qtab.compilation.cache.code_files._folders", lambda _: iter([tmp_path / "code"]))
 
     def outcomes() -> list[str]:
         found = []
@@ -132,13 +132,13 @@ def test_states_of_another_shape_need_other_code() -> None:
 def test_a_failure_of_numba_is_not_remembered(
     proofs: list[Any], monkeypatch: pytest.MonkeyPatch, tmp_path: Any
 ) -> None:
-    monkeypatch.setattr("qtab.compilation.cache._folders", lambda _: iter([tmp_path / "code"]))
+    monkeypatch.setattr("qtab.compilation.cache.code_files._folders", lambda _: iter([tmp_path / "code"]))
     monkeypatch.setenv("NUMBA_DISABLE_JIT", "1")
     with pytest.raises(NotCompilable, match=r"^NUMBA_DISABLE_JIT is set$"):
         OrdinaryEnv(OrdinaryBranch())
     monkeypatch.setenv("NUMBA_DISABLE_JIT", "0")
     with monkeypatch.context() as failing:
-        failing.setattr("qtab.compilation.machine_code.make", _no_memory)
+        failing.setattr("qtab.compilation.cache.machine_code.make", _no_memory)
         with pytest.raises(NotCompilable, match="Numba failed with MemoryError"):
             OrdinaryEnv(OrdinaryBranch())
     OrdinaryEnv(OrdinaryBranch())

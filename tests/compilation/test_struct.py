@@ -10,26 +10,26 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from qtab.compilation import struct
-from qtab.compilation.capsule import make_capsule, struct_of
+from qtab.compilation.interface import qtab_env
+from qtab.compilation.interface.pycapsule import make_capsule, struct_of
 from support.repository import PACKAGE
 
 HEADER = PACKAGE / "include" / "qtab_env.h"
 CONSTANTS = {
-    "QTAB_ENV_VERSION": struct.VERSION,
-    "QTAB_FLOAT32": struct.FLOAT32,
-    "QTAB_FLOAT64": struct.FLOAT64,
-    "QTAB_INT64": struct.INT64,
-    "QTAB_CONTINUES": struct.CONTINUES,
-    "QTAB_TERMINATED": struct.TERMINATED,
-    "QTAB_TRUNCATED": struct.TRUNCATED,
-    "QTAB_FAILED": struct.FAILED,
+    "QTAB_ENV_VERSION": qtab_env.VERSION,
+    "QTAB_FLOAT32": qtab_env.FLOAT32,
+    "QTAB_FLOAT64": qtab_env.FLOAT64,
+    "QTAB_INT64": qtab_env.INT64,
+    "QTAB_CONTINUES": qtab_env.CONTINUES,
+    "QTAB_TERMINATED": qtab_env.TERMINATED,
+    "QTAB_TRUNCATED": qtab_env.TRUNCATED,
+    "QTAB_FAILED": qtab_env.FAILED,
 }
 
 
 @pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
 def test_it_equals_the_header(tmp_path: Path) -> None:
-    names = [field[0] for field in struct.QtabEnv._fields_]
+    names = [field[0] for field in qtab_env.QtabEnv._fields_]
     lines = [f'printf("%zu %zu\\n", offsetof(qtab_env, {name}), sizeof(((qtab_env *)0)->{name}));' for name in names]
     lines += [f'printf("%d\\n", (int){name});' for name in CONSTANTS]
     lines += ['printf("%zu\\n", sizeof(qtab_env));']
@@ -38,15 +38,15 @@ def test_it_equals_the_header(tmp_path: Path) -> None:
     source.write_text(includes + "int main(void) {\n" + "\n".join(lines) + "\nreturn 0;\n}\n")
     subprocess.run(["cc", "-Werror", str(source), "-o", str(tmp_path / "sizes")], check=True)
     printed = subprocess.run([str(tmp_path / "sizes")], check=True, capture_output=True, text=True).stdout.splitlines()
-    fields = [getattr(struct.QtabEnv, name) for name in names]
+    fields = [getattr(qtab_env.QtabEnv, name) for name in names]
     expected = [f"{field.offset} {field.size}" for field in fields]
-    assert printed == [*expected, *map(str, CONSTANTS.values()), str(ctypes.sizeof(struct.QtabEnv))]
+    assert printed == [*expected, *map(str, CONSTANTS.values()), str(ctypes.sizeof(qtab_env.QtabEnv))]
 
 
 def test_a_capsule_keeps_what_it_needs() -> None:
     memory = np.arange(3.0)
     gone = weakref.ref(memory)
-    capsule = make_capsule(struct.QtabEnv(version=1, parameters=memory.ctypes.data), memory)
+    capsule = make_capsule(qtab_env.QtabEnv(version=1, parameters=memory.ctypes.data), memory)
     del memory
     gc.collect()
     held, kept = struct_of(capsule), gone()

@@ -12,9 +12,9 @@ import pytest
 
 import qtab
 from qtab.compilation import functional, ordinary
+from qtab.compilation.cache.store import Store
 from qtab.compilation.functional import compiled_env
 from qtab.compilation.rewriting.helpers import helpers
-from qtab.compilation.store import Store
 from support.gym_classes import grids
 
 pytest.importorskip("numba")
@@ -43,7 +43,7 @@ class Walk(qtab.FunctionalEnv):
 
 @pytest.fixture(autouse=True)
 def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setattr("qtab.compilation.cache._folders", lambda _: iter([tmp_path / "code"]))
+    monkeypatch.setattr("qtab.compilation.cache.code_files._folders", lambda _: iter([tmp_path / "code"]))
     for module in (functional, ordinary):
         monkeypatch.setattr(module, "_store", Store())
     return tmp_path / "code"

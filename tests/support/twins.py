@@ -4,10 +4,10 @@ from typing import Any
 
 import numpy as np
 
-from qtab.compilation.compiled_env import Stepper
 from qtab.compilation.functional import compiled_env, state_from
-from qtab.compilation.layout import encode
-from qtab.compilation.struct import FAILED
+from qtab.compilation.interface.compiled_env import Stepper
+from qtab.compilation.interface.qtab_env import FAILED
+from qtab.compilation.layouts.value_layout import encode
 
 
 def assert_equal_steps(env: Any, seed: int, actions_seed: int, steps: int) -> None:

@@ -12,17 +12,17 @@ import numpy as np
 from gymnasium import spaces
 
 from qtab._utils.progress import ProgressBar
-from qtab.compilation import machine_code
-from qtab.compilation.compiled_env import FUNCTIONS, CompiledEnv
-from qtab.compilation.digest import Digest, digest_of
-from qtab.compilation.functions import helper_methods, methods_of, names_of, plain, reachable
-from qtab.compilation.layout import Array, Layout, Number, Tuple, decode, layout_of
+from qtab.compilation.cache import machine_code
+from qtab.compilation.cache.digest import Digest, digest_of
+from qtab.compilation.cache.store import Store
+from qtab.compilation.called_functions import helper_methods, methods_of, names_of, plain, reachable
+from qtab.compilation.checks.source_constructs import refuse_constructs
+from qtab.compilation.interface.compiled_env import FUNCTIONS, CompiledEnv
+from qtab.compilation.layouts.observation_layout import ObservationLayout
+from qtab.compilation.layouts.parameters import Parameters
+from qtab.compilation.layouts.value_layout import Array, Layout, Number, Tuple, decode, layout_of
 from qtab.compilation.not_compilable import NotCompilable, NotNow
-from qtab.compilation.observation import ObservationLayout
-from qtab.compilation.parameters import Parameters
 from qtab.compilation.proof import FunctionalTwin, prove
-from qtab.compilation.scan import refuse_constructs
-from qtab.compilation.store import Store
 
 SLOW_SECONDS = 1.0
 """The duration of a compilation above which it is reported."""
@@ -141,8 +141,8 @@ def _compile(
     started = time.perf_counter()
     from numba.core.errors import NumbaError
 
-    from qtab.compilation.numba_errors import not_compilable
-    from qtab.compilation.shims import ARGUMENTS, STAGES, compile_functional
+    from qtab.compilation.c_functions.functional_shims import ARGUMENTS, STAGES, compile_functional
+    from qtab.compilation.checks.numba_errors import not_compilable
 
     try:
         env.initial_state(np.random.default_rng(0))

@@ -12,16 +12,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils.progress import ProgressBar
-from qtab.compilation import machine_code
-from qtab.compilation.class_state import layout_of_record, restore, state_bytes, with_observation
-from qtab.compilation.compiled_env import FUNCTIONS, CompiledEnv
-from qtab.compilation.digest import digest_of
+from qtab.compilation.cache import machine_code
+from qtab.compilation.cache.digest import digest_of
+from qtab.compilation.cache.store import Store
 from qtab.compilation.functional import SLOW_SECONDS, require_numba
+from qtab.compilation.interface.compiled_env import FUNCTIONS, CompiledEnv
+from qtab.compilation.layouts.attribute_record import layout_of_record, restore, state_bytes, with_observation
+from qtab.compilation.layouts.observation_layout import ObservationLayout
 from qtab.compilation.not_compilable import NotCompilable, NotNow
-from qtab.compilation.observation import ObservationLayout
 from qtab.compilation.proof import prove
 from qtab.compilation.rewriting import Rewritten, rewrite
-from qtab.compilation.store import Store
 
 _logger = logging.getLogger("qtab")
 _store = Store()
@@ -101,9 +101,9 @@ class OrdinaryEnv:
         started = time.perf_counter()
         from numba.core.errors import NumbaError
 
-        from qtab.compilation.numba_errors import not_compilable
-        from qtab.compilation.record_shims import compile_record
-        from qtab.compilation.shims import ARGUMENTS, STAGES
+        from qtab.compilation.c_functions.functional_shims import ARGUMENTS, STAGES
+        from qtab.compilation.c_functions.record_shims import compile_record
+        from qtab.compilation.checks.numba_errors import not_compilable
 
         space: Any = self.env.action_space
         name = type(self.env).__name__

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab.compilation.compiled_env import CompiledEnv, Stepper
-from qtab.compilation.layout import encode, leaves
+from qtab.compilation.checks.source_constructs import place_of, suspects
+from qtab.compilation.interface.compiled_env import CompiledEnv, Stepper
+from qtab.compilation.interface.qtab_env import FAILED, TERMINATED, TRUNCATED
+from qtab.compilation.layouts.value_layout import encode, leaves
 from qtab.compilation.not_compilable import NotCompilable, NotNow
-from qtab.compilation.scan import place_of, suspects
-from qtab.compilation.struct import FAILED, TERMINATED, TRUNCATED
 
 SEEDS = (0, 1, 2, 3)
 STEPS = 2000

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 from numba.core import ir, types
 
-from qtab.compilation.checked_names import MATH_ADVICE, NUMPY_REFUSED, SUMS_REFUSED, WRITES_REFUSED
-from qtab.compilation.checked_operations import (
+from qtab.compilation.checks.checked_operations import (
     DRAW_CHECKS,
     INPLACE,
     INTEGER_OPERATIONS,
@@ -20,9 +19,10 @@ from qtab.compilation.checked_operations import (
     rounded,
     to_int,
 )
-from qtab.compilation.checked_types import NUMBERS, is_narrow, leaf, mixed, of_integers
+from qtab.compilation.checks.number_types import NUMBERS, is_narrow, leaf, mixed, of_integers
+from qtab.compilation.checks.refused_names import MATH_ADVICE, NUMPY_REFUSED, SUMS_REFUSED, WRITES_REFUSED
+from qtab.compilation.checks.source_constructs import DRAWS_REFUSED
 from qtab.compilation.not_compilable import NotCompilable
-from qtab.compilation.scan import DRAWS_REFUSED
 
 refusals: list[NotCompilable] = []
 """The constructs that the compilation in progress has met and that are refused."""

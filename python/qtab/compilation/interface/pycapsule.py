@@ -3,7 +3,7 @@
 import ctypes
 from typing import Any
 
-from qtab.compilation.struct import QtabEnv
+from qtab.compilation.interface.qtab_env import QtabEnv
 
 NAME = b"qtab.env.1"
 """The name of the capsules; PyCapsule stores the address, so it is never freed."""

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab.compilation.layout import Layout, Tuple, encode, layout_of
+from qtab.compilation.layouts.value_layout import Layout, Tuple, encode, layout_of
 
 CONSTANTS = (str, type(None))
 """The types of attributes that are compiled into the code."""

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils.versions import distribution_version
-from qtab.compilation.functions import codes, plain, used_values
+from qtab.compilation.called_functions import codes, plain, used_values
 
 _KNOWN = ("numpy", "math", "numba", "gymnasium", "qtab")
 """Modules that are identified by their versions."""
@@ -63,7 +63,7 @@ def _environment() -> tuple[str, ...]:
 
 def _own_code() -> str:
     """Returns a digest of this package, which may change without a new version while it is developed."""
-    files = sorted(Path(__file__).parent.rglob("*.py"))
+    files = sorted(Path(__file__).parent.parent.rglob("*.py"))
     return hashlib.sha256(b"".join(path.read_bytes() for path in files)).hexdigest()
 
 

@@ -5,8 +5,8 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
-from qtab.compilation.runtime import provide_runtime
-from qtab.compilation.struct import FAILED
+from qtab.compilation.cache.numba_memory import provide_runtime
+from qtab.compilation.interface.qtab_env import FAILED
 
 _LIBRARY_CALLS = re.compile(r"llvm\.(exp|exp2|log|log2|log10|pow|sin|cos|tan|fma|floor|ceil|trunc|rint|round)\.f64")
 """Instructions that become calls of C's mathematics."""

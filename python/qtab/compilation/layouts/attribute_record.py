@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab.compilation.layout import Array, Layout, Number, Tuple
-from qtab.compilation.observation import ObservationLayout
+from qtab.compilation.layouts.observation_layout import ObservationLayout
+from qtab.compilation.layouts.value_layout import Array, Layout, Number, Tuple
 
 OBSERVATION = "observation of the state"
 """The field of the observation, whose name no attribute can have."""

@@ -7,10 +7,10 @@ import numba
 import numpy as np
 from numba.core import types
 
-from qtab.compilation.compiled_functions import OPTIONS
-from qtab.compilation.memory import pointer
+from qtab.compilation.c_functions.copy_bytes import pointer
+from qtab.compilation.c_functions.dispatchers import OPTIONS
+from qtab.compilation.layouts.observation_layout import ObservationLayout, ObservationPart
 from qtab.compilation.not_compilable import NotCompilable
-from qtab.compilation.observation import ObservationLayout, ObservationPart
 
 MOST_UNROLLED = 64
 """Tuples of at most this many numbers are written one by one."""

@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab.compilation.capsule import make_capsule
-from qtab.compilation.layout import Layout, dtype_of
-from qtab.compilation.machine_code import LoadedCode, function_at
-from qtab.compilation.observation import ObservationLayout
-from qtab.compilation.struct import VERSION, Observe, QtabEnv, Reset, Step
+from qtab.compilation.cache.machine_code import LoadedCode, function_at
+from qtab.compilation.interface.pycapsule import make_capsule
+from qtab.compilation.interface.qtab_env import VERSION, Observe, QtabEnv, Reset, Step
+from qtab.compilation.layouts.observation_layout import ObservationLayout
+from qtab.compilation.layouts.value_layout import Layout, dtype_of
 
 FUNCTIONS = ("qtab_reset", "qtab_step", "qtab_observe")
 """The names of the C functions in the code."""

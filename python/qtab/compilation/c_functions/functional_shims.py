@@ -8,18 +8,18 @@ import numba
 import numpy as np
 from numba.core import types
 
-from qtab.compilation.checked_code import refusals
-from qtab.compilation.compiled_functions import CHECKED_OPTIONS, OPTIONS, FunctionCompiler
-from qtab.compilation.compiled_layout import layout_from, reader, type_of, united, writer
-from qtab.compilation.compiled_self import self_at, self_type
-from qtab.compilation.functions import helper_methods, methods_of, names_of, reachable
-from qtab.compilation.generator import GENERATOR, generator_at
-from qtab.compilation.layout import Layout, Number
+from qtab.compilation.c_functions.dispatchers import CHECKED_OPTIONS, OPTIONS, FunctionCompiler
+from qtab.compilation.c_functions.generator_at import GENERATOR, generator_at
+from qtab.compilation.c_functions.memory_access import layout_from, reader, type_of, united, writer
+from qtab.compilation.c_functions.observation_writers import mask_writer, observation_writer
+from qtab.compilation.c_functions.self_type import self_at, self_type
+from qtab.compilation.called_functions import helper_methods, methods_of, names_of, reachable
+from qtab.compilation.checks.typed_code import refusals
+from qtab.compilation.interface.qtab_env import FAILED, TERMINATED
+from qtab.compilation.layouts.observation_layout import ObservationLayout
+from qtab.compilation.layouts.parameters import Parameters
+from qtab.compilation.layouts.value_layout import Layout, Number
 from qtab.compilation.not_compilable import NotCompilable
-from qtab.compilation.observation import ObservationLayout
-from qtab.compilation.parameters import Parameters
-from qtab.compilation.struct import FAILED, TERMINATED
-from qtab.compilation.writers import mask_writer, observation_writer
 
 ARGUMENTS = {"qtab_reset": "ppppp", "qtab_step": "pppipppp", "qtab_observe": "pppp"}
 """The C functions: ``p`` for an address, ``i`` for an int64."""

@@ -9,10 +9,10 @@ from numba.core.errors import TypingError
 from numba.core.typing.templates import AttributeTemplate
 from numba.extending import infer_getattr, intrinsic, lower_getattr_generic, models, overload_method, register_model
 
-from qtab.compilation.compiled_functions import CHECKED_OPTIONS
-from qtab.compilation.compiled_layout import load, type_of
-from qtab.compilation.layout import offsets
-from qtab.compilation.parameters import Parameters
+from qtab.compilation.c_functions.dispatchers import CHECKED_OPTIONS
+from qtab.compilation.c_functions.memory_access import load, type_of
+from qtab.compilation.layouts.parameters import Parameters
+from qtab.compilation.layouts.value_layout import offsets
 
 
 class SelfType(types.Type):  # type: ignore[misc]

@@ -1,7 +1,7 @@
 """Names of functions that users' compiled code may not call, and what to write instead."""
 
+from qtab.compilation.checks.source_constructs import DIFFERENT, SUMS
 from qtab.compilation.rewriting.library.numpy_functions import SAME_AS_MATH
-from qtab.compilation.scan import DIFFERENT, SUMS
 
 NUMPY_REFUSED = {
     **{name: f"write math.{other}" for name, other in SAME_AS_MATH.items()},

@@ -10,10 +10,10 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab.compilation import cache, machine_code
-from qtab.compilation.compiled_env import CompiledEnv
-from qtab.compilation.digest import Digest
-from qtab.compilation.machine_code import MachineCode
+from qtab.compilation.cache import code_files, machine_code
+from qtab.compilation.cache.digest import Digest
+from qtab.compilation.cache.machine_code import MachineCode
+from qtab.compilation.interface.compiled_env import CompiledEnv
 from qtab.compilation.not_compilable import NotCompilable, NotNow
 
 VALUES_KEPT = 4096
@@ -71,7 +71,7 @@ class Store:
         return found
 
     def _stored(self, digest: str, file: str, load: Callable[..., CompiledEnv]) -> CompiledEnv | NotCompilable | None:
-        stored = cache.read(file, digest) if file else None
+        stored = code_files.read(file, digest) if file else None
         if stored is None:
             return None
         code, description = stored
@@ -98,10 +98,10 @@ class Store:
             raise
         except NotCompilable as refusal:
             if file:
-                cache.write(file, digest, None, {"refusal": _to_json(refusal, file)})
+                code_files.write(file, digest, None, {"refusal": _to_json(refusal, file)})
             return refusal
         if file:
-            cache.write(file, digest, code, description)
+            code_files.write(file, digest, code, description)
         return compiled
 
     def _proof(
@@ -130,7 +130,7 @@ class Store:
             # Other processes may have added values since; if two write at once, the values of one are proven again.
             kept = list({**_stored_proofs(digest, file), **proofs}.items())[-VALUES_KEPT:]
             values = {one: None if outcome is None else _to_json(outcome, file) for one, outcome in kept}
-            cache.write(file, _name_of_proofs(digest), None, {"proofs": values})
+            code_files.write(file, _name_of_proofs(digest), None, {"proofs": values})
         return proofs[key]
 
 
@@ -139,7 +139,7 @@ def _name_of_proofs(digest: str) -> str:
 
 
 def _stored_proofs(digest: str, file: str) -> dict[str, Outcome]:
-    stored = cache.read(file, _name_of_proofs(digest)) if file else None
+    stored = code_files.read(file, _name_of_proofs(digest)) if file else None
     if stored is None:
         return {}
     values = stored[1]["proofs"]

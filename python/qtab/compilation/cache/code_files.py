@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from qtab.compilation.machine_code import MachineCode
+from qtab.compilation.cache.machine_code import MachineCode
 
 _MAGIC = b"qtab compiled environment 1\n"
 

@@ -6,9 +6,9 @@ from typing import Any
 
 import numba
 
-from qtab.compilation.checked_compiler import CheckedCompiler
-from qtab.compilation.checked_operations import OPTIONS as OPTIONS
-from qtab.compilation.functions import codes, plain
+from qtab.compilation.called_functions import codes, plain
+from qtab.compilation.checks.checked_operations import OPTIONS as OPTIONS
+from qtab.compilation.checks.numba_pass import CheckedCompiler
 
 CHECKED_OPTIONS: dict[str, Any] = {**OPTIONS, "pipeline_class": CheckedCompiler}
 """The options for users' functions."""

@@ -7,17 +7,17 @@ import numba
 import numpy as np
 from numba.core import types
 
-from qtab.compilation.class_state import OBSERVATION
-from qtab.compilation.compiled_functions import OPTIONS, FunctionCompiler
-from qtab.compilation.compiled_layout import writer
-from qtab.compilation.generator import GENERATOR, generator_at
-from qtab.compilation.layout import Number
-from qtab.compilation.memory import copy_bytes, pointer
-from qtab.compilation.observation import ObservationLayout
+from qtab.compilation.c_functions.copy_bytes import copy_bytes, pointer
+from qtab.compilation.c_functions.dispatchers import OPTIONS, FunctionCompiler
+from qtab.compilation.c_functions.functional_shims import compiled_shims, returned_type
+from qtab.compilation.c_functions.generator_at import GENERATOR, generator_at
+from qtab.compilation.c_functions.memory_access import writer
+from qtab.compilation.c_functions.observation_writers import mask_writer, observation_writer
+from qtab.compilation.interface.qtab_env import FAILED, TERMINATED, TRUNCATED
+from qtab.compilation.layouts.attribute_record import OBSERVATION
+from qtab.compilation.layouts.observation_layout import ObservationLayout
+from qtab.compilation.layouts.value_layout import Number
 from qtab.compilation.rewriting import Rewritten
-from qtab.compilation.shims import compiled_shims, returned_type
-from qtab.compilation.struct import FAILED, TERMINATED, TRUNCATED
-from qtab.compilation.writers import mask_writer, observation_writer
 
 
 def compile_record(
@@ -36,7 +36,7 @@ def compile_record(
         observation: The layout of its observations.
         num_actions: The number of actions.
         start: The first action of the class.
-        report: Called after each of ``qtab.compilation.shims.STAGES``.
+        report: Called after each of ``qtab.compilation.c_functions.functional_shims.STAGES``.
 
     Raises:
         NotCompilable: if a value has a type that compiled code cannot pass on.

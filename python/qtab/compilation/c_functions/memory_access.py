@@ -10,7 +10,7 @@ from numba.extending import intrinsic
 from numba.np.arrayobj import populate_array
 from numba.np.numpy_support import as_dtype, from_dtype
 
-from qtab.compilation.layout import Array, Layout, Number, Tuple, dtype_of, offsets
+from qtab.compilation.layouts.value_layout import Array, Layout, Number, Tuple, dtype_of, offsets
 
 
 def type_of(layout: Layout) -> Any:

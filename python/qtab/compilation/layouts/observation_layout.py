@@ -8,8 +8,8 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
+from qtab.compilation.interface.qtab_env import FLOAT32, FLOAT64, INT64
 from qtab.compilation.not_compilable import NotCompilable
-from qtab.compilation.struct import FLOAT32, FLOAT64, INT64
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,0 +1,1 @@
+"""Machine code, its digest, and its files beside the files of users."""

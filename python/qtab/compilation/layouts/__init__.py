@@ -1,0 +1,1 @@
+"""Where numbers lie in memory: of states, observations, parameters, and the attributes of a class."""
