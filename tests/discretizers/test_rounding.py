@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import qtab
-from qtab.discretizers import Rounding
+from qtab.discretizers.rounding import Rounding
 from support.environments import ScriptedEnv
 from support.parity import run_of
 

@@ -12,6 +12,7 @@ import qtab
 from qtab import callbacks, stats
 from qtab._utils import html
 from qtab.discretizers import DISCRETIZERS, Discretizer
+from qtab.discretizers.named import class_at
 
 NAME = "<b>&name</b>"
 
@@ -108,7 +109,7 @@ def test_no_public_object_is_shown_by_its_address():
 
 def test_every_discretizer_is_shown_in_one_line():
     # A dataclass would make one of its own, with all edges.
-    assert {cls.__repr__ for cls in DISCRETIZERS.values()} == {Discretizer.__repr__}
+    assert {class_at(place).__repr__ for place in DISCRETIZERS.values()} == {Discretizer.__repr__}
 
 
 def tables(shown: str) -> list[list[str]]:

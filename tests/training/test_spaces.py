@@ -13,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import qtab
-from qtab.discretizers import Identity
+from qtab.discretizers.identity import Identity
 from qtab.reference.parts.observations import discretizer as numpy_discretizer
 from support.environments import Sampled
 from support.gridworld import Tutorial

@@ -40,6 +40,8 @@ class Discretizer(ABC):
     if it does more than that."""
     has_cells: ClassVar[bool] = True
     """Whether exactly one row, the cell of an observation, is active, so that the table has an axis per component."""
+    is_time_aware: ClassVar[bool] = False
+    """Whether the first axis is the number of steps taken in the episode."""
     has_component_axes: ClassVar[bool] = True
     """Whether the axes are the components of the observation, not the indices of a function or assigned rows."""
 
@@ -208,11 +210,10 @@ def check_table_size(name: str, given: Any, values: float, instead: str = "") ->
     Raises:
         ValueError: if the table has 2**32 values or more, or does not fit into memory.
     """
-    text = given if isinstance(given, str) else shown(given)
     if not values < MAX_TABLE_SIZE:
         many = f"{values:.3g}" if math.isfinite(values) else "more than 1e308"
         raise ValueError(
-            f"{name} must give a table of fewer than 2**32 values{instead}, got {text}, which needs {many}"
+            f"{name} must give a table of fewer than 2**32 values{instead}, got {_text(given)}, which needs {many}"
         )
     needed = 8 * int(values)
     if needed < ALWAYS_FREE:
@@ -225,6 +226,10 @@ def check_table_size(name: str, given: Any, values: float, instead: str = "") ->
         free = min(free, needed - 1)
     if needed > free:
         raise ValueError(
-            f"{name} must give a table that fits into memory{instead}, got {text}, which needs {values:.3g} "
+            f"{name} must give a table that fits into memory{instead}, got {_text(given)}, which needs {values:.3g} "
             f"values or {readable_size(needed)}, more than is free"
         )
+
+
+def _text(given: Any) -> str:
+    return given if isinstance(given, str) else shown(given)

@@ -1,6 +1,7 @@
 """Makes the discretizer that a config names, for a space or from a file."""
 
 from collections.abc import Mapping
+from importlib import import_module
 from typing import Any
 
 from gymnasium import spaces
@@ -9,26 +10,21 @@ from numpy.typing import NDArray
 from qtab.config import Config
 from qtab.config.choices import DiscretizerName
 from qtab.config.functions import FUNCTION, MAPPING, kind
-from qtab.discretizers.assigned_rows import AssignedRows
 from qtab.discretizers.base import Discretizer
-from qtab.discretizers.bins import Bins
-from qtab.discretizers.composite import Composite
-from qtab.discretizers.edges import Edges
-from qtab.discretizers.function import Function
-from qtab.discretizers.identity import Identity, integer_bounds
-from qtab.discretizers.rounding import Rounding
-from qtab.discretizers.tile_coding import TileCoding
+from qtab.discretizers.identity import integer_bounds
 from qtab.envs.actions import FLOATS
 
-DISCRETIZERS: Mapping[DiscretizerName, type[Discretizer]] = {
-    "round": Rounding,
-    "bins": Bins,
-    "edges": Edges,
-    "tiles": TileCoding,
-    "identity": Identity,
+DISCRETIZERS: Mapping[DiscretizerName, str] = {
+    "round": "rounding:Rounding",
+    "bins": "bins:Bins",
+    "edges": "edges:Edges",
+    "tiles": "tile_coding:TileCoding",
+    "identity": "identity:Identity",
 }
-"""The class for each value of the setting ``discretizer``, for spaces that the extension reads directly."""
-
+"""The module and the class for each value of the setting ``discretizer``, for spaces that the extension reads
+directly."""
+_COMPOSITE = "composite:Composite"
+_OTHERS = {FUNCTION: "function:Function", MAPPING: _COMPOSITE}
 
 MAX_AXES = 62
 """The maximum number of axes: NumPy arrays have at most 64, of which many runs use one for runs and one for actions."""
@@ -38,7 +34,7 @@ def build(space: Any, config: Config, n_actions: int) -> Discretizer:
     """Returns the discretizer of a config over an observation space; see :meth:`Discretizer.build`."""
     built = _class_of(config, plain=is_plain(space)).build(space, config, n_actions)
     if n_actions and len(built.shape) > MAX_AXES:
-        owner = "shape" if isinstance(built, Function) else "the observation space"
+        owner = "shape" if kind(config.discretizer) == FUNCTION else "the observation space"
         raise ValueError(
             f"{owner} must give the table at most {MAX_AXES} axes, the limit of NumPy's arrays without those of runs "
             f"and actions; max_rows= assigns rows only to the observations that are seen, got {len(built.shape)}"
@@ -57,13 +53,17 @@ def is_plain(space: Any) -> bool:
     return is_box or integer_bounds(space) is not None
 
 
+def class_at(place: str) -> type[Discretizer]:
+    """Returns the class at ``"module:Class"`` in this package, such as a value of ``DISCRETIZERS``."""
+    module, _, name = place.partition(":")
+    found: type[Discretizer] = getattr(import_module(f"qtab.discretizers.{module}"), name)
+    return found
+
+
 def _class_of(config: Config, *, plain: bool) -> type[Discretizer]:
-    chosen = kind(config.discretizer)
+    chosen: Any = kind(config.discretizer)
     if config.max_rows is not None:
-        return AssignedRows
-    if chosen == FUNCTION:
-        return Function
-    if chosen == MAPPING or not plain:
-        return Composite
-    name: Any = config.discretizer
-    return DISCRETIZERS[name]
+        return class_at("assigned_rows:AssignedRows")
+    if chosen in _OTHERS:
+        return class_at(_OTHERS[chosen])
+    return class_at(DISCRETIZERS[chosen] if plain else _COMPOSITE)

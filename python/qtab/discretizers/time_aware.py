@@ -22,6 +22,7 @@ class TimeAware(Discretizer):
     start of an episode; :meth:`rows_after` takes any number of steps.
     """
 
+    is_time_aware = True
     has_component_axes = False
 
     cells: Discretizer

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab.discretizers import Edges, Rounding
+from qtab.discretizers.edges import Edges
+from qtab.discretizers.rounding import Rounding
 from qtab.planning.grid_environments import GridEnvironment, even_points
 from qtab.results.run import Run
 from qtab.training.setup.run_env import make_run_env

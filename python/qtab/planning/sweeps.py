@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from qtab import _core
 from qtab._utils import checks
-from qtab.discretizers import Identity
+from qtab.discretizers.identity import Identity
 from qtab.envs.actions import Actions
 from qtab.planning.policies import GivenPolicy, probabilities
 from qtab.planning.table import opened_table

@@ -11,7 +11,7 @@ from gymnasium.envs.toy_text.blackjack import BlackjackEnv
 
 from qtab import _core
 from qtab._utils.shown import shown
-from qtab.discretizers import Identity
+from qtab.discretizers.identity import Identity
 from qtab.envs.actions import Actions, choose_actions
 from qtab.envs.matching import unknown_wrapper
 from qtab.envs.native import table_env

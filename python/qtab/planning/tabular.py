@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qtab.discretizers import TimeAware
+from qtab.discretizers.time_aware import TimeAware
 from qtab.planning.stationary import StationaryPolicy
 from qtab.planning.table import Table
 from qtab.results.run import Run

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from qtab._utils.shown import counted
 from qtab.config import Config
 from qtab.config.origin import trained_on
-from qtab.discretizers.time_aware import TimeAware
 from qtab.envs.actions import Actions
 from qtab.envs.quantities import (
     UNKNOWN,
@@ -79,8 +78,9 @@ def _bare_class(cls: str) -> str:
 def axes_of(known: Quantities, discretizer: "Discretizer") -> tuple[Axis, ...]:
     """Returns an axis for each component of the observations; with ``time_aware`` the steps taken come first."""
     edges = discretizer.cell_edges()
-    if isinstance(discretizer, TimeAware):
-        return (Axis("steps taken", "", edges[0]), *axes_of(known, discretizer.cells))
+    if discretizer.is_time_aware:
+        time_aware: Any = discretizer
+        return (Axis("steps taken", "", edges[0]), *axes_of(known, time_aware.cells))
     named = tuple(map(Quantity, discretizer.component_names))
     quantities = named or observation_quantities(known, len(edges))
     return tuple(Axis(one.name, one.unit, found, one.values) for one, found in zip(quantities, edges, strict=True))

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from qtab._utils import checks
 from qtab._utils.shown import shown
 from qtab.config.config import DEFAULTS, Config, replace_checked
 from qtab.config.functions import STORED, stored_function
@@ -16,6 +17,7 @@ from qtab.config.options import OPTIONS, SETTINGS, fixed_settings
 from qtab.config.value_checks import MAX_ACTIONS
 from qtab.envs.actions import ActionParts, Actions
 from qtab.results import run_file
+from qtab.results.consistency import check_consistent
 from qtab.results.recording import Snapshots
 
 if TYPE_CHECKING:
@@ -69,6 +71,19 @@ def write(
     if replace_checked(result.config, env_kwargs=json.loads(text)["config"]["env_kwargs"]) != result.config:
         raise TypeError(f"env_kwargs must be JSON data, got {kwargs!r}: keys must be strings")
     run_file.write(path, text, stored)
+
+
+def write_run(run: "Run", path: Any) -> None:
+    """Writes the file of a run; see :meth:`qtab.Run.save`."""
+    try:
+        check_consistent(run)
+    except ValueError as error:
+        raise ValueError(f"this run cannot be saved: {error}") from None
+    arrays = {name: getattr(run, name) for name in run_file.ARRAYS} | optional_arrays(run)
+    header = {} if run.state is None else run.state.header()
+    if run.state is not None:
+        arrays["state"] = run.state.array()
+    write(checks.file_path("path", path), run_file.RUN, run, header, arrays)
 
 
 _KINDS = "biu"

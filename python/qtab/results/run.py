@@ -10,16 +10,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qtab._utils import checks, html
-from qtab._utils.data_frames import episode_frame
 from qtab._utils.fields import with_fields
 from qtab.config import Config
 from qtab.config.origin import trained_on
 from qtab.discretizers import Discretizer
 from qtab.envs.actions import Actions
 from qtab.envs.origin.description import EnvironmentDescription
-from qtab.results import action_values, file_parts, plain_data, run_file, time_steps
+from qtab.results import action_values, time_steps
 from qtab.results.axes import Axis, action_names, axes_of, run_quantities
-from qtab.results.consistency import check_consistent
 from qtab.results.page import WithPage
 from qtab.results.recording import Recording as Recording
 from qtab.results.recording import Snapshots
@@ -262,6 +260,8 @@ class Run(WithPage):
         Raises:
             ModuleNotFoundError: without pandas; the message names the ``pip install``.
         """
+        from qtab._utils.data_frames import episode_frame
+
         return episode_frame(self.episode_returns, self.episode_lengths, self.terminated)
 
     def to_json(self, path: "str | os.PathLike[str]") -> None:
@@ -269,6 +269,8 @@ class Run(WithPage):
 
         Raises the exceptions of :meth:`save`.
         """
+        from qtab.results import plain_data
+
         plain_data.write(self, checks.file_path("path", path))
 
     def save(self, path: "str | os.PathLike[str]") -> None:
@@ -284,12 +286,6 @@ class Run(WithPage):
             ValueError: if they hold a number that JSON cannot represent, or the run is not one that training returns,
                 such as one whose values overflowed.
         """
-        try:
-            check_consistent(self)
-        except ValueError as error:
-            raise ValueError(f"this run cannot be saved: {error}") from None
-        arrays = {name: getattr(self, name) for name in run_file.ARRAYS} | file_parts.optional_arrays(self)
-        header = {} if self.state is None else self.state.header()
-        if self.state is not None:
-            arrays["state"] = self.state.array()
-        file_parts.write(checks.file_path("path", path), run_file.RUN, self, header, arrays)
+        from qtab.results.file_parts import write_run
+
+        write_run(self, path)

@@ -9,7 +9,6 @@ from qtab._utils import checks
 from qtab._utils.shown import shown
 from qtab.config.config import DEFAULTS, replace_checked
 from qtab.config.implied import with_followers
-from qtab.discretizers.time_aware import TimeAware
 from qtab.results.recording import Snapshots
 
 if TYPE_CHECKING:
@@ -20,13 +19,13 @@ AnyRun = TypeVar("AnyRun", "Run", "Runs")
 
 
 def checked_step(discretizer: Any, step: Any) -> int:
-    """Returns ``step``, after checking it; without ``time_aware`` it must be 0.
+    """Returns ``step``, after checking it; without ``time_aware``, or a discretizer, it must be 0.
 
     Raises:
         TypeError: if ``step`` is not an integer.
         ValueError: if ``step`` is negative or not below the time limit.
     """
-    if not isinstance(discretizer, TimeAware):
+    if discretizer is None or not discretizer.is_time_aware:
         if checks.integer("step", step, least=0):
             raise ValueError(f"step must be 0 for a run without time_aware=True, got {step!r}")
         return 0
@@ -42,7 +41,7 @@ def at_step(run: AnyRun, step: Any = 0) -> AnyRun:
     """
     discretizer: Any = run.discretizer
     step = checked_step(discretizer, step)
-    if not isinstance(discretizer, TimeAware):
+    if not discretizer.is_time_aware:
         return run
     cells, config = discretizer.cells, run.config
     part = slice(step * cells.n_rows, (step + 1) * cells.n_rows)
@@ -76,7 +75,7 @@ def over_all_steps(run: Any) -> Any:
     Any other object is returned unchanged.
     """
     visits = getattr(run, "visits", None)
-    if visits is None or not isinstance(run.discretizer, TimeAware):
+    if visits is None or not run.discretizer.is_time_aware:
         return run
     changed: Any = replace(at_step(run), visits=visits.sum(axis=0))
     return changed
@@ -84,9 +83,12 @@ def over_all_steps(run: Any) -> Any:
 
 def rows_of(run: "Run", observation: Any, steps: Any) -> Any:
     """Returns the active rows of one or n observations; with ``time_aware``, after ``steps`` steps."""
-    if isinstance(run.discretizer, TimeAware):
-        return run.discretizer.rows_after(steps, observation)
-    return run.discretizer.active_rows(observation)
+    discretizer: Any = run.discretizer
+    return (
+        discretizer.rows_after(steps, observation)
+        if discretizer.is_time_aware
+        else discretizer.active_rows(observation)
+    )
 
 
 def steps_taken(discretizer: Any, state: Any, episode_start: Any) -> Any:
@@ -96,7 +98,7 @@ def steps_taken(discretizer: Any, state: Any, episode_start: Any) -> Any:
         TypeError: if ``state`` does not hold integers.
         ValueError: if a number is negative, or ``episode_start`` does not have the shape of ``state``.
     """
-    if not isinstance(discretizer, TimeAware):
+    if not discretizer.is_time_aware:
         return 0
     given = np.asarray(0 if state is None else state)
     if given.dtype.kind not in "iu":
@@ -111,7 +113,7 @@ def steps_taken(discretizer: Any, state: Any, episode_start: Any) -> Any:
 
 def next_state(discretizer: Any, steps: Any, shape: tuple[int, ...]) -> Any:
     """Returns the steps taken after one more step, an integer or array of ``shape``; None without ``time_aware``."""
-    if not isinstance(discretizer, TimeAware):
+    if not discretizer.is_time_aware:
         return None
     following = np.asarray(steps, np.int64) + 1
     return np.array(np.broadcast_to(following, shape)) if shape else int(following.reshape(-1)[0])

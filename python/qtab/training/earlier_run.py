@@ -18,7 +18,7 @@ from qtab.config.functions import STORED, MissingFunction
 from qtab.config.merge import Base, over
 from qtab.config.options import is_set
 from qtab.config.origin import copied, trained_on
-from qtab.discretizers import AssignedRows
+from qtab.discretizers.assigned_rows import AssignedRows
 from qtab.envs.origin.description import differences
 from qtab.envs.registry import versioned
 from qtab.results.loading import load, with_action_mask

@@ -20,7 +20,7 @@ from qtab.config import Config
 from qtab.config.config import replace_checked
 from qtab.config.merge import over
 from qtab.config.unknown import suggesting
-from qtab.discretizers import AssignedRows
+from qtab.discretizers.assigned_rows import AssignedRows
 from qtab.envs.goals import threshold_of
 from qtab.envs.matching import time_limit
 from qtab.envs.registry import make_env, spec_of, spec_of_run

@@ -26,7 +26,7 @@ from qtab.config.choices import INSISTING
 from qtab.config.help import with_settings
 from qtab.config.merge import collect
 from qtab.config.settings import SharedSettings
-from qtab.discretizers import AssignedRows
+from qtab.discretizers.assigned_rows import AssignedRows
 from qtab.envs.matching import equal_environments
 from qtab.results.runs import Runs
 from qtab.training.runs_progress import RunsCallback, RunsReporter, train_in_parts

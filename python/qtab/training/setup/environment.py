@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from qtab import _core
 from qtab._spec import ActionMasksSpec, MaskSourceSpec, NativeEnvSpec, PythonEnvSpec
 from qtab.config.functions import FORGOTTEN, Mask, checked_mask
-from qtab.discretizers import Discretizer, TimeAware
+from qtab.discretizers import Discretizer
 from qtab.discretizers.identity import Identity
 from qtab.envs.actions import Actions
 
@@ -88,6 +88,8 @@ def known_masks(action_mask: Mask, env: gym.Env, discretizer: Discretizer, n_act
     Raises:
         Exception: any other exception of the function, with a note that names the observation (Python 3.11 or later).
     """
+    from qtab.discretizers.time_aware import TimeAware
+
     if isinstance(discretizer, TimeAware):
         of_cells = known_masks(action_mask, env, discretizer.cells, n_actions)
         if of_cells is None or of_cells.known is None:

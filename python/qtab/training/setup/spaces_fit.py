@@ -13,7 +13,7 @@ from qtab.config.config import replace_checked
 from qtab.config.functions import uses_tiles
 from qtab.config.options import OPTIONS, WITH_STATE_VALUES, is_set, n_tables
 from qtab.config.validation import mismatch
-from qtab.discretizers import AssignedRows, Discretizer, is_plain
+from qtab.discretizers import Discretizer, is_plain
 from qtab.discretizers.identity import integer_bounds
 
 _OF_COMPONENTS = ("scale", "bins", "edges", "low", "high")
@@ -103,7 +103,7 @@ def fit_initial_q(config: Config, discretizer: Discretizer, n_actions: int) -> A
     initial_q, count = config.initial_q, n_tables(config.algorithm)
     if not isinstance(initial_q, np.ndarray):
         return initial_q
-    if isinstance(discretizer, AssignedRows):
+    if config.max_rows is not None:
         raise ValueError(
             "initial_q must be a number or a range with max_rows, which assigns the rows anew, got a table"
         )
