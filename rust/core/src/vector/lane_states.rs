@@ -1,6 +1,6 @@
 //! States that are stepped in SIMD lanes.
 
-use super::states::{States, StepOutputs};
+use super::{States, StepBuffers};
 use crate::StopFlag;
 use crate::envs::{Env, SimdEnv};
 use crate::memory::{AllocationError, filled};
@@ -22,11 +22,14 @@ where
     }
 
     fn get(&self, index: usize) -> E::State {
-        gather(&self.0[index / LANES], index % LANES)
+        let block = &self.0[index / LANES];
+        std::array::from_fn(|field| block[field][index % LANES]).into()
     }
 
     fn set(&mut self, index: usize, state: E::State) {
-        scatter(&mut self.0[index / LANES], index % LANES, state);
+        for (field, number) in self.0[index / LANES].iter_mut().zip(state.into()) {
+            field[index % LANES] = number;
+        }
     }
 
     /// Inactive states are stepped as well, which is harmless because a step draws no random numbers.
@@ -36,9 +39,9 @@ where
         actions: &[usize],
         _rngs: &mut [impl Rng],
         _inactive: &[bool],
-        outputs: StepOutputs<'_, [f32; M]>,
+        buffers: &mut StepBuffers<'_, [f32; M]>,
     ) {
-        let StepOutputs { observations, rewards, terminated } = outputs;
+        let StepBuffers { observations, rewards, terminated, .. } = buffers;
         let in_lanes = if env.is_exact() { actions.len() / LANES * LANES } else { 0 };
         SimdLevel::detect().run(Blocks {
             env: *env,
@@ -91,20 +94,6 @@ where
             }
         }
     }
-}
-
-/// Writes a state to a lane.
-#[inline(always)]
-fn scatter<S: Into<[f64; M]>, const K: usize, const M: usize>(fields: &mut [[f64; K]; M], lane: usize, state: S) {
-    for (field, number) in fields.iter_mut().zip(state.into()) {
-        field[lane] = number;
-    }
-}
-
-/// Reads the state of a lane.
-#[inline(always)]
-fn gather<S: From<[f64; M]>, const K: usize, const M: usize>(fields: &[[f64; K]; M], lane: usize) -> S {
-    std::array::from_fn(|field| fields[field][lane]).into()
 }
 
 #[cfg(test)]

@@ -10,6 +10,6 @@ mod tests;
 mod vector_env;
 
 pub use lane_states::LaneStates;
-pub use states::{States, StepOutputs};
+pub use states::States;
 pub use step_buffers::StepBuffers;
 pub use vector_env::{Autoreset, VectorEnv};

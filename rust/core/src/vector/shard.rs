@@ -1,9 +1,8 @@
 //! The sub-environments that one thread steps.
 
-use super::flags::{CHUNK, Flags};
-use super::states::{States, StepOutputs};
+use super::flags::{self, CHUNK, Flags};
 use super::vector_env::VectorConfig;
-use super::{Autoreset, StepBuffers};
+use super::{Autoreset, States, StepBuffers};
 use crate::StopFlag;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::envs::Env;
@@ -23,10 +22,10 @@ pub(super) struct Shard<E: Env, S> {
     /// bound does.
     earliest: Vec<u64>,
     /// Whether each episode has ended and has not been reset yet.
-    done: Vec<bool>,
+    pub(super) done: Vec<bool>,
     /// With `Autoreset::SameStep`, the index and the last state of each episode that ended in the last step. It has
     /// capacity for all sub-environments, so that a step allocates nothing.
-    final_states: Vec<(usize, E::State)>,
+    pub(super) final_states: Vec<(usize, E::State)>,
 }
 
 impl<E: Env, S: States<E>> Shard<E, S> {
@@ -53,18 +52,6 @@ impl<E: Env, S: States<E>> Shard<E, S> {
 
     pub(super) fn elapsed(&self, index: usize) -> u64 {
         self.steps.wrapping_sub(self.begun[index])
-    }
-
-    pub(super) fn is_done(&self, index: usize) -> bool {
-        self.done[index]
-    }
-
-    pub(super) fn done(&self) -> impl Iterator<Item = bool> {
-        self.done.iter().copied()
-    }
-
-    pub(super) fn final_states(&self) -> &[(usize, E::State)] {
-        &self.final_states
     }
 
     /// Saves or restores the episodes. The flags of episodes that ended in the last step are not included.
@@ -103,35 +90,34 @@ impl<E: Env, S: States<E>> Shard<E, S> {
         config: VectorConfig,
         actions: &[E::Action],
         rngs: &mut [impl Rng],
-        buffers: StepBuffers<'_, E::Observation>,
+        mut buffers: StepBuffers<'_, E::Observation>,
     ) {
-        let StepBuffers { observations, rewards, terminated, truncated } = buffers;
         self.final_states.clear();
         let resets_done = config.autoreset == Autoreset::NextStep;
         assert!(resets_done || !self.done.contains(&true), "a finished episode must be reset before the next step");
-        let outputs = StepOutputs { observations, rewards, terminated };
-        self.states.step(env, actions, rngs, &self.done, outputs);
+        self.states.step(env, actions, rngs, &self.done, &mut buffers);
+        let StepBuffers { observations, rewards, terminated, truncated } = buffers;
         self.steps = self.steps.wrapping_add(1);
         for chunk in 0..self.earliest.len() {
             let range = chunk * CHUNK..self.done.len().min((chunk + 1) * CHUNK);
             let (terminated, truncated) = (&mut terminated[range.clone()], &mut truncated[range.clone()]);
-            let was_done = Flags::read(&self.done[range.clone()]);
+            let was_done = flags::read(&self.done[range.clone()]);
             // An episode that had ended before this step cannot end in it.
-            let terminations = Flags::read(terminated) & !was_done;
+            let terminations = flags::read(terminated) & !was_done;
             let truncations = self.find_truncations(chunk, config.max_episode_steps) & !was_done;
             let ended = terminations | truncations;
-            truncations.write(truncated);
-            if (was_done | ended) == Flags::NONE {
+            flags::write(truncations, truncated);
+            if (was_done | ended) == 0 {
                 continue;
             }
-            terminations.write(terminated);
+            flags::write(terminations, terminated);
             let resets = match config.autoreset {
                 Autoreset::NextStep => was_done,
                 Autoreset::SameStep => ended,
-                Autoreset::Disabled => Flags::NONE,
+                Autoreset::Disabled => 0,
             };
-            ended.write(&mut self.done[range.clone()]);
-            for index in resets.lanes().map(|lane| range.start + lane) {
+            flags::write(ended, &mut self.done[range.clone()]);
+            for index in flags::lanes(resets).map(|lane| range.start + lane) {
                 if resets_done {
                     rewards[index] = 0.0;
                 } else {
@@ -148,7 +134,7 @@ impl<E: Env, S: States<E>> Shard<E, S> {
     #[inline]
     fn find_truncations(&mut self, chunk: usize, limit: u64) -> Flags {
         if self.steps.wrapping_sub(self.earliest[chunk]) < limit {
-            return Flags::NONE;
+            return 0;
         }
         self.find_earliest(chunk);
         let begun = self.begun.chunks(CHUNK).nth(chunk).unwrap_or_default();
@@ -156,6 +142,6 @@ impl<E: Env, S: States<E>> Shard<E, S> {
         for (truncated, begun) in truncated.iter_mut().zip(begun) {
             *truncated = self.steps.wrapping_sub(*begun) >= limit;
         }
-        Flags::read(&truncated)
+        flags::read(&truncated)
     }
 }

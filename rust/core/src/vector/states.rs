@@ -1,20 +1,10 @@
 //! The storage of the states of the sub-environments, and their steps.
 
+use super::StepBuffers;
 use crate::StopFlag;
 use crate::envs::Env;
 use crate::memory::{AllocationError, filled};
 use crate::random::Rng;
-
-/// The outputs of a step of several sub-environments besides their states, with one element for each.
-#[derive(Debug)]
-pub struct StepOutputs<'a, O> {
-    /// The observations after the step.
-    pub observations: &'a mut [O],
-    /// The rewards.
-    pub rewards: &'a mut [f64],
-    /// Whether the next state is terminal.
-    pub terminated: &'a mut [bool],
-}
 
 /// The states of several sub-environments, in the layout in which they are stepped.
 pub trait States<E: Env>: Sized {
@@ -30,7 +20,7 @@ pub trait States<E: Env>: Sized {
     /// Replaces the state of a sub-environment.
     fn set(&mut self, index: usize, state: E::State);
 
-    /// One step of each sub-environment, with the results of [`Env::step`]. The `inactive` ones await a reset: their
+    /// One step of each sub-environment, with the results of [`Env::step`], which do not include `truncated`. The `inactive` ones await a reset: their
     /// generators are not used, and their states and outputs are unspecified.
     ///
     /// # Panics
@@ -41,7 +31,7 @@ pub trait States<E: Env>: Sized {
         actions: &[E::Action],
         rngs: &mut [impl Rng],
         inactive: &[bool],
-        outputs: StepOutputs<'_, E::Observation>,
+        buffers: &mut StepBuffers<'_, E::Observation>,
     );
 }
 
@@ -65,10 +55,11 @@ impl<E: Env> States<E> for Vec<E::State> {
         actions: &[E::Action],
         rngs: &mut [impl Rng],
         inactive: &[bool],
-        outputs: StepOutputs<'_, E::Observation>,
+        buffers: &mut StepBuffers<'_, E::Observation>,
     ) {
         let inputs = self.iter_mut().zip(actions).zip(rngs.iter_mut().zip(inactive));
-        let outputs = outputs.observations.iter_mut().zip(outputs.rewards).zip(outputs.terminated);
+        let StepBuffers { observations, rewards, terminated, .. } = buffers;
+        let outputs = observations.iter_mut().zip(rewards.iter_mut()).zip(terminated.iter_mut());
         for (((state, &action), (rng, &inactive)), ((observation, reward), terminated)) in inputs.zip(outputs) {
             if !inactive {
                 let step = env.step(*state, action, rng);

@@ -97,12 +97,12 @@ impl<E: Env, S: States<E>> VectorEnv<E, S> {
 
     /// Whether the episode of a sub-environment has ended and has not been reset yet.
     pub fn is_done(&self, index: usize) -> bool {
-        self.shards[index / self.shard_len].is_done(index % self.shard_len)
+        self.shards[index / self.shard_len].done[index % self.shard_len]
     }
 
     /// [`is_done`](Self::is_done) of all sub-environments.
     pub fn done(&self) -> impl Iterator<Item = bool> {
-        self.shards.iter().flat_map(Shard::done)
+        self.shards.iter().flat_map(|shard| shard.done.iter().copied())
     }
 
     /// With [`Autoreset::SameStep`], the index and the last state of each sub-environment whose episode ended in the
@@ -110,7 +110,7 @@ impl<E: Env, S: States<E>> VectorEnv<E, S> {
     pub fn final_states(&self) -> impl Iterator<Item = (usize, &E::State)> + Clone {
         let shards = self.shards.iter().enumerate();
         shards.flat_map(move |(shard_index, shard)| {
-            shard.final_states().iter().map(move |(index, state)| (shard_index * self.shard_len + index, state))
+            shard.final_states.iter().map(move |(index, state)| (shard_index * self.shard_len + index, state))
         })
     }
 
