@@ -1,7 +1,6 @@
 //! Tile coding with checked arguments.
 
 use super::TileCoding;
-use super::tile_coding::TiledAxis;
 use crate::build_error::BuildError;
 use crate::numeric::Float;
 
@@ -47,21 +46,20 @@ impl<T: Float, const M: usize> TileCoding<T, M> {
                 format!("{tiles:?}"),
             ));
         }
-        let features = Self::new(low, high, tiles, tilings);
-        features.check_axes()?;
-        Ok(features)
+        check_bounds(low.iter().copied().zip(high.iter().copied()))?;
+        Ok(Self::new(low, high, tiles, tilings))
     }
+}
 
-    /// Checks that each component has finite bounds in order.
-    pub(super) fn check_axes(&self) -> Result<(), BuildError> {
-        for (component, TiledAxis { low, high, .. }) in self.axes().iter().enumerate() {
-            if !(low.is_finite() && high.is_finite() && low < high) {
-                let got = format!("{high} above {low} for component {component}");
-                return Err(BuildError::invalid("high", "finite and above low", got));
-            }
+/// Checks that each component has finite bounds in order.
+pub(super) fn check_bounds(bounds: impl Iterator<Item = (f64, f64)>) -> Result<(), BuildError> {
+    for (component, (low, high)) in bounds.enumerate() {
+        if !(low.is_finite() && high.is_finite() && low < high) {
+            let got = format!("{high} above {low} for component {component}");
+            return Err(BuildError::invalid("high", "finite and above low", got));
         }
-        Ok(())
     }
+    Ok(())
 }
 
 #[cfg(test)]

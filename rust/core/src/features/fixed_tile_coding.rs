@@ -2,6 +2,7 @@
 
 use std::array::TryFromSliceError;
 
+use super::checked_tilings::check_bounds;
 use super::tile_coding::TiledAxis;
 use super::{BatchFeatures, Features, OutOfBounds, TileCoding};
 use crate::build_error::BuildError;
@@ -95,17 +96,6 @@ impl<T: Float, const D: usize, const N: usize> FixedTileCoding<T, D, N> {
         Some(Self { axes: fixed, first_rows, general, len })
     }
 
-    /// As [`TileCoding::check_axes`].
-    fn check_axes(&self) -> Result<(), BuildError> {
-        let ordered = |axis: &FixedAxis<N>| axis.low.is_finite() && axis.high.is_finite() && axis.low < axis.high;
-        match self.axes.iter().position(|axis| !ordered(axis)) {
-            None => Ok(()),
-            Some(component) => {
-                Err(BuildError::invalid("high", "finite and above low", format!("otherwise for component {component}")))
-            }
-        }
-    }
-
     #[inline(never)]
     fn write_general_rows(
         tiles: &TileCoding<T, N>,
@@ -161,7 +151,7 @@ impl<T: Float, const D: usize, const N: usize> Features<[T; D]> for FixedTileCod
     }
 
     fn check(&self) -> Result<(), BuildError> {
-        self.check_axes()
+        check_bounds(self.axes.iter().map(|axis| (axis.low, axis.high)))
     }
 
     fn len(&self) -> usize {

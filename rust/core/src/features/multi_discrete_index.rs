@@ -14,13 +14,13 @@ impl<C: AsRef<[u32]>> MultiDiscreteIndex<C> {
     }
 }
 
-impl<C: AsRef<[u32]>> Features<[u32]> for MultiDiscreteIndex<C> {
+impl<C: AsRef<[u32]>, O: AsRef<[u32]> + ?Sized> Features<O> for MultiDiscreteIndex<C> {
     type Active = [u32; 1];
 
     #[inline]
-    fn active_rows(&self, observation: &[u32]) -> Result<[u32; 1], OutOfBounds> {
+    fn active_rows(&self, observation: &O) -> Result<[u32; 1], OutOfBounds> {
         let mut row = 0;
-        for (axis, (&number, &count)) in observation.iter().zip(self.0.as_ref()).enumerate() {
+        for (axis, (&number, &count)) in observation.as_ref().iter().zip(self.0.as_ref()).enumerate() {
             if number >= count {
                 return Err(OutOfBounds { axis, value: f64::from(number) });
             }
@@ -31,19 +31,6 @@ impl<C: AsRef<[u32]>> Features<[u32]> for MultiDiscreteIndex<C> {
 
     fn len(&self) -> usize {
         self.0.as_ref().iter().map(|&count| count as usize).product()
-    }
-}
-
-impl<const N: usize> Features<[u32; N]> for MultiDiscreteIndex<[u32; N]> {
-    type Active = [u32; 1];
-
-    #[inline]
-    fn active_rows(&self, observation: &[u32; N]) -> Result<[u32; 1], OutOfBounds> {
-        self.active_rows(observation.as_slice())
-    }
-
-    fn len(&self) -> usize {
-        Features::<[u32]>::len(self)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::marker::PhantomData;
 
+use super::checked_tilings::check_bounds;
 use super::hashing::{HashTable, mix};
 use super::{Features, OutOfBounds};
 use crate::build_error::BuildError;
@@ -187,7 +188,7 @@ impl<T: Float, O: AsRef<[T]> + ?Sized, const M: usize> Features<O> for TileCodin
     }
 
     fn check(&self) -> Result<(), BuildError> {
-        self.check_axes()
+        check_bounds(self.axes.iter().map(|axis| (axis.low, axis.high)))
     }
 
     fn len(&self) -> usize {
