@@ -110,14 +110,6 @@ where
 
     /// The algorithm with the time limit of the run.
     fn algorithm_with_limit(&self) -> AnyAlgorithm {
-        let max_episode_steps = self.max_episode_steps.unwrap_or(u64::MAX);
-        match self.algorithm {
-            AnyAlgorithm::MonteCarlo { .. } => AnyAlgorithm::MonteCarlo { max_episode_steps },
-            AnyAlgorithm::MonteCarloEs { .. } => AnyAlgorithm::MonteCarloEs { max_episode_steps },
-            AnyAlgorithm::OffPolicyMonteCarlo { learning_rate, min_learning_rate, .. } => {
-                AnyAlgorithm::OffPolicyMonteCarlo { max_episode_steps, learning_rate, min_learning_rate }
-            }
-            algorithm => algorithm,
-        }
+        self.algorithm.with_time_limit(self.max_episode_steps.unwrap_or(u64::MAX))
     }
 }

@@ -4,7 +4,7 @@ use super::{InitialValues, TrainerBuilder};
 use crate::build_error::BuildError;
 use crate::learners::{AnyAlgorithm, TraceOptions};
 use crate::q_table::TerminalUpdate;
-use crate::settings::{LearningRateSpec, PolicySpec, ScheduleSpec};
+use crate::settings::{LearningRateSpec, PolicySpec, ScheduleSpec, range_of};
 
 /// The numbers of rows, of actions, and of rows that are active at a time.
 #[derive(Clone, Copy)]
@@ -137,38 +137,38 @@ impl<E, F> TrainerBuilder<E, F> {
                 got,
             ));
         }
-        let share = |setting, number| BuildError::check_number(setting, 0.0, 1.0, number);
-        let not_negative = |setting, number| BuildError::check_number(setting, 0.0, f64::MAX, number);
+        let check = |option, number| {
+            let (low, high) = range_of(option);
+            BuildError::check_number(option, low, high, number)
+        };
         match self.algorithm {
             AnyAlgorithm::NStepSarsa { n_steps: 0 }
             | AnyAlgorithm::NStepTreeBackup { n_steps: 0, .. }
             | AnyAlgorithm::NStepQSigma { n_steps: 0, .. } => Err(BuildError::invalid("n_steps", "at least 1", 0)),
-            AnyAlgorithm::NStepQSigma { sigma, .. } => share("sigma", sigma),
+            AnyAlgorithm::NStepQSigma { sigma, .. } => check("sigma", sigma),
             AnyAlgorithm::SarsaLambda(TraceOptions { decay, cutoff, .. })
             | AnyAlgorithm::WatkinsQLambda(TraceOptions { decay, cutoff, .. })
             | AnyAlgorithm::TrueOnlineSarsaLambda { trace_decay: decay, trace_cutoff: cutoff } => {
-                share("trace_decay", decay)?;
-                share("trace_cutoff", cutoff)
+                check("trace_decay", decay)?;
+                check("trace_cutoff", cutoff)
             }
-            AnyAlgorithm::DynaQPlus { time_weight, .. } => not_negative("time_weight", time_weight),
+            AnyAlgorithm::DynaQPlus { time_weight, .. } => check("time_weight", time_weight),
             AnyAlgorithm::PrioritizedSweeping { priority_threshold, .. } => {
-                not_negative("priority_threshold", priority_threshold)
+                check("priority_threshold", priority_threshold)
             }
             AnyAlgorithm::DifferentialSarsa { reward_learning_rate }
             | AnyAlgorithm::DifferentialQLearning { reward_learning_rate } => {
-                share("reward_learning_rate", reward_learning_rate)
+                check("reward_learning_rate", reward_learning_rate)
             }
             AnyAlgorithm::ReinforceWithBaseline { value_learning_rate }
-            | AnyAlgorithm::ActorCritic { value_learning_rate } => {
-                BuildError::check_number("value_learning_rate", 0.0, 2.0, value_learning_rate)
-            }
+            | AnyAlgorithm::ActorCritic { value_learning_rate } => check("value_learning_rate", value_learning_rate),
             AnyAlgorithm::ActorCriticLambda { value_learning_rate, trace_decay } => {
-                BuildError::check_number("value_learning_rate", 0.0, 2.0, value_learning_rate)?;
-                share("trace_decay", trace_decay)
+                check("value_learning_rate", value_learning_rate)?;
+                check("trace_decay", trace_decay)
             }
             AnyAlgorithm::MonteCarlo { .. } | AnyAlgorithm::MonteCarloEs { .. } => self.check_time_limit(),
             AnyAlgorithm::OffPolicyMonteCarlo { learning_rate, min_learning_rate, .. } => {
-                share("learning_rate", learning_rate)?;
+                check("learning_rate", learning_rate)?;
                 BuildError::check_number("min_learning_rate", 0.0, learning_rate, min_learning_rate)?;
                 self.check_time_limit()
             }

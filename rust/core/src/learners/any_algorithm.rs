@@ -177,6 +177,18 @@ impl AnyAlgorithm {
         matches!(self, Self::GradientBandit { .. } | Self::Reinforce) || self.value_learning_rate().is_some()
     }
 
+    /// The algorithm with the time limit of a run, which Monte Carlo methods need.
+    #[must_use]
+    pub(crate) fn with_time_limit(mut self, steps: u64) -> Self {
+        if let Self::MonteCarlo { max_episode_steps }
+        | Self::MonteCarloEs { max_episode_steps }
+        | Self::OffPolicyMonteCarlo { max_episode_steps, .. } = &mut self
+        {
+            *max_episode_steps = steps;
+        }
+        self
+    }
+
     /// Creates the learner of an agent and passes it to `visitor`. `second_table` is the other table of Double
     /// Q-learning, or the state values of a critic. The result is `None` if the algorithm needs single rows and `R`
     /// holds several, or if it needs a second table and there is none.

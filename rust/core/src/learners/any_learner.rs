@@ -130,83 +130,78 @@ impl<R: ActiveRows> AnyLearner<R> {
         let new_model = || Model::new(n_rows, num_actions, stop);
         let new_traces = |cutoff: f64| Traces::new(weights, cutoff, stop);
         let new_critic = |table, learning_rate: f64| Critic { table, step_size: learning_rate / n_active };
+        macro_rules! learner {
+            ($variant:ident, $rule:expr) => {
+                Self::$variant(TdLearner { rule: $rule, agent })
+            };
+        }
         Ok(Some(match algorithm {
-            AnyAlgorithm::QLearning => Self::QLearning(TdLearner { agent, rule: QLearning }),
-            AnyAlgorithm::Sarsa => Self::Sarsa(TdLearner { agent, rule: Sarsa }),
-            AnyAlgorithm::ExpectedSarsa => Self::ExpectedSarsa(TdLearner { agent, rule: ExpectedSarsa }),
+            AnyAlgorithm::QLearning => learner!(QLearning, QLearning),
+            AnyAlgorithm::Sarsa => learner!(Sarsa, Sarsa),
+            AnyAlgorithm::ExpectedSarsa => learner!(ExpectedSarsa, ExpectedSarsa),
             AnyAlgorithm::DoubleQLearning => {
                 let Some(second_table) = second_table else { return Ok(None) };
-                let rule = DoubleQLearning::new(agent.learning_rate.clone(), second_table);
-                Self::DoubleQLearning(TdLearner { agent, rule })
+                learner!(DoubleQLearning, DoubleQLearning::new(agent.learning_rate.clone(), second_table))
             }
-            AnyAlgorithm::NStepSarsa { n_steps } => {
-                Self::NStepSarsa(TdLearner { agent, rule: NStepSarsa::new(n_steps) })
-            }
+            AnyAlgorithm::NStepSarsa { n_steps } => learner!(NStepSarsa, NStepSarsa::new(n_steps)),
             AnyAlgorithm::SarsaLambda(TraceOptions { kind, decay, cutoff }) => {
-                let rule = SarsaLambda { traces: new_traces(cutoff)?, kind, trace_decay: decay };
-                Self::SarsaLambda(TdLearner { agent, rule })
+                learner!(SarsaLambda, SarsaLambda { traces: new_traces(cutoff)?, kind, trace_decay: decay })
             }
             AnyAlgorithm::TrueOnlineSarsaLambda { trace_decay, trace_cutoff } => {
-                let rule = TrueOnlineSarsaLambda::new(new_traces(trace_cutoff)?, trace_decay);
-                Self::TrueOnlineSarsaLambda(TdLearner { agent, rule })
+                learner!(TrueOnlineSarsaLambda, TrueOnlineSarsaLambda::new(new_traces(trace_cutoff)?, trace_decay))
             }
             AnyAlgorithm::WatkinsQLambda(TraceOptions { kind, decay, cutoff }) => {
-                let rule = WatkinsQLambda { traces: new_traces(cutoff)?, kind, trace_decay: decay };
-                Self::WatkinsQLambda(TdLearner { agent, rule })
+                learner!(WatkinsQLambda, WatkinsQLambda { traces: new_traces(cutoff)?, kind, trace_decay: decay })
             }
-            AnyAlgorithm::DynaQ { planning_steps } => {
-                Self::DynaQ(TdLearner { agent, rule: DynaQ::new(new_model()?, planning_steps) })
-            }
+            AnyAlgorithm::DynaQ { planning_steps } => learner!(DynaQ, DynaQ::new(new_model()?, planning_steps)),
             AnyAlgorithm::DynaQPlus { planning_steps, time_weight } => {
-                let rule = DynaQPlus::new(new_model()?, planning_steps, time_weight, stop)?;
-                Self::DynaQPlus(TdLearner { agent, rule })
+                learner!(DynaQPlus, DynaQPlus::new(new_model()?, planning_steps, time_weight, stop)?)
             }
             AnyAlgorithm::StochasticDynaQ { planning_steps } => {
-                let rule = DynaQ::new(StochasticModel::new(n_rows, num_actions, stop)?, planning_steps);
-                Self::StochasticDynaQ(TdLearner { agent, rule })
+                let model = StochasticModel::new(n_rows, num_actions, stop)?;
+                learner!(StochasticDynaQ, DynaQ::new(model, planning_steps))
             }
             AnyAlgorithm::MonteCarlo { max_episode_steps } | AnyAlgorithm::MonteCarloEs { max_episode_steps } => {
                 let exploring_starts = matches!(algorithm, AnyAlgorithm::MonteCarloEs { .. });
                 let rule = MonteCarloControl::new(weights, max_episode_steps, exploring_starts, stop)?;
-                Self::MonteCarloControl(TdLearner { agent, rule })
+                learner!(MonteCarloControl, rule)
             }
             AnyAlgorithm::OffPolicyMonteCarlo { max_episode_steps, learning_rate, min_learning_rate } => {
                 let rates = (learning_rate, min_learning_rate);
-                let rule = OffPolicyMonteCarlo::new(weights, max_episode_steps, rates, stop)?;
-                Self::OffPolicyMonteCarlo(TdLearner { agent, rule })
+                learner!(OffPolicyMonteCarlo, OffPolicyMonteCarlo::new(weights, max_episode_steps, rates, stop)?)
             }
             AnyAlgorithm::NStepTreeBackup { n_steps, target_policy } => {
-                Self::NStepTreeBackup(TdLearner { agent, rule: NStepTreeBackup::new(n_steps, target_policy) })
+                learner!(NStepTreeBackup, NStepTreeBackup::new(n_steps, target_policy))
             }
             AnyAlgorithm::NStepQSigma { n_steps, sigma, target_policy } => {
-                Self::NStepQSigma(TdLearner { agent, rule: NStepQSigma::new(n_steps, sigma, target_policy) })
+                learner!(NStepQSigma, NStepQSigma::new(n_steps, sigma, target_policy))
             }
             AnyAlgorithm::PrioritizedSweeping { planning_steps, priority_threshold } => {
                 let rule = PrioritizedSweeping::new(new_model()?, planning_steps, priority_threshold, stop)?;
-                Self::PrioritizedSweeping(TdLearner { agent, rule })
+                learner!(PrioritizedSweeping, rule)
             }
             AnyAlgorithm::DifferentialSarsa { reward_learning_rate } => {
-                Self::DifferentialSarsa(TdLearner { agent, rule: DifferentialSarsa::new(reward_learning_rate) })
+                learner!(DifferentialSarsa, DifferentialSarsa::new(reward_learning_rate))
             }
             AnyAlgorithm::DifferentialQLearning { reward_learning_rate } => {
-                Self::DifferentialQLearning(TdLearner { agent, rule: DifferentialQLearning::new(reward_learning_rate) })
+                learner!(DifferentialQLearning, DifferentialQLearning::new(reward_learning_rate))
             }
             AnyAlgorithm::GradientBandit { baseline } => {
-                Self::GradientBandit(TdLearner { agent, rule: GradientBandit::new(baseline, n_rows, stop)? })
+                learner!(GradientBandit, GradientBandit::new(baseline, n_rows, stop)?)
             }
-            AnyAlgorithm::Reinforce => Self::Reinforce(TdLearner { agent, rule: Reinforce::new(None) }),
+            AnyAlgorithm::Reinforce => learner!(Reinforce, Reinforce::new(None)),
             AnyAlgorithm::ReinforceWithBaseline { value_learning_rate } => {
                 let critic = second_table.map(|table| new_critic(table, value_learning_rate));
-                Self::Reinforce(TdLearner { agent, rule: Reinforce::new(critic) })
+                learner!(Reinforce, Reinforce::new(critic))
             }
             AnyAlgorithm::ActorCritic { value_learning_rate } => {
                 let Some(table) = second_table else { return Ok(None) };
-                Self::ActorCritic(TdLearner { agent, rule: ActorCritic::new(new_critic(table, value_learning_rate)) })
+                learner!(ActorCritic, ActorCritic::new(new_critic(table, value_learning_rate)))
             }
             AnyAlgorithm::ActorCriticLambda { value_learning_rate, trace_decay } => {
                 let Some(table) = second_table else { return Ok(None) };
                 let rule = ActorCriticLambda::new(new_critic(table, value_learning_rate), trace_decay, stop)?;
-                Self::ActorCriticLambda(TdLearner { agent, rule })
+                learner!(ActorCriticLambda, rule)
             }
         }))
     }

@@ -21,7 +21,7 @@ impl<S: SettingSource> AlgorithmRows<S> {
         ("n_step_sarsa", |settings| Ok(AnyAlgorithm::NStepSarsa { n_steps: n_steps(settings)? })),
         ("sarsa_lambda", |settings| traces(settings).map(AnyAlgorithm::SarsaLambda)),
         ("true_online_sarsa_lambda", |settings| {
-            let (trace_decay, trace_cutoff) = (share(settings, "trace_decay")?, share(settings, "trace_cutoff")?);
+            let (trace_decay, trace_cutoff) = (number(settings, "trace_decay")?, number(settings, "trace_cutoff")?);
             Ok(AnyAlgorithm::TrueOnlineSarsaLambda { trace_decay, trace_cutoff })
         }),
         ("watkins_q_lambda", |settings| traces(settings).map(AnyAlgorithm::WatkinsQLambda)),
@@ -36,7 +36,7 @@ impl<S: SettingSource> AlgorithmRows<S> {
             })
         }),
         ("dyna_q_plus", |settings| {
-            let (planning_steps, time_weight) = (planning_steps(settings)?, not_negative(settings, "time_weight")?);
+            let (planning_steps, time_weight) = (planning_steps(settings)?, number(settings, "time_weight")?);
             Ok(AnyAlgorithm::DynaQPlus { planning_steps, time_weight })
         }),
         // The other settings of a run that some of these need are filled in afterwards.
@@ -51,28 +51,29 @@ impl<S: SettingSource> AlgorithmRows<S> {
         }),
         ("n_step_q_sigma", |settings| {
             let (n_steps, target_policy) = (n_steps(settings)?, target_policy(settings)?);
-            Ok(AnyAlgorithm::NStepQSigma { n_steps, sigma: share(settings, "sigma")?, target_policy })
+            Ok(AnyAlgorithm::NStepQSigma { n_steps, sigma: number(settings, "sigma")?, target_policy })
         }),
         ("prioritized_sweeping", |settings| {
-            let priority_threshold = not_negative(settings, "priority_threshold")?;
+            let priority_threshold = number(settings, "priority_threshold")?;
             Ok(AnyAlgorithm::PrioritizedSweeping { planning_steps: planning_steps(settings)?, priority_threshold })
         }),
         ("differential_sarsa", |settings| {
-            Ok(AnyAlgorithm::DifferentialSarsa { reward_learning_rate: share(settings, "reward_learning_rate")? })
+            Ok(AnyAlgorithm::DifferentialSarsa { reward_learning_rate: number(settings, "reward_learning_rate")? })
         }),
         ("differential_q_learning", |settings| {
-            Ok(AnyAlgorithm::DifferentialQLearning { reward_learning_rate: share(settings, "reward_learning_rate")? })
+            Ok(AnyAlgorithm::DifferentialQLearning { reward_learning_rate: number(settings, "reward_learning_rate")? })
         }),
         ("gradient_bandit", |settings| Ok(AnyAlgorithm::GradientBandit { baseline: settings.flag("baseline")? })),
         ("reinforce", |_| Ok(AnyAlgorithm::Reinforce)),
         ("reinforce_with_baseline", |settings| {
-            Ok(AnyAlgorithm::ReinforceWithBaseline { value_learning_rate: value_learning_rate(settings)? })
+            Ok(AnyAlgorithm::ReinforceWithBaseline { value_learning_rate: number(settings, "value_learning_rate")? })
         }),
         ("actor_critic", |settings| {
-            Ok(AnyAlgorithm::ActorCritic { value_learning_rate: value_learning_rate(settings)? })
+            Ok(AnyAlgorithm::ActorCritic { value_learning_rate: number(settings, "value_learning_rate")? })
         }),
         ("actor_critic_lambda", |settings| {
-            let (value_learning_rate, trace_decay) = (value_learning_rate(settings)?, share(settings, "trace_decay")?);
+            let (value_learning_rate, trace_decay) =
+                (number(settings, "value_learning_rate")?, number(settings, "trace_decay")?);
             Ok(AnyAlgorithm::ActorCriticLambda { value_learning_rate, trace_decay })
         }),
     ];
@@ -95,35 +96,32 @@ impl AnyAlgorithm {
         let algorithm = settings.word("algorithm", &AlgorithmRows::ROWS)?(settings)?;
         let largest_rate = if algorithm.learns_preferences() { f64::MAX } else { largest_rate };
         let learning_rate = LearningRateSpec::parse(settings, largest_rate, episodes)?;
-        let algorithm = match algorithm {
-            Self::MonteCarlo { .. } => Self::MonteCarlo { max_episode_steps },
-            Self::MonteCarloEs { .. } => Self::MonteCarloEs { max_episode_steps },
-            Self::OffPolicyMonteCarlo { .. } => match learning_rate {
-                LearningRateSpec::Visits { value, minimum } => {
-                    Self::OffPolicyMonteCarlo { max_episode_steps, learning_rate: value, min_learning_rate: minimum }
-                }
-                LearningRateSpec::Schedule(_) => {
-                    return Err(settings.invalid("learning_rate_schedule", "'visits' for 'off_policy_monte_carlo'"));
-                }
-            },
-            algorithm => algorithm,
+        let algorithm = match (algorithm, learning_rate) {
+            (Self::OffPolicyMonteCarlo { .. }, LearningRateSpec::Visits { value, minimum }) => {
+                Self::OffPolicyMonteCarlo { max_episode_steps, learning_rate: value, min_learning_rate: minimum }
+            }
+            (Self::OffPolicyMonteCarlo { .. }, LearningRateSpec::Schedule(_)) => {
+                return Err(settings.invalid("learning_rate_schedule", "'visits' for 'off_policy_monte_carlo'"));
+            }
+            (algorithm, _) => algorithm.with_time_limit(max_episode_steps),
         };
         Ok((algorithm, learning_rate))
     }
 }
 
-/// A number in [0, 1].
-fn share<S: SettingSource>(settings: &S, name: &'static str) -> Result<f64, S::Error> {
-    settings.number(name, 0.0, 1.0)
+/// The smallest and the largest value of an option of an algorithm.
+pub(crate) fn range_of(option: &str) -> (f64, f64) {
+    match option {
+        "time_weight" | "priority_threshold" => (0.0, f64::MAX),
+        // Tile coding divides it among the tilings.
+        "value_learning_rate" => (0.0, 2.0),
+        _ => (0.0, 1.0),
+    }
 }
 
-fn not_negative<S: SettingSource>(settings: &S, name: &'static str) -> Result<f64, S::Error> {
-    settings.number(name, 0.0, f64::MAX)
-}
-
-/// Up to 2, as tile coding divides it among the tilings.
-fn value_learning_rate<S: SettingSource>(settings: &S) -> Result<f64, S::Error> {
-    settings.number("value_learning_rate", 0.0, 2.0)
+fn number<S: SettingSource>(settings: &S, option: &'static str) -> Result<f64, S::Error> {
+    let (low, high) = range_of(option);
+    settings.number(option, low, high)
 }
 
 fn n_steps<S: SettingSource>(settings: &S) -> Result<usize, S::Error> {
@@ -145,5 +143,5 @@ fn traces<S: SettingSource>(settings: &S) -> Result<TraceOptions, S::Error> {
         ("clearing", TraceKind::Clearing),
     ];
     let kind = settings.word("traces", &kinds)?;
-    Ok(TraceOptions { kind, decay: share(settings, "trace_decay")?, cutoff: share(settings, "trace_cutoff")? })
+    Ok(TraceOptions { kind, decay: number(settings, "trace_decay")?, cutoff: number(settings, "trace_cutoff")? })
 }

@@ -5,6 +5,7 @@ mod policy;
 mod schedule;
 
 pub use algorithm::AlgorithmRows;
+pub(crate) use algorithm::range_of;
 pub use policy::PolicySpec;
 pub use schedule::{LearningRateSpec, SCHEDULES, ScheduleSpec};
 
