@@ -1,6 +1,6 @@
 //! A task whose environment changes after a number of steps (Sutton & Barto, section 8.3).
 
-use super::{Next, RngSnapshot, Task, TimedState, Transition};
+use super::{NextKind, RngSnapshot, Task, TimedState, Transition};
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist, RunIdentity};
 use crate::envs::Env;
 use crate::envs::tabular::TabularMdp;
@@ -51,14 +51,8 @@ impl Task for ChangingTask {
         let step = self.tables[self.current()].step(state.state, action, &mut self.rng);
         self.total_steps += 1;
         *state = TimedState { state: step.state, elapsed: state.elapsed + 1 };
-        let next = if step.terminated {
-            Next::Terminal
-        } else if state.elapsed >= self.max_episode_steps {
-            Next::Truncated([step.state])
-        } else {
-            Next::NonTerminal([step.state])
-        };
-        Ok(Transition { reward: step.reward, next })
+        let next = NextKind::after(step.terminated, state.elapsed, self.max_episode_steps);
+        Ok(Transition { reward: step.reward, next: next.with_rows([step.state]) })
     }
 
     fn active_rows(&self, state: &Self::State) -> Result<[u32; 1], OutOfBounds> {
@@ -104,6 +98,7 @@ mod tests {
     use super::*;
     use crate::envs::tabular::Outcome;
     use crate::random::SeedSequence;
+    use crate::tasks::Next;
 
     /// Two states, one action: it stays in the state, or moves to the other state and ends the episode.
     fn table(moves: bool) -> TabularMdp {

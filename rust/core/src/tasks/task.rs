@@ -26,6 +26,20 @@ pub enum NextKind {
 }
 
 impl NextKind {
+    /// The kind of the state after the `elapsed`th step of an episode. Call this after computing the active rows: with
+    /// tile coding, a branch before them takes a tenth of the time of learning.
+    #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
+    #[inline(always)]
+    pub fn after(terminated: bool, elapsed: u64, max_episode_steps: u64) -> Self {
+        if terminated {
+            Self::Terminal
+        } else if elapsed >= max_episode_steps {
+            Self::Truncated
+        } else {
+            Self::NonTerminal
+        }
+    }
+
     /// The [`Next`] of this kind, with these active rows of the next state.
     #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
     #[inline(always)]

@@ -31,6 +31,13 @@ impl EpisodeLog {
         last.iter().sum::<f64>() / last.len() as f64
     }
 
+    /// Adds an episode.
+    pub(super) fn push(&mut self, episode_return: f64, length: i64, terminated: bool) {
+        self.returns.push(episode_return);
+        self.lengths.push(length);
+        self.terminated.push(terminated);
+    }
+
     /// Makes room for all episodes that can finish within a budget, given that each takes at least one step. The loop
     /// then cannot run out of memory.
     pub(super) fn reserve(&mut self, budget: Budget) -> Result<(), AllocationError> {

@@ -68,9 +68,7 @@ pub fn evaluate<T: Task>(
     let mut log = EpisodeLog::default();
     for _ in 0..episodes {
         let (episode_return, length, terminated) = episode(task, policy, max_steps).map_err(EvaluationError::Task)?;
-        log.returns.push(episode_return);
-        log.lengths.push(length);
-        log.terminated.push(terminated);
+        log.push(episode_return, length, terminated);
     }
     Ok(log)
 }

@@ -258,8 +258,6 @@ impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> Trainer<T, L, R> {
 
     pub(crate) fn finish_episode(&mut self, episode_return: f64, length: i64, terminated: bool) {
         self.learner.end_episode();
-        self.episodes.returns.push(episode_return);
-        self.episodes.lengths.push(length);
-        self.episodes.terminated.push(terminated);
+        self.episodes.push(episode_return, length, terminated);
     }
 }
