@@ -1,7 +1,7 @@
 //! The updates of the tables of a batch, and of the values of the next rows.
 
 use crate::features::LaneRows;
-use crate::q_table::sum_values;
+use crate::numeric::sum;
 use crate::simd::{F64s, Simd, U64s, map};
 
 /// Writes the value of an action in a row of each lane. Returns the values of the next rows after the write.
@@ -46,7 +46,7 @@ pub(super) fn update_rows<S: Simd, R: LaneRows, const N: usize, const K: usize>(
             table[row][action] += changes[lane];
         }
         // Most rows stay active, so the next value of the same action has nearly always changed.
-        values[action][lane] = sum_values(next_rows[lane].indices().map(|row| table[row][action]));
+        values[action][lane] = sum(next_rows[lane].indices().map(|row| table[row][action]));
     }
     values
 }

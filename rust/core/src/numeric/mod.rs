@@ -7,6 +7,7 @@ mod float;
 mod numpy_f32_cos_sin;
 mod python_float;
 mod scalar;
+mod sum;
 
 pub use argmax::argmax;
 pub(crate) use argmax::maximum;
@@ -15,6 +16,7 @@ pub use float::Float;
 pub use numpy_f32_cos_sin::numpy_f32_cos_sin;
 pub(crate) use python_float::{clip, modulo, squared};
 pub use scalar::Scalar;
+pub(crate) use sum::sum;
 
 /// Marks the branch that calls it as rare, so that the compiler keeps it a branch. The processor then predicts it,
 /// whereas a conditional move would make every step wait for the comparison. To be replaced by `std::hint::cold_path`

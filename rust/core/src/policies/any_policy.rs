@@ -1,6 +1,5 @@
 //! A policy chosen at run time.
 
-use super::tie_breaking::random_action;
 use super::{Policy, Softmax, TieBreaking, Ucb};
 use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::random::Rng;
@@ -134,7 +133,10 @@ impl Policy for AnyPolicy {
 /// A random available action.
 #[inline]
 pub(crate) fn random_available_action(values: &[f64], rng: &mut impl Rng) -> usize {
-    random_action(values, is_available, rng)
+    let actions = || values.iter().enumerate().filter(|(_, value)| is_available(value)).map(|(action, _)| action);
+    let chosen = rng.integers(actions().count() as u32) as usize;
+    // The first action, if none is available.
+    actions().nth(chosen).unwrap_or(0)
 }
 
 /// Whether an action with this value is available.

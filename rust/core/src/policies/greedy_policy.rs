@@ -26,9 +26,7 @@ impl GreedyPolicy {
             values.iter_mut().zip(*table).for_each(|(sum, value)| *sum += value);
         }
         if let Some(masks) = masks.filter(|masks| masks.len() == values.len()) {
-            for (value, available) in values.iter_mut().zip(masks) {
-                *value = if *available { *value } else { f64::NEG_INFINITY };
-            }
+            mask(&mut values, masks);
         }
         Self { values, num_actions }
     }
@@ -53,9 +51,7 @@ impl GreedyPolicy {
     /// As for `action`.
     pub fn action_among(&self, rows: impl AsRef<[u32]>, available: &[bool]) -> usize {
         let mut values = self.action_values(rows);
-        for (value, available) in values.iter_mut().zip(available) {
-            *value = if *available { *value } else { f64::NEG_INFINITY };
-        }
+        mask(&mut values, available);
         argmax(&values)
     }
 
@@ -71,6 +67,13 @@ impl GreedyPolicy {
             sums.iter_mut().zip(row).for_each(|(sum, value)| *sum = if index == 0 { *value } else { *sum + value });
         }
         sums
+    }
+}
+
+/// Replaces the values of unavailable actions by -∞.
+fn mask(values: &mut [f64], available: &[bool]) {
+    for (value, _) in values.iter_mut().zip(available).filter(|(_, available)| !**available) {
+        *value = f64::NEG_INFINITY;
     }
 }
 

@@ -16,11 +16,3 @@ pub use policy::Policy;
 pub use softmax::Softmax;
 pub use tie_breaking::TieBreaking;
 pub use ucb::Ucb;
-
-/// The sum from left to right, starting with the first number, so that its bits do not depend on the machine.
-/// (`np.sum` adds pairwise and would round differently.)
-#[inline]
-fn sum(mut numbers: impl Iterator<Item = f64>) -> f64 {
-    let first = numbers.next().unwrap_or(0.0);
-    numbers.fold(first, |total, number| total + number)
-}

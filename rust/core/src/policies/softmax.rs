@@ -1,8 +1,8 @@
 //! The softmax policy.
 
+use super::Policy;
 use super::any_policy::is_available;
-use super::{Policy, sum};
-use crate::numeric::maximum;
+use crate::numeric::{maximum, sum};
 use crate::random::Rng;
 
 /// The softmax (Boltzmann) policy over the available actions: π(a) ∝ exp(Q(a) / τ) with temperature τ (Sutton & Barto,

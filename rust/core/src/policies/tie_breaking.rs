@@ -2,8 +2,7 @@
 
 use std::hint::select_unpredictable;
 
-use super::sum;
-use crate::numeric::argmax;
+use crate::numeric::{argmax, sum};
 use crate::random::Rng;
 
 /// The rule that selects the greedy action if several have the maximal value.
@@ -86,15 +85,6 @@ fn tied_action(values: &[f64], largest: f64, ties: usize, rng: &mut impl Rng) ->
         left = left.wrapping_sub(usize::from(eligible));
     }
     chosen
-}
-
-/// A random action among those whose values satisfy `eligible`.
-#[inline]
-pub(super) fn random_action(values: &[f64], eligible: impl Fn(&f64) -> bool, rng: &mut impl Rng) -> usize {
-    let actions = || values.iter().enumerate().filter(|(_, value)| eligible(value)).map(|(action, _)| action);
-    let chosen = rng.integers(actions().count() as u32) as usize;
-    // No action is eligible if the maximum is NaN. The run has then diverged and stops after this episode.
-    actions().nth(chosen).unwrap_or(0)
 }
 
 #[cfg(test)]

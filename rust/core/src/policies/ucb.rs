@@ -1,10 +1,11 @@
 //! Upper-confidence-bound action selection.
 
+use super::TieBreaking;
 use super::any_policy::is_available;
-use super::{TieBreaking, sum};
 use crate::StopFlag;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::memory::{AllocationError, filled};
+use crate::numeric::{argmax, sum};
 use crate::random::Rng;
 
 /// Chooses argmaxₐ [Q(S, a) + c √(ln t / N(S, a))] (Sutton & Barto, equation 2.10), where N(S, a) is the number of
@@ -35,12 +36,6 @@ impl Ucb {
         Ok(Self { confidence, ties, counts, bounds: vec![0.0; num_actions] })
     }
 
-    /// The counts N(S, ·).
-    fn counts(&mut self, row: u32) -> &mut [u32] {
-        let num_actions = self.bounds.len();
-        &mut self.counts[row as usize * num_actions..][..num_actions]
-    }
-
     /// The upper bounds of the values.
     #[inline]
     fn bounds(&mut self, row: u32, values: &[f64]) -> &[f64] {
@@ -58,7 +53,7 @@ impl Ucb {
     pub(super) fn choose(&mut self, row: u32, values: &[f64], rng: &mut impl Rng) -> usize {
         let ties = self.ties;
         let action = ties.greedy(self.bounds(row, values), rng);
-        let count = &mut self.counts(row)[action];
+        let count = &mut self.counts[row as usize * values.len() + action];
         *count = count.saturating_add(1);
         action
     }
@@ -67,7 +62,7 @@ impl Ucb {
     pub(super) fn expected_value(&mut self, row: u32, values: &[f64]) -> f64 {
         let ties = self.ties;
         let bounds = self.bounds(row, values);
-        let best = crate::numeric::argmax(bounds);
+        let best = argmax(bounds);
         if ties == TieBreaking::First {
             return values[best];
         }

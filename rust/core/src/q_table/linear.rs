@@ -2,6 +2,7 @@
 //! right (Sutton & Barto, equation 9.8). With one active row, as on a grid, it is the value of that row.
 
 use super::QTable;
+use crate::numeric::sum;
 use crate::schedules::{LoggedUpdate, StepSize};
 
 /// The update at a terminal state.
@@ -51,7 +52,7 @@ impl<const N: usize> QTable<N> {
         {
             return self.row(row)[action];
         }
-        sum_values(rows.as_ref().iter().map(|&row| self.values[self.weight_index(row, action)]))
+        sum(rows.as_ref().iter().map(|&row| self.values[self.weight_index(row, action)]))
     }
 
     /// The index of the weight of an action in a row, as used for step sizes and traces.
@@ -163,13 +164,6 @@ pub(crate) fn sum_rows<const A: usize>(mut rows: impl Iterator<Item = [f64; A]>)
         }
     }
     sums
-}
-
-/// The sum of the values of one action.
-#[inline(always)]
-pub(crate) fn sum_values(mut values: impl Iterator<Item = f64>) -> f64 {
-    let first = values.next().unwrap_or(0.0);
-    values.fold(first, |sum, value| sum + value)
 }
 
 #[cfg(test)]

@@ -5,5 +5,5 @@ mod moved_values;
 mod table;
 
 pub use linear::TerminalUpdate;
-pub(crate) use linear::{sum_rows, sum_values};
+pub(crate) use linear::sum_rows;
 pub use table::QTable;

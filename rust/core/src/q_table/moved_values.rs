@@ -1,8 +1,9 @@
 //! Action values while a learner stores some of the values after the rows.
 
-use super::{QTable, sum_rows, sum_values};
+use super::{QTable, sum_rows};
+use crate::numeric::sum;
 
-impl<const N: usize> QTable<N> {
+impl QTable {
     /// The values of the rows, and those that a learner stores after them.
     #[inline(always)]
     pub(crate) fn storage_mut(&mut self) -> &mut Vec<f64> {
@@ -28,7 +29,7 @@ impl<const N: usize> QTable<N> {
     /// [`value`](Self::value) with the same slots.
     #[inline(always)]
     pub(crate) fn value_at(&self, slots: &[u32], rows: &[u32], action: usize) -> f64 {
-        sum_values(rows.iter().map(|&row| self.values[slots[self.weight_index(row, action)] as usize]))
+        sum(rows.iter().map(|&row| self.values[slots[self.weight_index(row, action)] as usize]))
     }
 
     /// Sums rows of `A` values for all actions at once, in registers.

@@ -21,9 +21,7 @@ impl Mt19937 {
     pub fn new(seed: u32) -> Self {
         Self { engine: Mt::new(seed), drawn: Vec::new() }
     }
-}
 
-impl Mt19937 {
     #[inline]
     fn next_u32(&mut self) -> u32 {
         match self.drawn.pop() {

@@ -52,9 +52,7 @@ impl LearningRate {
         let visits = filled(&0, weights, stop)?;
         Ok(Self { visits, min, uniform: false, ..Self::scheduled(Schedule::constant(initial), n_active) })
     }
-}
 
-impl LearningRate {
     /// The number of active rows of an observation, which share the learning rate.
     pub fn n_active(&self) -> f64 {
         self.n_active

@@ -6,6 +6,6 @@ mod step_size;
 mod update_log;
 
 pub use learning_rate::LearningRate;
-pub use schedule::{Decay, Schedule};
+pub use schedule::Schedule;
 pub use step_size::StepSize;
 pub use update_log::{LoggedUpdate, UpdateLog};

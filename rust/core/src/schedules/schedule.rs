@@ -2,9 +2,7 @@
 
 /// The change of a rate after an episode.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Decay {
-    /// The rate does not change.
-    Constant,
+enum Decay {
     /// Subtracts a constant while the rate is above its minimum. The result is not clamped, as in the article, so
     /// rounding may leave it a few 1e-14 below the minimum.
     Linear {
@@ -32,7 +30,7 @@ pub struct Schedule {
 impl Schedule {
     /// The constant `value`.
     pub fn constant(value: f64) -> Self {
-        Self { value, min: value, warm_up: 0, decay: Decay::Constant, is_final: true }
+        Self { value, min: value, warm_up: 0, decay: Decay::Linear { reduction: 0.0 }, is_final: true }
     }
 
     /// `value` for the first `warm_up` episodes, then a linear decay to `min` over the rest of the `episodes`.
@@ -73,7 +71,6 @@ impl Schedule {
             self.warm_up -= 1;
         } else if self.value > self.min {
             match self.decay {
-                Decay::Constant => {}
                 Decay::Linear { reduction } => self.value -= reduction,
                 Decay::Exponential { factor } => self.value = (self.value * factor).max(self.min),
             }

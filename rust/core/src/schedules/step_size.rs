@@ -8,7 +8,8 @@ use crate::checkpoint::{Checkpoint, CheckpointError};
 /// weight is `row * num_actions + action`.
 pub trait StepSize {
     /// Counts a visit to a weight, before its update.
-    fn visit(&mut self, weight_index: usize);
+    #[inline]
+    fn visit(&mut self, _weight_index: usize) {}
 
     /// The step size, if it is the same for every weight, visits are not counted, and updates are not logged.
     fn uniform(&self) -> Option<f64>;
@@ -17,7 +18,8 @@ pub trait StepSize {
     fn at(&self, weight_index: usize) -> f64;
 
     /// Called after every episode.
-    fn end_episode(&mut self);
+    #[inline]
+    fn end_episode(&mut self) {}
 
     /// The log of updates; `None` if they are not logged.
     #[inline]
@@ -38,9 +40,6 @@ pub trait StepSize {
 /// their number.
 impl StepSize for f64 {
     #[inline]
-    fn visit(&mut self, _weight: usize) {}
-
-    #[inline]
     fn uniform(&self) -> Option<f64> {
         Some(*self)
     }
@@ -49,17 +48,11 @@ impl StepSize for f64 {
     fn at(&self, _weight: usize) -> f64 {
         *self
     }
-
-    #[inline]
-    fn end_episode(&mut self) {}
 }
 
 /// A scheduled step size, the same for each active row: unlike [`LearningRate`](super::LearningRate), it is not divided by
 /// their number.
 impl StepSize for Schedule {
-    #[inline]
-    fn visit(&mut self, _weight: usize) {}
-
     #[inline]
     fn uniform(&self) -> Option<f64> {
         Some(self.value())

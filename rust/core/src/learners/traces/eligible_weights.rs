@@ -32,7 +32,7 @@ impl Traces {
 
     /// Begins a step: the values of the eligible weights move to their places.
     #[inline(always)]
-    pub fn begin_step<const N: usize>(&mut self, table: &mut QTable<N>) {
+    pub fn begin_step(&mut self, table: &mut QTable) {
         if !self.moved {
             self.align(table.storage_mut());
             self.move_all(table.storage_mut(), |weight, place| (weight, place));
@@ -41,7 +41,7 @@ impl Traces {
     }
 
     /// Moves all values back into the rows of the table.
-    pub fn complete_table<const N: usize>(&mut self, table: &mut QTable<N>) {
+    pub fn complete_table(&mut self, table: &mut QTable) {
         if self.moved {
             self.move_all(table.storage_mut(), |weight, place| (place, weight));
             self.moved = false;
@@ -83,7 +83,7 @@ impl Traces {
 
     /// Sets the trace of a weight to 0.
     #[inline(always)]
-    pub(super) fn remove_weight<const N: usize>(&mut self, table: &mut QTable<N>, weight: usize) {
+    pub(super) fn remove_weight(&mut self, table: &mut QTable, weight: usize) {
         if let Some(place) = self.place(weight) {
             self.remove(table.storage_mut(), place);
         }
@@ -106,7 +106,7 @@ impl Traces {
     }
 
     /// z ← 0.
-    pub fn clear<const N: usize>(&mut self, table: &mut QTable<N>) {
+    pub fn clear(&mut self, table: &mut QTable) {
         if self.moved {
             // A single pass moves the values back and frees their places.
             let (values, moved) = table.storage_mut().split_at_mut(self.base);

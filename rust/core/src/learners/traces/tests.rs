@@ -229,7 +229,7 @@ proptest! {
 
 /// The traces of two actions after these visits, with γλ = 0.5.
 fn traces_after(kind: TraceKind, actions: &[usize]) -> [f64; 2] {
-    let mut table = QTable::<2>::new(vec![0.0; 2], 2);
+    let mut table = QTable::<0>::new(vec![0.0; 2], 2);
     let mut traces = Traces::new(2, 0.0, &StopFlag::new()).expect("a few weights");
     for &action in actions {
         traces.begin_step(&mut table);
@@ -248,7 +248,7 @@ fn each_kind_changes_the_traces_as_defined() {
 
 #[test]
 fn a_small_trace_is_found_after_all_were_0_and_decayed_to_nothing() {
-    let mut table = QTable::<1>::new(vec![0.0; 2], 1);
+    let mut table = QTable::<0>::new(vec![0.0; 2], 1);
     let mut traces = Traces::new(2, 0.2, &StopFlag::new()).expect("a few weights");
     traces.begin_step(&mut table);
     traces.decay(&mut table, 0.0);
@@ -260,7 +260,7 @@ fn a_small_trace_is_found_after_all_were_0_and_decayed_to_nothing() {
 
 #[test]
 fn a_trace_at_the_cutoff_is_removed_and_the_others_stay() {
-    let mut table = QTable::<1>::new(vec![1.0, 2.0, 3.0, 4.0], 1);
+    let mut table = QTable::<0>::new(vec![1.0, 2.0, 3.0, 4.0], 1);
     let mut traces = Traces::new(4, 0.25, &StopFlag::new()).expect("a few weights");
     traces.begin_step(&mut table);
     for row in 0..4 {

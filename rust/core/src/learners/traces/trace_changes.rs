@@ -9,9 +9,9 @@ impl Traces {
     /// Replaces the traces of a state-action pair, one after the other, by a function of the trace. They become active.
     /// Returns Q(S, A).
     #[inline(always)]
-    pub fn update<const N: usize>(
+    pub fn update(
         &mut self,
-        table: &mut QTable<N>,
+        table: &mut QTable,
         rows: impl AsRef<[u32]>,
         action: usize,
         change: impl Fn(f64) -> f64,
@@ -47,12 +47,7 @@ impl Traces {
 
     /// Sets the traces of a state-action pair to 1. Returns Q(S, A).
     #[inline(always)]
-    pub(super) fn replace<const N: usize>(
-        &mut self,
-        table: &mut QTable<N>,
-        rows: impl AsRef<[u32]>,
-        action: usize,
-    ) -> f64 {
+    pub(super) fn replace(&mut self, table: &mut QTable, rows: impl AsRef<[u32]>, action: usize) -> f64 {
         let weights = weight_indices(rows.as_ref(), table.num_actions(), action);
         self.smallest = self.smallest.min(1.0);
         self.grow(weights.len(), table.storage_mut());

@@ -8,15 +8,15 @@ use crate::schedules::{LearningRate, StepSize};
 impl Traces {
     /// w ← w + α δ z.
     #[inline(always)]
-    pub fn apply_td_error<const N: usize>(&mut self, table: &mut QTable<N>, learning_rate: &LearningRate, error: f64) {
+    pub fn apply_td_error(&mut self, table: &mut QTable, learning_rate: &LearningRate, error: f64) {
         match learning_rate.uniform() {
-            Some(step_size) => self.pass::<N, true, false>(table, step_size * error, 1.0),
+            Some(step_size) => self.pass::<true, false>(table, step_size * error, 1.0),
             None => self.apply_each(table, |weight, trace| learning_rate.at(weight) * error * trace),
         }
     }
 
     /// Adds to each eligible weight a function of its index and its trace.
-    fn apply_each<const N: usize>(&mut self, table: &mut QTable<N>, change: impl Fn(usize, f64) -> f64) {
+    fn apply_each(&mut self, table: &mut QTable, change: impl Fn(usize, f64) -> f64) {
         let values = &mut table.storage_mut()[self.base..];
         let traces = self.weights.iter().zip(&*self.traces).take(self.count);
         for (value, (&weight, &trace)) in values.iter_mut().zip(traces) {
@@ -28,24 +28,24 @@ impl Traces {
 
     /// z ← γλ z, where `factor` is γλ; traces whose magnitudes fall to the cutoff become 0.
     #[inline(always)]
-    pub fn decay<const N: usize>(&mut self, table: &mut QTable<N>, factor: f64) {
+    pub fn decay(&mut self, table: &mut QTable, factor: f64) {
         self.bound_magnitudes(factor);
-        self.pass::<N, false, true>(table, 0.0, factor);
+        self.pass::<false, true>(table, 0.0, factor);
         self.remove_zeros(table.storage_mut());
     }
 
     /// [`apply_td_error`](Self::apply_td_error) and [`decay`](Self::decay) in one pass.
     #[inline(always)]
-    pub fn apply_td_error_and_decay<const N: usize>(
+    pub fn apply_td_error_and_decay(
         &mut self,
-        table: &mut QTable<N>,
+        table: &mut QTable,
         learning_rate: &LearningRate,
         error: f64,
         factor: f64,
     ) {
         if let Some(step_size) = learning_rate.uniform() {
             self.bound_magnitudes(factor);
-            self.pass::<N, true, true>(table, step_size * error, factor);
+            self.pass::<true, true>(table, step_size * error, factor);
             self.remove_zeros(table.storage_mut());
         } else {
             self.apply_td_error(table, learning_rate, error);
@@ -54,12 +54,7 @@ impl Traces {
     }
 
     #[inline(always)]
-    fn pass<const N: usize, const APPLIES: bool, const DECAYS: bool>(
-        &mut self,
-        table: &mut QTable<N>,
-        step: f64,
-        factor: f64,
-    ) {
+    fn pass<const APPLIES: bool, const DECAYS: bool>(&mut self, table: &mut QTable, step: f64, factor: f64) {
         let len = self.count.next_multiple_of(BLOCK);
         let values = &mut table.storage_mut()[self.base..][..len];
         let cutoff = (self.smallest == 0.0).then_some(self.cutoff);

@@ -123,7 +123,7 @@ impl Traces {
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn reserve<const N: usize>(&self, table: &mut QTable<N>) -> Result<(), AllocationError> {
+    pub fn reserve(&self, table: &mut QTable) -> Result<(), AllocationError> {
         let places = self.slots.len().next_multiple_of(BLOCK);
         let storage = table.storage_mut();
         reserve(storage, (self.slots.len() + MAX_PADDING + places).saturating_sub(storage.len()))
@@ -157,19 +157,13 @@ impl Traces {
 
     /// The sum of the traces of a state-action pair, from left to right.
     #[inline(always)]
-    pub fn sum<const N: usize>(&self, table: &QTable<N>, rows: &[u32], action: usize) -> f64 {
+    pub fn sum(&self, table: &QTable, rows: &[u32], action: usize) -> f64 {
         rows.iter().fold(0.0, |sum, &row| sum + self.get(table.weight_index(row, action)))
     }
 
     /// Changes the traces for a visit to a state-action pair. Returns Q(S, A).
     #[inline(always)]
-    pub fn visit<const N: usize>(
-        &mut self,
-        kind: TraceKind,
-        table: &mut QTable<N>,
-        rows: impl AsRef<[u32]>,
-        action: usize,
-    ) -> f64 {
+    pub fn visit(&mut self, kind: TraceKind, table: &mut QTable, rows: impl AsRef<[u32]>, action: usize) -> f64 {
         if kind == TraceKind::Accumulating {
             return self.update(table, rows, action, |trace| trace + 1.0);
         }
@@ -186,13 +180,13 @@ impl Traces {
 
     /// The action values of a state, as [`QTable::action_values`].
     #[inline(always)]
-    pub fn action_values<'a, const N: usize>(&self, table: &'a mut QTable<N>, rows: impl AsRef<[u32]>) -> &'a [f64] {
+    pub fn action_values<'a>(&self, table: &'a mut QTable, rows: impl AsRef<[u32]>) -> &'a [f64] {
         table.values_at(&self.slots, &rows)
     }
 
     /// Q(S, A), as [`QTable::value`].
     #[inline(always)]
-    pub fn value<const N: usize>(&self, table: &QTable<N>, rows: &[u32], action: usize) -> f64 {
+    pub fn value(&self, table: &QTable, rows: &[u32], action: usize) -> f64 {
         table.value_at(&self.slots, rows, action)
     }
 
@@ -217,7 +211,7 @@ impl Traces {
 
     /// Subtracts a number from the weights of a state-action pair, whose traces must be active.
     #[inline(always)]
-    pub fn subtract<const N: usize>(&self, table: &mut QTable<N>, rows: &[u32], action: usize, number: f64) {
+    pub fn subtract(&self, table: &mut QTable, rows: &[u32], action: usize, number: f64) {
         for &row in rows {
             let slot = self.slots[table.weight_index(row, action)];
             table.storage_mut()[slot as usize] -= number;
