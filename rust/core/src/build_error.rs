@@ -28,17 +28,29 @@ impl BuildError {
         Self::Invalid { setting, expected: expected.to_string(), got: got.to_string() }
     }
 
-    /// The error of a number outside `[low, high]`, or NaN.
+    /// Refuses a setting that is not valid, with what would be and what was given.
+    ///
+    /// # Errors
+    /// `Invalid` if `is_valid` is false.
+    pub fn check(
+        is_valid: bool,
+        setting: &'static str,
+        expected: impl fmt::Display,
+        got: impl fmt::Display,
+    ) -> Result<(), Self> {
+        if is_valid { Ok(()) } else { Err(Self::invalid(setting, expected, got)) }
+    }
+
+    /// Refuses a number outside `[low, high]`, and NaN.
     ///
     /// # Errors
     /// `Invalid` for such a number.
     pub(crate) fn check_number(setting: &'static str, low: f64, high: f64, number: f64) -> Result<(), Self> {
-        match (low..=high).contains(&number) {
-            true => Ok(()),
-            false if high == f64::MAX => {
-                Err(Self::invalid(setting, format!("a finite number of at least {low}"), number))
-            }
-            false => Err(Self::invalid(setting, format!("a number in [{low}, {high}]"), number)),
+        let is_valid = (low..=high).contains(&number);
+        if high == f64::MAX {
+            Self::check(is_valid, setting, format_args!("a finite number of at least {low}"), number)
+        } else {
+            Self::check(is_valid, setting, format_args!("a number in [{low}, {high}]"), number)
         }
     }
 }

@@ -65,13 +65,10 @@ where
     /// The shape of the tables, from the features, the environment and its first observation.
     fn shape(&self, mut rng: Pcg64) -> Result<Shape, BuildError> {
         let (rows, actions) = (self.features.len(), self.env.num_actions());
-        if actions == 0 || u32::try_from(actions).is_err() {
-            return Err(BuildError::invalid("the number of actions", "at least 1 and less than 2**32", actions));
-        }
+        let fits = |count: usize| count > 0 && u32::try_from(count).is_ok();
+        BuildError::check(fits(actions), "the number of actions", "at least 1 and less than 2**32", actions)?;
         self.features.check()?;
-        if rows == 0 || u32::try_from(rows).is_err() {
-            return Err(BuildError::invalid("the number of rows of the features", "from 1 to 2**32 - 1", rows));
-        }
+        BuildError::check(fits(rows), "the number of rows of the features", "from 1 to 2**32 - 1", rows)?;
         let observation = self.env.observe(&self.env.reset(&mut rng));
         match self.features.active_rows(&observation) {
             Ok(active) => Ok(Shape { rows, actions, n_active: active.as_ref().len() }),

@@ -18,13 +18,10 @@ impl<E, F> TrainerBuilder<E, F> {
     /// Checks everything but the environment and the features.
     pub(super) fn check(&self, shape: Shape) -> Result<(), BuildError> {
         BuildError::check_number("discount", 0.0, 1.0, self.discount)?;
-        if self.max_episode_steps == Some(0) {
-            return Err(BuildError::invalid("max_episode_steps", "at least 1", 0));
-        }
-        if self.terminal_update == TerminalUpdate::Assign && shape.n_active > 1 {
-            let got = format!("Assign with {} active rows", shape.n_active);
-            return Err(BuildError::invalid("terminal_update", "Target with several active rows", got));
-        }
+        BuildError::check(self.max_episode_steps != Some(0), "max_episode_steps", "at least 1", 0)?;
+        let fits = self.terminal_update == TerminalUpdate::Target || shape.n_active <= 1;
+        let got = format_args!("Assign with {} active rows", shape.n_active);
+        BuildError::check(fits, "terminal_update", "Target with several active rows", got)?;
         self.check_initial_values(shape)?;
         self.check_learning_rate(shape.n_active)?;
         self.check_policy(shape.n_active)?;
@@ -33,24 +30,25 @@ impl<E, F> TrainerBuilder<E, F> {
 
     fn check_initial_values(&self, shape: Shape) -> Result<(), BuildError> {
         match &self.initial_values {
-            InitialValues::Constant(value) if !value.is_finite() => {
-                Err(BuildError::invalid("initial_value", "a finite number", value))
+            InitialValues::Constant(value) => {
+                BuildError::check(value.is_finite(), "initial_value", "a finite number", value)
             }
-            &InitialValues::Uniform { low, high } if !(low.is_finite() && high.is_finite() && low <= high) => {
-                Err(BuildError::invalid("initial_uniform", "finite bounds in order", format!("{low} and {high}")))
+            &InitialValues::Uniform { low, high } => {
+                let in_order = low.is_finite() && high.is_finite() && low <= high;
+                let got = format_args!("{low} and {high}");
+                BuildError::check(in_order, "initial_uniform", "finite bounds in order", got)
             }
-            InitialValues::Table(table) if table.shape() != (shape.rows, shape.actions) => {
-                let expected = format!(
+            InitialValues::Table(table) => {
+                let (rows, actions) = table.shape();
+                let expected = format_args!(
                     "one of {} rows and {} actions, as the features and the environment have",
                     shape.rows, shape.actions
                 );
-                let (rows, actions) = table.shape();
-                Err(BuildError::invalid("initial_table", expected, format!("{rows} rows and {actions} actions")))
+                let got = format_args!("{rows} rows and {actions} actions");
+                BuildError::check((rows, actions) == (shape.rows, shape.actions), "initial_table", expected, got)?;
+                let is_finite = table.values().iter().all(|value| value.is_finite());
+                BuildError::check(is_finite, "initial_table", "a table of finite values", "NaN or infinity")
             }
-            InitialValues::Table(table) if table.values().iter().any(|value| !value.is_finite()) => {
-                Err(BuildError::invalid("initial_table", "a table of finite values", "NaN or infinity"))
-            }
-            _ => Ok(()),
         }
     }
 
@@ -71,72 +69,54 @@ impl<E, F> TrainerBuilder<E, F> {
 
     fn check_schedule(&self, setting: &'static str, schedule: &ScheduleSpec, most: f64) -> Result<(), BuildError> {
         let check_minimum = |minimum, value| {
-            let expected = format!("a schedule whose minimum is in [0, {value}]");
-            if (0.0..=value).contains(&minimum) { Ok(()) } else { Err(BuildError::invalid(setting, expected, minimum)) }
+            let expected = format_args!("a schedule whose minimum is in [0, {value}]");
+            BuildError::check((0.0..=value).contains(&minimum), setting, expected, minimum)
         };
         match *schedule {
             ScheduleSpec::Constant { value } => BuildError::check_number(setting, 0.0, most, value),
             ScheduleSpec::Exponential { value, minimum, decay, .. } => {
                 BuildError::check_number(setting, 0.0, most, value)?;
                 check_minimum(minimum, value)?;
-                if (0.0..=1.0).contains(&decay) {
-                    Ok(())
-                } else {
-                    Err(BuildError::invalid(setting, "a schedule whose decay is in [0, 1]", decay))
-                }
+                let is_share = (0.0..=1.0).contains(&decay);
+                BuildError::check(is_share, setting, "a schedule whose decay is in [0, 1]", decay)
             }
             ScheduleSpec::Linear { value, minimum, warm_up } => {
                 BuildError::check_number(setting, 0.0, most, value)?;
                 check_minimum(minimum, value)?;
-                match self.episodes {
-                    Some(episodes) if warm_up < episodes => Ok(()),
-                    Some(episodes) => Err(BuildError::invalid(
-                        setting,
-                        format!("a schedule whose warm-up is less than the {episodes} episodes"),
-                        warm_up,
-                    )),
-                    None => {
-                        Err(BuildError::invalid("episodes", format!("given, because {setting} falls linearly"), "none"))
-                    }
-                }
+                let Some(episodes) = self.episodes else {
+                    let expected = format_args!("given, because {setting} falls linearly");
+                    return Err(BuildError::invalid("episodes", expected, "none"));
+                };
+                let expected = format_args!("a schedule whose warm-up is less than the {episodes} episodes");
+                BuildError::check(warm_up < episodes, setting, expected, warm_up)
             }
         }
     }
 
     fn check_policy(&self, n_active: usize) -> Result<(), BuildError> {
         let is_softmax = matches!(self.policy, PolicySpec::Softmax { .. });
-        if self.algorithm.learns_preferences() && !is_softmax {
-            return Err(BuildError::invalid(
-                "policy",
-                "Softmax for an algorithm that learns preferences",
-                name(&self.policy),
-            ));
-        }
+        let fits = is_softmax || !self.algorithm.learns_preferences();
+        BuildError::check(fits, "policy", "Softmax for an algorithm that learns preferences", name(&self.policy))?;
         match &self.policy {
             PolicySpec::EpsilonGreedy { epsilon, .. } => self.check_schedule("epsilon", epsilon, 1.0),
-            PolicySpec::Softmax { temperature } if !(*temperature > 0.0 && temperature.is_finite()) => {
-                Err(BuildError::invalid("temperature", "a finite number above 0", temperature))
+            &PolicySpec::Softmax { temperature } => {
+                let is_valid = temperature > 0.0 && temperature.is_finite();
+                BuildError::check(is_valid, "temperature", "a finite number above 0", temperature)
             }
-            PolicySpec::Softmax { .. } => Ok(()),
-            PolicySpec::Ucb { .. } if n_active > 1 => {
-                Err(BuildError::invalid("policy", "one without counts for several active rows", "Ucb"))
+            &PolicySpec::Ucb { confidence, .. } => {
+                BuildError::check(n_active <= 1, "policy", "one without counts for several active rows", "Ucb")?;
+                let fits = !self.algorithm.needs_probabilities();
+                BuildError::check(fits, "policy", "one with probabilities for this algorithm", "Ucb")?;
+                BuildError::check_number("confidence", 0.0, f64::MAX, confidence)
             }
-            PolicySpec::Ucb { .. } if self.algorithm.needs_probabilities() => {
-                Err(BuildError::invalid("policy", "one with probabilities for this algorithm", "Ucb"))
-            }
-            &PolicySpec::Ucb { confidence, .. } => BuildError::check_number("confidence", 0.0, f64::MAX, confidence),
         }
     }
 
     fn check_algorithm(&self, n_active: usize) -> Result<(), BuildError> {
-        if self.algorithm.needs_single_rows() && n_active > 1 {
-            let got = format!("{n_active} for {:?}", self.algorithm);
-            return Err(BuildError::invalid(
-                "the number of active rows",
-                "1 for an algorithm that needs single rows",
-                got,
-            ));
-        }
+        let fits = n_active <= 1 || !self.algorithm.needs_single_rows();
+        let got = format_args!("{n_active} for {:?}", self.algorithm);
+        let expected = "1 for an algorithm that needs single rows";
+        BuildError::check(fits, "the number of active rows", expected, got)?;
         let check = |option, number| {
             let (low, high) = range_of(option);
             BuildError::check_number(option, low, high, number)
@@ -177,10 +157,8 @@ impl<E, F> TrainerBuilder<E, F> {
     }
 
     fn check_time_limit(&self) -> Result<(), BuildError> {
-        match self.max_episode_steps {
-            Some(_) => Ok(()),
-            None => Err(BuildError::invalid("max_episode_steps", "given for a Monte Carlo method", "none")),
-        }
+        let has_limit = self.max_episode_steps.is_some();
+        BuildError::check(has_limit, "max_episode_steps", "given for a Monte Carlo method", "none")
     }
 }
 

@@ -21,7 +21,7 @@ impl Edges {
     /// # Panics
     /// If the edges are not ascending, or one is NaN.
     pub fn new(edges: Vec<f64>) -> Self {
-        assert!(edges.is_sorted() && !edges.iter().any(|edge| edge.is_nan()), "edges must be ascending");
+        assert!(is_ascending(&edges), "edges must be ascending");
         Self(edges)
     }
 
@@ -37,11 +37,8 @@ impl Edges {
     /// # Errors
     /// If the edges are not ascending, or one is NaN.
     pub fn try_new(edges: Vec<f64>) -> Result<Self, BuildError> {
-        if edges.is_sorted() && !edges.iter().any(|edge| edge.is_nan()) {
-            Ok(Self(edges))
-        } else {
-            Err(BuildError::invalid("edges", "ascending numbers", format!("{edges:?}")))
-        }
+        BuildError::check(is_ascending(&edges), "edges", "ascending numbers", format_args!("{edges:?}"))?;
+        Ok(Self(edges))
     }
 
     /// The number of bins, one more than edges.
@@ -70,6 +67,10 @@ impl Edges {
         }
         bins
     }
+}
+
+fn is_ascending(edges: &[f64]) -> bool {
+    edges.is_sorted() && !edges.iter().any(|edge| edge.is_nan())
 }
 
 /// A grid of bins for observations of dtype `T`: one row per cell, in C order.

@@ -24,28 +24,19 @@ impl<T: Float, const M: usize> TileCoding<T, M> {
     /// As for `try_new`.
     pub fn try_with_capacity(low: &[f64], high: &[f64], tiles: &[u32], tilings: u32) -> Result<Self, BuildError> {
         for (setting, len) in [("high", high.len()), ("tiles", tiles.len())] {
-            if len != low.len() {
-                return Err(BuildError::invalid(setting, format!("of the length of low, {}", low.len()), len));
-            }
+            BuildError::check(len == low.len(), setting, format_args!("of the length of low, {}", low.len()), len)?;
         }
-        if low.is_empty() {
-            return Err(BuildError::invalid("low", "the bounds of at least one component", "none"));
-        }
-        if !(1..=M).contains(&(tilings as usize)) {
-            return Err(BuildError::invalid("tilings", format!("a number in [1, {M}]"), tilings));
-        }
-        if let Some(component) = tiles.iter().position(|&tiles| tiles == 0 || tiles == u32::MAX) {
-            let got = format!("{} for component {component}", tiles[component]);
-            return Err(BuildError::invalid("tiles", "numbers from 1 to 2**32 - 2", got));
+        BuildError::check(!low.is_empty(), "low", "the bounds of at least one component", "none")?;
+        let has_room = (1..=M).contains(&(tilings as usize));
+        BuildError::check(has_room, "tilings", format_args!("a number in [1, {M}]"), tilings)?;
+        for (component, &tiles) in tiles.iter().enumerate() {
+            let got = format_args!("{tiles} for component {component}");
+            BuildError::check((1..u32::MAX).contains(&tiles), "tiles", "numbers from 1 to 2**32 - 2", got)?;
         }
         let rows = tiles.iter().try_fold(u64::from(tilings), |rows, &tiles| rows.checked_mul(u64::from(tiles) + 1));
-        if rows.is_none_or(|rows| rows > u64::from(u32::MAX)) {
-            return Err(BuildError::invalid(
-                "tiles",
-                "few enough for a table of less than 2**32 rows",
-                format!("{tiles:?}"),
-            ));
-        }
+        let fits = rows.is_some_and(|rows| rows <= u64::from(u32::MAX));
+        let expected = "few enough for a table of less than 2**32 rows";
+        BuildError::check(fits, "tiles", expected, format_args!("{tiles:?}"))?;
         check_bounds(low.iter().copied().zip(high.iter().copied()))?;
         Ok(Self::new(low, high, tiles, tilings))
     }
@@ -54,10 +45,8 @@ impl<T: Float, const M: usize> TileCoding<T, M> {
 /// Checks that each component has finite bounds in order.
 pub(super) fn check_bounds(bounds: impl Iterator<Item = (f64, f64)>) -> Result<(), BuildError> {
     for (component, (low, high)) in bounds.enumerate() {
-        if !(low.is_finite() && high.is_finite() && low < high) {
-            let got = format!("{high} above {low} for component {component}");
-            return Err(BuildError::invalid("high", "finite and above low", got));
-        }
+        let got = format_args!("{high} above {low} for component {component}");
+        BuildError::check(low.is_finite() && high.is_finite() && low < high, "high", "finite and above low", got)?;
     }
     Ok(())
 }

@@ -32,12 +32,10 @@ impl<T: Float> Axis<T> {
     /// If a bound is not finite, `high` is below `low`, `scale` is not above 0, or there are 2³² cells or more.
     pub fn try_new(low: T, high: T, scale: f64) -> Result<Self, BuildError> {
         let [lower, upper]: [f64; 2] = [low.into(), high.into()];
-        if !(lower.is_finite() && upper.is_finite() && lower <= upper) {
-            return Err(BuildError::invalid("high", format!("finite and at least low, {lower}"), upper));
-        }
-        if !(scale > 0.0 && (upper - lower) * scale < f64::from(u32::MAX)) {
-            return Err(BuildError::invalid("scale", "above 0, for fewer than 2**32 cells", scale));
-        }
+        let in_order = lower.is_finite() && upper.is_finite() && lower <= upper;
+        BuildError::check(in_order, "high", format_args!("finite and at least low, {lower}"), upper)?;
+        let fits = scale > 0.0 && (upper - lower) * scale < f64::from(u32::MAX);
+        BuildError::check(fits, "scale", "above 0, for fewer than 2**32 cells", scale)?;
         Ok(Self::new(low, high, scale))
     }
 

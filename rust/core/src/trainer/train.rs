@@ -19,14 +19,11 @@ impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> Trainer<T, L, R> {
     /// [the task knows them](Task::shape).
     pub fn try_new(task: T, learner: L, rng: R) -> Result<Self, BuildError> {
         let (rows, actions) = learner.shape();
-        match task.shape() {
-            Some(shape) if shape != (rows, actions) => Err(BuildError::invalid(
-                "table",
-                format!("one of {} rows and {} actions, as the task has", shape.0, shape.1),
-                format!("{rows} rows and {actions} actions"),
-            )),
-            _ => Ok(Self::new(task, learner, rng)),
-        }
+        let shape = task.shape().unwrap_or((rows, actions));
+        let expected = format_args!("one of {} rows and {} actions, as the task has", shape.0, shape.1);
+        let got = format_args!("{rows} rows and {actions} actions");
+        BuildError::check(shape == (rows, actions), "table", expected, got)?;
+        Ok(Self::new(task, learner, rng))
     }
 
     /// Trains for this many more episodes and returns their returns. [`advance`](Self::advance) trains in smaller parts.
