@@ -33,7 +33,6 @@ def coarse_grid(facts: Facts) -> Finding | Unchecked | None:
         meaning += f" {percent(mixed)} of the states need another action than most states of their cell."
     tiles = changes(config, *_tiles(facts))
     return Finding(
-        name="grid too coarse",
         title="The grid is too coarse.",
         evidence=evidence,
         meaning=meaning,
@@ -105,7 +104,6 @@ def narrow_limits(facts: Facts) -> Finding | Unchecked | None:
     component = int(outside.mean(axis=0).argmax())
     wide = _covering(facts, observed)
     return Finding(
-        name="limits too narrow",
         title="Many states lie outside the limits of the discretizer.",
         evidence={
             "share of the last steps outside": share,
@@ -135,7 +133,6 @@ def wide_limits(facts: Facts) -> Finding | Unchecked | None:
     component = int(np.where(coarse, covered, np.inf).argmin())
     close = _covering(facts, observed)
     return Finding(
-        name="limits too wide",
         title="The limits of the discretizer are too wide to tell states apart.",
         evidence={
             f"bins or tiles of component {component}": int(counts[component]),

@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Iterable
+from dataclasses import replace
 
 import numpy as np
 
@@ -58,7 +59,7 @@ def diagnose(run: Run, optimum: Optimum | None = None, seeds: int | None = None)
             elif isinstance(found, Unchecked):
                 not_made[name] = found.reason
             else:
-                findings.append(found)
+                findings.append(replace(found, name=name))
     return Diagnosis(
         run=run,
         solved=facts.solved,

@@ -39,7 +39,6 @@ def coverage(facts: Facts) -> Finding | Unchecked | None:
     where = "; ".join(cell_in_words(facts.run, int(row), columns) for row in states[:SHOWN])
     more = 5 * facts.config.episodes
     return Finding(
-        name="coverage",
         title="Many actions were never tried" + (", or their values never changed." if facts.visits is None else "."),
         evidence={
             "share of untried actions in visited states": untried,
@@ -111,7 +110,6 @@ def exploration(facts: Facts) -> Finding | Unchecked | None:
         return None  # the advised exploration is in use already
     shown = {name: value for name, value in changed.items() if getattr(facts.config, name) != value}
     return Finding(
-        name="exploration",
         title="Exploration hardly ever reaches the goal.",
         evidence=evidence,
         meaning=meaning,
@@ -122,13 +120,9 @@ def exploration(facts: Facts) -> Finding | Unchecked | None:
 
 def _optimistic(facts: Facts) -> Mapping[str, Any]:
     """Returns initial values above every possible return: 0 if steps cost, else the best return."""
-    best = max(0.0, float(facts.run.episode_returns.max()))
-    return {"epsilon": 0.0, "initial_q": (best or _reward_scale(facts)) / facts.run.discretizer.n_active}
-
-
-def _reward_scale(facts: Facts) -> float:
-    """Returns 0 if there are costs, else 1."""
-    return 0.0 if facts.run.episode_returns.min() < 0 else 1.0
+    returns = facts.run.episode_returns
+    best = max(0.0, float(returns.max())) or (0.0 if returns.min() < 0 else 1.0)
+    return {"epsilon": 0.0, "initial_q": best / facts.run.discretizer.n_active}
 
 
 MOST_EPSILON = 0.2
@@ -163,7 +157,6 @@ def lasting_bonus(facts: Facts) -> Finding | Unchecked | None:
         return None
     lower = float(f"{0.1 * config.count_bonus * paid / (bonus * length):.1g}")
     return Finding(
-        name="lasting bonus",
         title="The bonus of exploration outweighs the rewards to the end.",
         evidence={
             "bonus of a step at the end": bonus,
@@ -181,7 +174,6 @@ def _of_epsilon(facts: Facts) -> Finding | None:
     if last <= MOST_EPSILON:
         return None
     return Finding(
-        name="lasting exploration",
         title="The agent still explores a lot at the end.",
         evidence={"epsilon of the last episode": last, "steps between random actions": 1.0 / last},
         meaning=f"One step in {1.0 / last:.2g} is random to the end. Episodes that need many right steps in "
@@ -216,7 +208,6 @@ def _of_values(facts: Facts) -> Finding | Unchecked | None:
     tried.append(change(config, exploration="epsilon_greedy", **greedy))
     advised = given(tried)
     return Finding(
-        name="lasting exploration",
         title="The agent still explores a lot at the end.",
         evidence={
             "share of the last steps with a worse action": share_worse,

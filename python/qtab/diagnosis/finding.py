@@ -27,8 +27,8 @@ class Unchecked:
 class Finding:
     """A likely reason why a run did not solve its environment."""
 
-    name: str
-    """The name of the check."""
+    name: str = field(default="", kw_only=True)
+    """The name of the check, which :func:`qtab.diagnose` sets."""
     title: str
     """The finding in one sentence."""
     evidence: Mapping[str, float]

@@ -25,7 +25,6 @@ def too_optimistic(facts: Facts) -> Finding | Unchecked | None:
     if share <= MOST_STATES:
         return None
     return Finding(
-        name="too optimistic",
         title="The initial values are too high to be unlearned in time.",
         evidence={
             "highest initial value": highest,
@@ -58,7 +57,6 @@ def too_pessimistic(facts: Facts) -> Finding | Unchecked | None:
         return None
     best = max(0.0, float(facts.run.episode_returns.max()), _best_value(facts)) / facts.run.discretizer.n_active
     return Finding(
-        name="too pessimistic",
         title="The initial values are too low for so little exploration.",
         evidence={"mean epsilon": epsilon, "share of visited states with untried actions that look worse": share},
         meaning=f"In {percent(share)} of the visited states an action was never tried, because the values of those "

@@ -24,7 +24,6 @@ def divergence(facts: Facts) -> Finding | None:
     config = facts.config
     lower = config.learning_rate / 4
     return Finding(
-        name="divergence",
         title="The values diverged.",
         evidence={"largest value": largest, "largest possible value": possible},
         meaning="Each update overshoots its target, so that the errors grow instead of shrinking.",
@@ -90,7 +89,6 @@ def slow_learning(facts: Facts) -> Finding | Unchecked | None:
     is_faster = facts.config.learning_rate < faster and not (faster >= OVERWRITING_RATE and _varies(facts))
     longer = {"episodes": 5 * facts.config.episodes}
     return Finding(
-        name="slow learning",
         title="The learning rate is too small for so few updates.",
         evidence={"mean learning rate": rate, "updates per value": updates, "initial value left": left},
         meaning=f"After {updates:,.3g} updates {percent(left)} of the initial value is still in a value.",
@@ -140,7 +138,6 @@ def noisy_values(facts: Facts) -> Finding | Unchecked | None:
         config, {"learning_rate": float(f"{config.learning_rate / 10:.4g}")}, {"learning_rate_schedule": "linear"}
     )
     return Finding(
-        name="noisy values",
         title="The values are still noisy at the end.",
         evidence={
             "learning rate of the last episode": rate,

@@ -26,7 +26,6 @@ def not_solved(facts: Facts) -> Finding | Unchecked | None:
     above = verdict.goal.threshold is not None and verdict.goal.threshold > goal
     has_better = facts.config.preset != "solved" and "solved" in presets(facts.config.env)
     return Finding(
-        name="not solved",
         title="The run did not solve its environment.",
         evidence=evidence,
         meaning=f"A return of {goal:.4g} or more counts as solved here"
@@ -55,7 +54,6 @@ def too_short(facts: Facts) -> Finding | Unchecked | None:
         return None
     more = 5 * facts.config.episodes
     return Finding(
-        name="too short",
         title="The training ended while the returns were still improving.",
         evidence={
             "mean return, last third": float(last.mean()),
@@ -113,7 +111,6 @@ def unlucky_seed(facts: Facts) -> Finding | Unchecked | None:
         return None
     rank = len(returns) + 1 - int(np.sum(returns < own))
     return Finding(
-        name="unlucky seed",
         title="The seed was unlucky.",
         evidence={
             "rank of this seed": rank,

@@ -62,7 +62,6 @@ def horizon(facts: Facts) -> Finding | Unchecked | None:
         title, other = "The discount is too small for the distance to the goal.", {"discount": better}
         advice = f"use {as_keywords(other)}"
     return Finding(
-        name="horizon",
         title=title,
         evidence=evidence,
         meaning=meaning,
@@ -84,7 +83,6 @@ def time_limit(facts: Facts) -> Finding | None:
     if timed_out <= MOST_TIMED_OUT:
         return None
     return Finding(
-        name="short time limit",
         title="The time limit may be too short to reach the goal.",
         evidence={
             "time limit": limit,
@@ -107,7 +105,6 @@ def truncation(facts: Facts) -> Finding | None:
         return None
     share = timed_out / len(facts.run.terminated)
     return Finding(
-        name="time-outs treated as terminal",
         title="Time-outs are treated as terminal states.",
         evidence={"episodes that timed out": timed_out, "share of all episodes": share},
         meaning=f"{percent(share)} of the episodes end by the time limit. The state where that happens depends on the "
