@@ -13,9 +13,9 @@ from qtab.explanation import policy_update, updates
 from qtab.explanation.choices import ObservedPolicy, ObservedStream, explained, exploring_start
 from qtab.explanation.equations import total
 from qtab.explanation.fast_forward import Start
-from qtab.explanation.largest_traces import changed, largest_traces
 from qtab.explanation.policy_update import PolicyUpdate
 from qtab.explanation.records import Choice, Trace, Update
+from qtab.explanation.updates import changed, largest_traces
 from qtab.reference.parts.actions import ActionMasks
 from qtab.reference.parts.observer import Observer
 from qtab.reference.parts.policies import Policy
