@@ -7,23 +7,24 @@ import gymnasium as gym
 import pytest
 
 import qtab
-from qtab.book.figures.chapter_08 import figure_8_2, figure_8_4, figure_8_5
+from qtab.book import TrainingExperiment
+from qtab.book.figures.chapter_08 import changing_mazes, figure_8_2
 from qtab.book.figures.chapter_10 import figure_10_5
 from qtab.config.merge import merge
 from qtab.envs.grid_worlds import dyna_maze
 
 
-def of_line(figure: Any, line: str) -> Mapping[str, Any]:
-    (found,) = (setting.config for setting in figure.EXPERIMENT.settings if setting.line == line)
+def of_line(experiment: TrainingExperiment, line: str) -> Mapping[str, Any]:
+    (found,) = (setting.config for setting in experiment.settings if setting.line == line)
     return dict(found)
 
 
 @pytest.mark.parametrize(
     ("env", "figure"),
     [
-        ("qtab/DynaMaze-v0", of_line(figure_8_2, "n = 50")),
-        ("qtab/BlockingMaze-v0", of_line(figure_8_4, "Dyna-Q+")),
-        ("qtab/ShortcutMaze-v0", of_line(figure_8_5, "Dyna-Q+")),
+        ("qtab/DynaMaze-v0", of_line(figure_8_2.EXPERIMENT, "n = 50")),
+        ("qtab/BlockingMaze-v0", of_line(changing_mazes.FIGURE_8_4, "Dyna-Q+")),
+        ("qtab/ShortcutMaze-v0", of_line(changing_mazes.FIGURE_8_5, "Dyna-Q+")),
     ],
 )
 def test_the_presets_of_mazes_are_those_of_their_figures(env: str, figure: Mapping[str, Any]) -> None:

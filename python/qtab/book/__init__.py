@@ -7,7 +7,7 @@
     result.plot()
     qtab.book.run_all("figures")
 
-Each experiment is a module in :mod:`qtab.book.figures`. It contains the settings, including those that the book leaves
+The experiments are in :mod:`qtab.book.figures`, by chapter, with their settings, including those that the book leaves
 open.
 """
 

@@ -1,6 +1,5 @@
 """Experiments that run their settings with many seeds, and measure the runs."""
 
-import time
 from abc import abstractmethod
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
@@ -11,10 +10,8 @@ from numpy.typing import NDArray
 
 from qtab._utils.progress import ProgressBar
 from qtab.book import runner
-from qtab.book.drawing import draw_lines
-from qtab.book.experiment import Experiment
+from qtab.book.experiment import Experiment, Outcome
 from qtab.book.line import Line, joined, line_from_samples
-from qtab.book.result import Draw, Result
 from qtab.book.runner import FloatArray
 from qtab.book.setting import Setting
 
@@ -39,8 +36,6 @@ class MeasuredExperiment(Experiment):
 
     settings: Sequence[Any]
     """Each is a :class:`qtab.book.setting.LineSetting`, with the name of its ``line`` and its coordinates ``x``."""
-    draw: Draw = draw_lines
-    """Draws the figure."""
 
     @property
     def line_names(self) -> Sequence[str]:
@@ -54,12 +49,8 @@ class MeasuredExperiment(Experiment):
     def _measure(self, setting: Any, seeds: range, threads: int) -> Mapping[str, Measured]:
         """Returns the measurements of a run with each seed, by the name of their line."""
 
-    def run(
-        self, runs: int | None = None, seed: int = 0, *, threads: int | None = None, progress: bool | None = None
-    ) -> Result:
-        """Runs every setting with every seed; see :func:`qtab.book.run`."""
-        runs, seed, threads = self.check_arguments(runs, seed, threads)
-        started = time.perf_counter()
+    def _run(self, runs: int, seed: int, threads: int, progress: bool | None) -> Outcome:
+        """Runs every setting with every seed."""
         counts = [min(runs, setting.max_runs or runs) for setting in self.settings]
         parts: dict[str, list[tuple[Any, Measured]]] = {}
         with ProgressBar(sum(counts), "run", progress, self.name) as bar:
@@ -77,8 +68,7 @@ class MeasuredExperiment(Experiment):
                 for name, measured in _together(batches, setting.each_run).items():
                     parts.setdefault(name, []).append((setting, measured))
         names = [name for name in {**dict.fromkeys(self.line_names), **parts} if name in parts]
-        lines = tuple(self._line(name, parts[name]) for name in names)
-        return Result(self, lines, runs, seed, time.perf_counter() - started, self.draw)
+        return Outcome([self._line(name, parts[name]) for name in names])
 
     def _line(self, name: str, parts: Sequence[tuple[Any, Measured]]) -> Line:
         """Returns the line through the points of one or several settings."""

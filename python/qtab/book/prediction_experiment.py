@@ -1,6 +1,6 @@
 """An experiment that estimates the values of a policy and makes a line of the figure from each setting."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
@@ -47,11 +47,8 @@ class PredictionSetting(LineSetting):
     """The x coordinates of its points."""
 
 
-@dataclass(frozen=True, kw_only=True, repr=False)
 class PredictionExperiment(MeasuredExperiment):
     """An experiment that estimates values with many seeds."""
-
-    settings: Sequence[PredictionSetting]
 
     def _measure(self, setting: PredictionSetting, seeds: range, threads: int) -> Mapping[str, Measured]:
         """Estimates the values with each seed."""

@@ -3,20 +3,21 @@
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import ModuleType
 
 from qtab._utils.shown import did_you_mean
 from qtab.book.experiment import Experiment
+from qtab.book.figures import random_walk
 from qtab.book.figures.chapter_02 import figure_2_1, figure_2_2, figure_2_3, figure_2_4, figure_2_5, figure_2_6
 from qtab.book.figures.chapter_03 import example_3_5, example_3_8
 from qtab.book.figures.chapter_04 import figure_4_1, figure_4_2, figure_4_3
 from qtab.book.figures.chapter_05 import figure_5_1, figure_5_2, figure_5_3, figure_5_4
 from qtab.book.figures.chapter_06 import example_6_2, example_6_5, example_6_6, figure_6_2, figure_6_3, figure_6_5
-from qtab.book.figures.chapter_07 import figure_7_2
-from qtab.book.figures.chapter_08 import example_8_4, figure_8_2, figure_8_4, figure_8_5, figure_8_7, figure_8_8
+from qtab.book.figures.chapter_08 import changing_mazes, example_8_4, figure_8_2, figure_8_7, figure_8_8
 from qtab.book.figures.chapter_09 import figure_9_1, figure_9_2, figure_9_10
-from qtab.book.figures.chapter_10 import figure_10_1, figure_10_2, figure_10_3, figure_10_4, figure_10_5
-from qtab.book.figures.chapter_12 import figure_12_10, figure_12_11, random_walk
-from qtab.book.figures.chapter_13 import example_13_1, figure_13_1, figure_13_2
+from qtab.book.figures.chapter_10 import figure_10_1, figure_10_4, figure_10_5, learning_curves
+from qtab.book.figures.chapter_12 import figure_12_10, figure_12_11
+from qtab.book.figures.chapter_13 import short_corridor
 from qtab.book.result import Result
 
 
@@ -29,79 +30,43 @@ class Chapter:
     experiments: Sequence[Experiment]
 
 
+def _chapter(number: int, title: str, *parts: ModuleType | Experiment) -> Chapter:
+    """Returns a chapter from its experiments, and from the modules that have one each."""
+    return Chapter(number, title, [part.EXPERIMENT if isinstance(part, ModuleType) else part for part in parts])
+
+
 CHAPTERS: Sequence[Chapter] = (
-    Chapter(
-        2,
-        "Multi-armed bandits",
-        (
-            figure_2_1.EXPERIMENT,
-            figure_2_2.EXPERIMENT,
-            figure_2_3.EXPERIMENT,
-            figure_2_4.EXPERIMENT,
-            figure_2_5.EXPERIMENT,
-            figure_2_6.EXPERIMENT,
-        ),
-    ),
-    Chapter(3, "Finite Markov decision processes", (example_3_5.EXPERIMENT, example_3_8.EXPERIMENT)),
-    Chapter(4, "Dynamic programming", (figure_4_1.EXPERIMENT, figure_4_2.EXPERIMENT, figure_4_3.EXPERIMENT)),
-    Chapter(
-        5,
-        "Monte Carlo methods",
-        (figure_5_1.EXPERIMENT, figure_5_2.EXPERIMENT, figure_5_3.EXPERIMENT, figure_5_4.EXPERIMENT),
-    ),
-    Chapter(
+    _chapter(2, "Multi-armed bandits", figure_2_1, figure_2_2, figure_2_3, figure_2_4, figure_2_5, figure_2_6),
+    _chapter(3, "Finite Markov decision processes", example_3_5, example_3_8),
+    _chapter(4, "Dynamic programming", figure_4_1, figure_4_2, figure_4_3),
+    _chapter(5, "Monte Carlo methods", figure_5_1, figure_5_2, figure_5_3, figure_5_4),
+    _chapter(
         6,
         "Temporal-difference learning",
-        (
-            example_6_2.EXPERIMENT,
-            figure_6_2.EXPERIMENT,
-            example_6_5.EXPERIMENT,
-            example_6_6.EXPERIMENT,
-            figure_6_3.EXPERIMENT,
-            figure_6_5.EXPERIMENT,
-        ),
+        *(example_6_2, figure_6_2, example_6_5, example_6_6, figure_6_3, figure_6_5),
     ),
-    Chapter(7, "n-step bootstrapping", (figure_7_2.EXPERIMENT,)),
-    Chapter(
+    _chapter(7, "n-step bootstrapping", random_walk.FIGURE_7_2),
+    _chapter(
         8,
         "Planning and learning with tabular methods",
-        (
-            figure_8_2.EXPERIMENT,
-            figure_8_4.EXPERIMENT,
-            figure_8_5.EXPERIMENT,
-            example_8_4.EXPERIMENT,
-            figure_8_7.EXPERIMENT,
-            figure_8_8.EXPERIMENT,
-        ),
+        *(figure_8_2, changing_mazes.FIGURE_8_4, changing_mazes.FIGURE_8_5, example_8_4, figure_8_7, figure_8_8),
     ),
-    Chapter(
-        9,
-        "On-policy prediction with approximation",
-        (figure_9_1.EXPERIMENT, figure_9_2.EXPERIMENT, figure_9_10.EXPERIMENT),
-    ),
-    Chapter(
+    _chapter(9, "On-policy prediction with approximation", figure_9_1, figure_9_2, figure_9_10),
+    _chapter(
         10,
         "On-policy control with approximation",
-        (
-            figure_10_1.EXPERIMENT,
-            figure_10_2.EXPERIMENT,
-            figure_10_3.EXPERIMENT,
-            figure_10_4.EXPERIMENT,
-            figure_10_5.EXPERIMENT,
-        ),
+        *(figure_10_1, learning_curves.FIGURE_10_2, learning_curves.FIGURE_10_3, figure_10_4, figure_10_5),
     ),
-    Chapter(
+    _chapter(
         12,
         "Eligibility traces",
-        (
-            random_walk.FIGURE_12_3,
-            random_walk.FIGURE_12_6,
-            random_walk.FIGURE_12_8,
-            figure_12_10.EXPERIMENT,
-            figure_12_11.EXPERIMENT,
-        ),
+        *(random_walk.FIGURE_12_3, random_walk.FIGURE_12_6, random_walk.FIGURE_12_8, figure_12_10, figure_12_11),
     ),
-    Chapter(13, "Policy gradient methods", (example_13_1.EXPERIMENT, figure_13_1.EXPERIMENT, figure_13_2.EXPERIMENT)),
+    _chapter(
+        13,
+        "Policy gradient methods",
+        *(short_corridor.EXAMPLE_13_1, short_corridor.FIGURE_13_1, short_corridor.FIGURE_13_2),
+    ),
 )
 """The chapters that have experiments."""
 

@@ -1,9 +1,10 @@
 """The result of an experiment: the lines of its figure, its table as text, and its points as CSV."""
 
 import csv
+import itertools
 import math
 import textwrap
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -63,7 +64,7 @@ class Result:
             lowest, highest = (f"{finite.min():.5g}", f"{finite.max():.5g}") if len(finite) else ("-", "-")
             rows.append((line.name, len(line.mean), lowest, highest, line.runs, int(line.diverged.sum())))
         drawn = {line.name: line.mean for line in self.lines if line.drawn}
-        numbers = iter(range(len(self.lines)))
+        numbers = itertools.count()
         colors = [html.color(next(numbers)) if line.drawn else "" for line in self.lines]
         return html.listing(self.experiment.heading, columns, rows, html.lines(f"{y} by {x}", drawn), colors)
 
@@ -139,24 +140,26 @@ def _rows(result: Result) -> list[str]:
         head += ["truncated", "diverged"]
     rows = [head]
     for line in result.lines:
-        for index in _table_points(result, line):
+        for index, x in enumerate(line.x):
+            if experiment.table_x is not None and x not in experiment.table_x:
+                continue
             error = line.error[index]
             row = [
                 line.name,
-                f"{line.x[index]:g}",
+                f"{x:g}",
                 _rounded(line.mean[index], error),
                 "-" if math.isnan(error) else _rounded(error, error),
                 str(line.truncated[index]),
                 str(line.diverged[index]),
             ]
             rows.append(row[: len(head)])
+    return aligned(rows)
+
+
+def aligned(rows: Sequence[Sequence[str]]) -> list[str]:
+    """Returns the lines of a table: the first column to the left, the others to the right."""
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     return ["  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]).rstrip() for row in rows]
-
-
-def _table_points(result: Result, line: Line) -> list[int]:
-    table_x = result.experiment.table_x
-    return [index for index, x in enumerate(line.x) if table_x is None or x in table_x]
 
 
 def _rounded(value: float, error: float) -> str:

@@ -81,6 +81,8 @@ class TestbedExperiment(MeasuredExperiment):
     """The mean of the true values."""
     steps: int = 1000
     draw: Draw = draw_measures
+    runs: int = 2000
+    x_label: str = "step"
 
     @property
     def line_names(self) -> Sequence[str]:

@@ -8,6 +8,7 @@ import numpy as np
 
 from qtab.book.drawing.colors import line_colors
 from qtab.book.drawing.end_labels import label_ends
+from qtab.book.line import Line
 from qtab.book.result import Result
 from qtab.plots.parts.axes import axes_or_new
 from qtab.plots.parts.labels import finish
@@ -32,9 +33,7 @@ def draw_lines(result: Result, ax: "Axes | None") -> "Axes":
     has_markers = max((len(line.x) for line in drawn), default=0) <= MAX_MARKERS
     marker: dict[str, Any] = {"marker": "o", "markersize": 4} if has_markers else {}
     for line, hue in zip(drawn, colors, strict=True):
-        error = np.nan_to_num(line.error)
-        low, high = line.mean - 2 * error, line.mean + 2 * error
-        ax.fill_between(line.x, low, high, color=hue, alpha=0.25, linewidth=0)
+        draw_band(ax, line, hue)
         style = BROAD if line.broad else {"linewidth": 1.6, **marker}
         label = line.name if line.named else "_nolegend_"
         ax.plot(line.x, line.mean, "--" if line.dashed else "-", color=hue, label=label, **style)
@@ -64,6 +63,12 @@ def draw_lines(result: Result, ax: "Axes | None") -> "Axes":
     if legend is not None and label_ends(ax, drawn, colors):
         legend.remove()
     return ax
+
+
+def draw_band(ax: "Axes", line: Line, hue: Any, alpha: float = 0.25) -> None:
+    """Draws a band of two standard errors on each side of a line."""
+    error = 2 * np.nan_to_num(line.error)
+    ax.fill_between(line.x, line.mean - error, line.mean + error, color=hue, alpha=alpha, linewidth=0)
 
 
 def draw_in_range(result: Result, ax: "Axes | None") -> "Axes":

@@ -1,1 +1,1 @@
-"""The experiments of the book, one module per figure or example."""
+"""The experiments of the book, by chapter; figures that differ only in a few settings share a module."""

@@ -12,8 +12,6 @@ EXPERIMENT = TestbedExperiment(
         BanditSetting(f"ε = {epsilon:g}", {**GREEDY, **SAMPLE_AVERAGES, "epsilon": epsilon})
         for epsilon in (0.0, 0.01, 0.1)
     ),
-    runs=2000,
-    x_label="step",
     y_label="average reward, % optimal action",
     table_x=(1, 10, 50, 100, 200, 500, 1000),
 )

@@ -16,8 +16,6 @@ EXPERIMENT = TestbedExperiment(
         BanditSetting("realistic, ε-greedy: Q1 = 0, ε = 0.1", {**GREEDY, **_STEP, "epsilon": 0.1}, method="ε-greedy"),
     ),
     measures=("optimal",),
-    runs=2000,
-    x_label="step",
     y_label="% optimal action",
     y_range=(0, 100),
     table_x=(1, 10, 11, 12, 50, 100, 200, 500, 1000),

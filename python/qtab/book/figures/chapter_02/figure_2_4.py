@@ -16,8 +16,6 @@ EXPERIMENT = TestbedExperiment(
         BanditSetting("ε-greedy, ε = 0.1", {**GREEDY, **SAMPLE_AVERAGES, "epsilon": 0.1}, method="ε-greedy"),
     ),
     measures=("reward",),
-    runs=2000,
-    x_label="step",
     y_label="average reward",
     table_x=(1, 10, 11, 12, 50, 100, 200, 500, 1000),
 )

@@ -20,8 +20,6 @@ EXPERIMENT = TestbedExperiment(
     ),
     measures=("optimal",),
     mean=4.0,
-    runs=2000,
-    x_label="step",
     y_label="% optimal action",
     y_range=(0, 100),
     table_x=(1, 10, 50, 100, 200, 500, 1000),

@@ -37,7 +37,6 @@ EXPERIMENT = TestbedExperiment(
         for value in values
     ),
     measures=("reward",),
-    runs=2000,
     x_label="ε, α, c or Q1",
     y_label="average reward of the first 1,000 steps",
     log_x=True,

@@ -1,10 +1,9 @@
 """Figure 5.1: values of the blackjack policy that sticks on 20 and 21, by Monte Carlo prediction."""
 
-import dataclasses
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from qtab.book.drawing.blackjack import USABLE, draw_blackjack
+from qtab.book.experiment import Outcome
 from qtab.book.prediction_experiment import PredictionExperiment, PredictionSetting
 from qtab.book.problems import blackjack, root_value_error
 from qtab.book.result import Result
@@ -29,15 +28,12 @@ def draw_values(result: Result, ax: "Axes | None") -> "Axes":
     return draw_blackjack(result, ax, values, {})
 
 
-@dataclass(frozen=True, kw_only=True, repr=False)
 class BlackjackValues(PredictionExperiment):
     """Errors of the estimates of all runs, with the values of the first run as surfaces."""
 
-    def run(
-        self, runs: int | None = None, seed: int = 0, *, threads: int | None = None, progress: bool | None = None
-    ) -> Result:
-        """Estimates the values; see :func:`qtab.book.run`."""
-        result = super().run(runs, seed, threads=threads, progress=progress)
+    def _run(self, runs: int, seed: int, threads: int, progress: bool | None) -> Outcome:
+        """Estimates the values."""
+        outcome = super()._run(runs, seed, threads, progress)
         task = blackjack()
         first = estimate_values(task.env, task.policy, seeds=[seed], **_ARGUMENTS)
         surfaces = {
@@ -45,7 +41,7 @@ class BlackjackValues(PredictionExperiment):
             for ace, name in ((1, USABLE[0]), (0, USABLE[1]))
             for point, count in enumerate(_POINTS)
         }
-        return dataclasses.replace(result, surfaces=surfaces, draw=draw_values)
+        return outcome._replace(surfaces=surfaces)
 
 
 EXPERIMENT = BlackjackValues(
@@ -57,4 +53,5 @@ EXPERIMENT = BlackjackValues(
     runs=1,
     x_label="episodes",
     y_label="RMS error by visits",
+    draw=draw_values,
 )

@@ -1,8 +1,5 @@
 """Figure 5.2: blackjack by Monte Carlo with exploring starts: the optimal policy and its values."""
 
-import time
-from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,7 +7,7 @@ import numpy as np
 from qtab._utils.checks import required
 from qtab._utils.progress import ProgressBar
 from qtab.book.drawing.blackjack import USABLE, draw_blackjack
-from qtab.book.experiment import Experiment
+from qtab.book.experiment import Experiment, Outcome
 from qtab.book.line import line_from_samples
 from qtab.book.result import Result
 from qtab.book.runner import FloatArray
@@ -58,21 +55,11 @@ def draw_optimum(result: Result, ax: "Axes | None") -> "Axes":
     return draw_blackjack(result, ax, {"values": values}, {"policy": policy})
 
 
-@dataclass(frozen=True, kw_only=True, repr=False)
 class ExploringStarts(Experiment):
     """Runs of Monte Carlo ES on blackjack."""
 
-    @property
-    def line_names(self) -> Sequence[str]:
-        """The names of the lines, each once."""
-        return USABLE
-
-    def run(
-        self, runs: int | None = None, seed: int = 0, *, threads: int | None = None, progress: bool | None = None
-    ) -> Result:
+    def _run(self, runs: int, seed: int, threads: int, progress: bool | None) -> Outcome:
         """Trains with every seed; the figure shows the average of their values."""
-        runs, seed, threads = self.check_arguments(runs, seed, threads)
-        started = time.perf_counter()
         tables = []
         with ProgressBar(runs, "run", progress, self.name) as bar:
             for first in range(0, runs, threads):
@@ -83,9 +70,8 @@ class ExploringStarts(Experiment):
         thresholds = np.stack([lowest_stick(values) for values in tables])
         mean, aces = np.mean(tables, axis=0), dict(zip(USABLE, (1, 0), strict=True))
         cards = np.arange(1, thresholds.shape[-1] + 1)
-        lines = tuple(line_from_samples(name, cards, thresholds[:, ace]) for name, ace in aces.items())
-        surfaces = {name: mean[:, ace] for name, ace in aces.items()}
-        return Result(self, lines, runs, seed, time.perf_counter() - started, draw_optimum, surfaces)
+        lines = [line_from_samples(name, cards, thresholds[:, ace]) for name, ace in aces.items()]
+        return Outcome(lines, {name: mean[:, ace] for name, ace in aces.items()})
 
 
 EXPERIMENT = ExploringStarts(
@@ -98,4 +84,6 @@ EXPERIMENT = ExploringStarts(
     runs=10,
     x_label="dealer's card",
     y_label="lowest sum that sticks",
+    draw=draw_optimum,
+    names=USABLE,
 )

@@ -3,14 +3,14 @@
 import numpy as np
 
 from qtab.book.prediction_experiment import PredictionExperiment, PredictionSetting
-from qtab.book.problems import index_of, single_state
+from qtab.book.problems import STATE, index_of, single_state
 from qtab.book.runner import FloatArray
 from qtab.planning.policy_values import PolicyValues
 from qtab.prediction.estimates import ValueEstimates
 
 _EPISODES = 10_000
 _POINTS = tuple(np.unique(np.geomspace(1, _EPISODES, 60).round().astype(int)).tolist())
-_STATE = index_of((13, 2, 1))
+_STATE = index_of(STATE)
 
 
 def squared_error(estimates: ValueEstimates, true_values: PolicyValues) -> FloatArray:

@@ -1,10 +1,7 @@
 """Example 8.4: prioritized sweeping against Dyna-Q on mazes of eight sizes."""
 
-import dataclasses
-import time
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 from typing import Any
 
 import gymnasium as gym
@@ -12,10 +9,9 @@ import numpy as np
 
 from qtab import _core
 from qtab._utils.progress import ProgressBar
-from qtab.book.drawing import draw_lines
-from qtab.book.experiment import Experiment
+from qtab.book.experiment import Experiment, Outcome
 from qtab.book.line import Line, LineStyle, line_from_samples
-from qtab.book.result import Result
+from qtab.book.result import aligned
 from qtab.book.runner import FloatArray
 from qtab.envs.book.mazes import MOST_DOUBLINGS, DynaMazeEnv
 from qtab.training.setup.resolve import resolve
@@ -105,21 +101,11 @@ def updates_to_optimum(maze: Maze, algorithm: str, seed: int) -> tuple[int, bool
     return updates, False
 
 
-@dataclass(frozen=True, kw_only=True, repr=False)
 class UpdatesToOptimum(Experiment):
     """The number of updates that each method needs on each maze."""
 
-    @property
-    def line_names(self) -> Sequence[str]:
-        """The names of the lines, each once."""
-        return tuple(METHODS)
-
-    def run(
-        self, runs: int | None = None, seed: int = 0, *, threads: int | None = None, progress: bool | None = None
-    ) -> Result:
-        """Runs both methods on every maze with every seed; see :func:`qtab.book.run`."""
-        runs, seed, threads = self.check_arguments(runs, seed, threads)
-        started = time.perf_counter()
+    def _run(self, runs: int, seed: int, threads: int, progress: bool | None) -> Outcome:
+        """Runs both methods on every maze with every seed."""
         mazes = [Maze(doublings) for doublings in range(MOST_DOUBLINGS + 1)]
         tasks = [(name, maze, seed + number) for maze in mazes for name in METHODS for number in range(runs)]
         missed = dict.fromkeys(((name, maze.states) for maze in mazes for name in METHODS), 0)
@@ -136,8 +122,7 @@ class UpdatesToOptimum(Experiment):
             samples = np.array([counts[name, maze.states] for maze in mazes], np.float64).T
             style = LineStyle(method=algorithm if name == "Dyna-Q" else "")
             lines.append(line_from_samples(name, sizes, samples, style=style))
-        result = Result(self, tuple(lines), runs, seed, time.perf_counter() - started, draw_lines)
-        return dataclasses.replace(result, table=_table(lines, missed))
+        return Outcome(lines, table=_table(lines, missed))
 
 
 def _table(lines: Sequence[Line], missed: Mapping[tuple[str, int], int]) -> str:
@@ -148,8 +133,7 @@ def _table(lines: Sequence[Line], missed: Mapping[tuple[str, int], int]) -> str:
             rows.append(
                 [line.name, f"{states:,.0f}", f"{mean:,.0f}", f"{error:,.0f}", str(missed[line.name, int(states)])]
             )
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    return "\n".join("  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]) for row in rows)
+    return "\n".join(aligned(rows))
 
 
 EXPERIMENT = UpdatesToOptimum(
@@ -161,6 +145,7 @@ EXPERIMENT = UpdatesToOptimum(
     "takes a shortest path. A run that takes none after 20,000 episodes counts with all of its updates. The update "
     "that Dyna-Q makes from each real step counts",
     runs=10,
+    names=tuple(METHODS),
     x_label="number of states",
     y_label="updates until the policy is optimal",
     log_x=True,

@@ -1,6 +1,5 @@
 """Figure 8.8: updates distributed uniformly and on-policy."""
 
-import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -11,8 +10,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from qtab._utils.progress import ProgressBar
-from qtab.book.drawing import figure_of_several, line_colors
-from qtab.book.experiment import Experiment
+from qtab.book.drawing import draw_band, figure_of_several, line_colors
+from qtab.book.experiment import Experiment, Outcome
 from qtab.book.line import Line, LineStyle, line_from_samples
 from qtab.book.result import Result
 from qtab.book.runner import FloatArray
@@ -56,12 +55,8 @@ class UpdateDistributions(Experiment):
         """The names of the lines, each once."""
         return [one.line_name(distribution) for one in self.tasks for distribution in DISTRIBUTIONS]
 
-    def run(
-        self, runs: int | None = None, seed: int = 0, *, threads: int | None = None, progress: bool | None = None
-    ) -> Result:
-        """Plans in ``runs`` random tasks of each size; see :func:`qtab.book.run`."""
-        runs, seed, threads = self.check_arguments(runs, seed, threads)
-        started = time.perf_counter()
+    def _run(self, runs: int, seed: int, threads: int, progress: bool | None) -> Outcome:
+        """Plans in ``runs`` random tasks of each size."""
         lines: list[Line] = []
         with ProgressBar(runs * len(self.tasks), "task", progress, self.name) as bar:
             for index, size in enumerate(self.tasks):
@@ -71,7 +66,7 @@ class UpdateDistributions(Experiment):
                     bar.move_to(index * runs + len(measured))
                 for name in DISTRIBUTIONS:
                     lines.append(self._line(size, name, np.array([one[name] for one in measured])))
-        return Result(self, tuple(lines), runs, seed, time.perf_counter() - started, draw_two_sizes)
+        return Outcome(lines)
 
     def _measure(self, size: Tasks, seed: int) -> dict[str, FloatArray]:
         env = random_mdp(size.states, size.branching, seed)
@@ -119,8 +114,7 @@ def draw_two_sizes(result: Result, ax: "Axes | None") -> "Axes":
         shown = [(one, name) for one in experiment.tasks if one.states == states for name in DISTRIBUTIONS]
         chosen = [lines[one.line_name(name)] for one, name in shown]
         for line, hue, (one, name) in zip(chosen, line_colors(chosen, panel), shown, strict=True):
-            error = 2 * np.nan_to_num(line.error)
-            panel.fill_between(line.x, line.mean - error, line.mean + error, color=hue, alpha=0.2, linewidth=0)
+            draw_band(panel, line, hue, alpha=0.2)
             style = STYLES.get(one.branching, "-")
             panel.plot(line.x, line.mean, style, color=hue, label=f"{name}, b = {one.branching}")
         panel.xaxis.set_major_formatter("{x:,.0f}")
@@ -144,4 +138,5 @@ EXPERIMENT = UpdateDistributions(
     runs=200,
     x_label="expected updates",
     y_label="value of the start state",
+    draw=draw_two_sizes,
 )

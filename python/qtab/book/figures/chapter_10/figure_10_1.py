@@ -1,13 +1,12 @@
 """Figure 10.1: the cost-to-go of Mountain Car as it is learned."""
 
-import time
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from qtab._utils.progress import ProgressBar
 from qtab.book.drawing import figure_of_several
+from qtab.book.experiment import Outcome
 from qtab.book.line import Line
 from qtab.book.measured_experiment import Measured, TrainingExperiment, line_of
 from qtab.book.problems import ENV, TILE_CODING, UNSPECIFIED
@@ -62,16 +61,11 @@ def draw_cost_to_go(result: Result, ax: "Axes | None") -> "Axes":
     return last
 
 
-@dataclass(frozen=True, kw_only=True, repr=False)
 class CostToGo(TrainingExperiment):
     """The cost-to-go of one run at five times."""
 
-    def run(
-        self, runs: int | None = None, seed: int = 0, *, threads: int | None = None, progress: bool | None = None
-    ) -> Result:
+    def _run(self, runs: int, seed: int, threads: int, progress: bool | None) -> Outcome:  # noqa: ARG002
         """Trains up to each of the five times. A shorter run equals the start of a longer one with the same seed."""
-        runs, seed, _ = self.check_arguments(runs, seed, threads)
-        started = time.perf_counter()
         lines: list[Line] = []
         surfaces: dict[str, FloatArray] = {}
         with ProgressBar(runs * len(self.settings), "surface", progress, self.name) as bar:
@@ -87,7 +81,7 @@ class CostToGo(TrainingExperiment):
                         truncated += int((~run.terminated).sum())
                     bar.move_to(len(lines) * runs + len(samples))
                 lines.append(line_of(setting, Measured(np.array(samples), truncated)))
-        return Result(self, tuple(lines), runs, seed, time.perf_counter() - started, draw_cost_to_go, surfaces)
+        return Outcome(lines, surfaces)
 
 
 EXPERIMENT = CostToGo(
@@ -109,4 +103,5 @@ EXPERIMENT = CostToGo(
     runs=1,
     x_label="1: largest, 2: mean",
     y_label="cost-to-go",
+    draw=draw_cost_to_go,
 )

@@ -1,16 +1,13 @@
 """Figure 10.5: differential Sarsa on the access-control queue."""
 
-import time
-from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from qtab import _core
 from qtab._utils.progress import ProgressBar
-from qtab.book.drawing import figure_of_several, line_colors
-from qtab.book.experiment import Experiment
+from qtab.book.drawing import draw_band, figure_of_several, line_colors
+from qtab.book.experiment import Experiment, Outcome
 from qtab.book.line import LineStyle, line_from_samples
 from qtab.book.result import Result
 from qtab.training.setup.resolve import resolve
@@ -63,8 +60,7 @@ def draw_queue(result: Result, ax: "Axes | None") -> "Axes":
     upper.set(ylabel="priority", title="policy")
     drawn = [line for line in result.lines if line.drawn]
     for line, hue in zip(drawn, line_colors(drawn, lower), strict=True):
-        error = np.nan_to_num(line.error)
-        lower.fill_between(line.x, line.mean - 2 * error, line.mean + 2 * error, color=hue, alpha=0.25, linewidth=0)
+        draw_band(lower, line, hue)
         lower.plot(line.x, line.mean, color=hue, marker="o", markersize=4, label=line.name)
     lower.legend(loc="upper left", frameon=False, reverse=True)
     lower.axhline(0, color="0.6", linewidth=0.8)
@@ -75,21 +71,11 @@ def draw_queue(result: Result, ax: "Axes | None") -> "Axes":
     return axes
 
 
-@dataclass(frozen=True, kw_only=True, repr=False)
 class AccessControl(Experiment):
     """Runs of differential Sarsa on the access-control queue."""
 
-    @property
-    def line_names(self) -> Sequence[str]:
-        """The names of the lines, each once."""
-        return (*(f"priority = {priority}" for priority in PRIORITIES), AVERAGE)
-
-    def run(
-        self, runs: int | None = None, seed: int = 0, *, threads: int | None = None, progress: bool | None = None
-    ) -> Result:
+    def _run(self, runs: int, seed: int, threads: int, progress: bool | None) -> Outcome:  # noqa: ARG002
         """Trains with every seed; the figure shows the average of their values."""
-        runs, seed, _ = self.check_arguments(runs, seed, threads)
-        started = time.perf_counter()
         tables, averages = [], []
         resolved = resolve("qtab/AccessControlQueue-v0", {**CONFIG, "seed": seed})
         with ProgressBar(runs, "run", progress, self.name) as bar:
@@ -105,8 +91,7 @@ class AccessControl(Experiment):
             line_from_samples(name, np.arange(sample.shape[1]), sample, style=LineStyle(drawn=name != AVERAGE))
             for name, sample in zip(self.line_names, samples, strict=True)
         ]
-        surfaces = {"policy": np.mean(tables, axis=0).argmax(axis=-1).astype(np.float64)}
-        return Result(self, tuple(lines), runs, seed, time.perf_counter() - started, draw_queue, surfaces)
+        return Outcome(lines, {"policy": np.mean(tables, axis=0).argmax(axis=-1).astype(np.float64)})
 
 
 EXPERIMENT = AccessControl(
@@ -119,4 +104,6 @@ EXPERIMENT = AccessControl(
     runs=30,
     x_label="number of free servers",
     y_label="differential value",
+    draw=draw_queue,
+    names=(*(f"priority = {priority}" for priority in PRIORITIES), AVERAGE),
 )
