@@ -22,6 +22,7 @@ WITH_PYTHON = [
 NEEDS = {"docs/how_to/stable_baselines3.md": "stable_baselines3", "docs/how_to/cluster.md": "distributed"}
 """Libraries without which a page is skipped."""
 FEWER = {
+    "docs/index.md": {r"seeds=\d+": "seeds=20"},
     "docs/gallery/motion.md": {r"snapshots=\d+": "snapshots=2"},
     "docs/tutorial/why_it_fails.md": {r"seeds=\d+": "seeds=3"},
 }

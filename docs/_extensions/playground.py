@@ -3,6 +3,7 @@
 ``.ci/run docs`` builds its WebAssembly first. Without it, the site is still built, with a note that it is missing.
 """
 
+from html import escape
 from pathlib import Path
 
 from docutils import nodes
@@ -24,15 +25,18 @@ def is_built() -> bool:
 
 
 class Playground(Directive):
-    """Shows the playground in a frame, or a note that it is missing."""
+    """Shows the playground in a frame, or a note that it is missing. The argument is the fragment of its address."""
+
+    optional_arguments = 1
 
     def run(self) -> list[nodes.Node]:
-        """Returns the frame."""
+        """Returns the frame, and the link that narrow screens show instead."""
         if not is_built():
             return [nodes.note("", nodes.paragraph(text=MISSING))]
         env = self.state.document.settings.env
         path = "../" * env.docname.count("/") + "playground/index.html"
-        link = f'<p><a href="{path}">Open the playground in a page of its own</a></p>'
+        path += "".join(f"#{escape(fragment)}" for fragment in self.arguments)
+        link = f'<p class="playground"><a href="{path}">Open the playground</a> in a page by itself.</p>'
         frame = f'<iframe class="playground" src="{path}" title="The playground" loading="lazy"></iframe>'
         return [nodes.raw("", link + frame, format="html")]
 

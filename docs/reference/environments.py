@@ -1,6 +1,6 @@
-"""Prints the table of docs/reference/environments.md, with every preset over fresh seeds.
+"""Prints the tables of docs/reference/environments.md, with every preset over fresh seeds.
 
-With an environment and a preset, it prints one row:
+With an environment and a preset, it prints one row of each:
 
     python docs/reference/environments.py MountainCar-v0 solved
 """
@@ -36,12 +36,12 @@ GREEDY_SEEDS = 100
 GREEDY_EPISODES = 1_000
 Cells: TypeAlias = tuple[str, ...]
 
-COLUMNS: Cells = ("environment", "preset", "algorithm", "episodes", "search seeds", "their last 100", "fresh seeds")
-COLUMNS += ("last 100", "worst seed", "solved", "solved at the end", "greedy", "threshold", "optimum")
+RESULTS: Cells = ("last 100", "worst seed", "solved", "solved at the end", "greedy", "threshold", "optimum")
+SETTINGS: Cells = ("algorithm", "episodes", "search seeds", "their last 100", "fresh seeds")
 
 
-def row(env: str, preset: str) -> Cells:
-    """Trains a preset with its search seeds and with fresh ones, and returns its row of the table."""
+def cells(env: str, preset: str) -> tuple[Cells, Cells]:
+    """Trains a preset with its search seeds and with fresh ones, and returns its results and its settings."""
     threshold, optimum = gym.spec(env).reward_threshold, known_optimum(env)
     searched, fresh = SEEDS.get((env, preset), OTHERS)
     on_search_seeds = ""
@@ -55,14 +55,7 @@ def row(env: str, preset: str) -> Cells:
     solved = ("", "")
     if threshold is not None:
         solved = tuple(map(share, (best_mean_returns(runs.episode_returns) >= threshold, last >= threshold)))
-    return (
-        env,
-        preset,
-        runs.config.algorithm,
-        f"{runs.config.episodes:,}",
-        f"{len(searched):,}" if searched else "",
-        on_search_seeds,
-        f"{fresh[0]:,} to {fresh[-1]:,}",
+    results = (
         average(last),
         f"{last.min():.4g}",
         *solved,
@@ -70,6 +63,14 @@ def row(env: str, preset: str) -> Cells:
         "" if threshold is None else f"{threshold:g}",
         "" if optimum is None else f"{optimum.expected_return:.4g}" + ("" if optimum.exact else f" ({optimum.label})"),
     )
+    settings = (
+        runs.config.algorithm,
+        f"{runs.config.episodes:,}",
+        f"{len(searched):,}" if searched else "",
+        on_search_seeds,
+        f"{fresh[0]:,} to {fresh[-1]:,}",
+    )
+    return results, settings
 
 
 def greedy_returns(runs: qtab.Runs, optimum: qtab.Optimum | None) -> ArrayLike:
@@ -98,22 +99,33 @@ def known_optimum(env: str) -> qtab.Optimum | None:
         return None
 
 
-def print_row(cells: Cells) -> None:
+def print_head(columns: Cells) -> None:
+    """Prints the head of a table in Markdown."""
+    print_row("environment", "preset", *columns)
+    print("|---" * (2 + len(columns)) + "|")
+
+
+def print_row(*row: str) -> None:
     """Prints a row in Markdown."""
-    print("| " + " | ".join(cells) + " |", flush=True)
+    print("| " + " | ".join(row) + " |", flush=True)
 
 
 def main() -> None:
-    """Prints the table, or the row of one preset."""
+    """Prints the tables, or the rows of one preset."""
     parser = argparse.ArgumentParser()
     parser.add_argument("env", nargs="?")
     parser.add_argument("preset", nargs="?", default="solved")
     asked = parser.parse_args()
-    print_row(COLUMNS)
-    print("|---" * len(COLUMNS) + "|")
     pairs = [(env, preset) for env in ENVIRONMENTS for preset in qtab.presets(env)]
+    print_head(RESULTS)
+    settings = {}
     for env, preset in pairs if asked.env is None else [(asked.env, asked.preset)]:
-        print_row(row(env, preset))
+        results, settings[env, preset] = cells(env, preset)
+        print_row(env, preset, *results)
+    print()
+    print_head(SETTINGS)
+    for (env, preset), found in settings.items():
+        print_row(env, preset, *found)
 
 
 if __name__ == "__main__":  # worker processes import this file if Python steps the environment
