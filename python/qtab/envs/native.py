@@ -3,7 +3,7 @@
 Rust also makes the transition tables for which Gymnasium's constructors take milliseconds.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from functools import lru_cache
 from importlib import import_module
 from typing import Any
@@ -56,10 +56,10 @@ def known_table(spec: EnvSpec, kwargs: Mapping[str, Any]) -> KnownTable | None:
         kwargs: Keyword arguments of the constructor.
     """
     name = gymnasium_id(spec.id)
-    known = _KNOWN.get(name)
-    if known is None or not gym.__version__.startswith(VERSION):
+    make_table = _KNOWN.get(name)
+    if make_table is None or not gym.__version__.startswith(VERSION):
         return None
-    defaults, make_table = known
+    defaults: dict[str, Any] = make_table.__kwdefaults__
     arguments = {**defaults, **spec.kwargs, **kwargs}
     if arguments.keys() != defaults.keys() or any(type(arguments[key]) is not type(defaults[key]) for key in defaults):
         return None
@@ -67,12 +67,14 @@ def known_table(spec: EnvSpec, kwargs: Mapping[str, Any]) -> KnownTable | None:
     if changed_entry_point(entry_point) is not None:
         return None
     try:
-        return make_table(import_module(entry_point.partition(":")[0]), **arguments)
+        module = import_module(entry_point.partition(":")[0])
+        known: KnownTable | None = make_table(module, **arguments)
     except (OverflowError, ValueError):  # arguments that Gymnasium refuses, or a map of another size
         return None
+    return known
 
 
-def _cliff_walking(module: Any, *, is_slippery: bool) -> KnownTable | None:
+def _cliff_walking(module: Any, *, is_slippery: bool = False) -> KnownTable | None:
     own = module.POSITION_MAPPING == _DIRECTIONS
     return KnownTable(_core.TransitionTable.cliff_walking(is_slippery)) if own else None
 
@@ -80,11 +82,11 @@ def _cliff_walking(module: Any, *, is_slippery: bool) -> KnownTable | None:
 def _frozen_lake(
     module: Any,
     *,
-    desc: None,  # noqa: ARG001 - a map of the user's is left to Gymnasium
-    map_name: str,
-    is_slippery: bool,
-    success_rate: float,
-    reward_schedule: tuple[float, ...],
+    desc: None = None,  # noqa: ARG001 - a map of the user's is left to Gymnasium
+    map_name: str = "4x4",
+    is_slippery: bool = True,
+    success_rate: float = 1.0 / 3.0,
+    reward_schedule: tuple[float, ...] = (1, 0, 0),
 ) -> KnownTable | None:
     lines = module.MAPS.get(map_name)
     if (
@@ -100,7 +102,12 @@ def _frozen_lake(
 
 
 def _taxi(
-    module: Any, *, is_rainy: bool, fickle_passenger: bool, rainy_probability: float, fickle_probability: float
+    module: Any,
+    *,
+    is_rainy: bool = False,
+    fickle_passenger: bool = False,
+    rainy_probability: float = 0.8,
+    fickle_probability: float = 0.3,
 ) -> KnownTable:
     rain = rainy_probability if is_rainy else None
     table = _taxi_table(tuple(line.encode("ascii") for line in module.MAP), rain)
@@ -113,30 +120,14 @@ def _taxi_table(lines: tuple[bytes, ...], rain: float | None) -> _core.Transitio
     return _core.TransitionTable.taxi(lines, rain)
 
 
-_Maker = Callable[..., KnownTable | None]
-_CLIFF_WALKING: tuple[Mapping[str, Any], _Maker] = ({"is_slippery": False}, _cliff_walking)
-_FROZEN_LAKE: tuple[Mapping[str, Any], _Maker] = (
-    {
-        "desc": None,
-        "map_name": "4x4",
-        "is_slippery": True,
-        "success_rate": 1.0 / 3.0,
-        "reward_schedule": (1, 0, 0),
-    },
-    _frozen_lake,
-)
-_TAXI: tuple[Mapping[str, Any], _Maker] = (
-    {"is_rainy": False, "fickle_passenger": False, "rainy_probability": 0.8, "fickle_probability": 0.3},
-    _taxi,
-)
-_KNOWN = {
-    "CliffWalking-v1": _CLIFF_WALKING,
-    "CliffWalkingSlippery-v1": _CLIFF_WALKING,
-    "FrozenLake-v1": _FROZEN_LAKE,
-    "FrozenLake8x8-v1": _FROZEN_LAKE,
-    "Taxi-v4": _TAXI,
+_KNOWN: Mapping[str, Any] = {
+    "CliffWalking-v1": _cliff_walking,
+    "CliffWalkingSlippery-v1": _cliff_walking,
+    "FrozenLake-v1": _frozen_lake,
+    "FrozenLake8x8-v1": _frozen_lake,
+    "Taxi-v4": _taxi,
 }
-"""The keyword arguments of the constructor with their defaults, and the function that makes the table, by the id."""
+"""The functions that make the tables, by the id. Their keyword arguments and defaults are those of the constructors."""
 
 
 def native_env(name: str, env: Any, actions: Actions | None = None) -> _core.NativeEnv:
