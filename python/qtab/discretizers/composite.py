@@ -99,6 +99,11 @@ class Composite(Discretizer):
         return self.layout.names
 
     @cached_property
+    def _owners(self) -> dict[int, Group]:
+        """The group of each component that is not an index."""
+        return {component: group for group in self.groups for component in group.components}
+
+    @cached_property
     def _tiles(self) -> Group | None:
         """The group that is tiled."""
         return next((group for group in self.groups if not group.discretizer.has_cells), None)
@@ -158,7 +163,6 @@ class Composite(Discretizer):
             return self.groups[0].discretizer.spec()
         if not self.groups:
             return {"type": "identity", "first": [0] * self.layout.size, "counts": self.counts, "scalar": False}
-        owners = {component: group for group in self.groups for component in group.components}
         factors, stride = list[FactorSpec](), 1
         if self._tiles is not None:
             of_tiles = self._tiles.discretizer
@@ -169,7 +173,7 @@ class Composite(Discretizer):
             if not count:
                 continue
             index: IdentitySpec = {"type": "identity", "first": [0], "counts": [count], "scalar": True}
-            spec = owners[component].spec_of(component) if component in owners else index
+            spec = self._owners[component].spec_of(component) if component in self._owners else index
             factors.append({"components": [component], "stride": stride, "discretizer": spec})
             stride *= count
         return {"type": "product", "dimensions": self.layout.size, "factors": factors}
@@ -183,14 +187,12 @@ class Composite(Discretizer):
     @cached_property
     def _first(self) -> list[NDArray[np.int64] | None]:
         """The first integers of each part whose components are indices; None for other parts."""
-        owned = {component for group in self.groups for component in group.components}
-        first: list[NDArray[np.int64] | None] = []
-        component = 0
-        for part in self.layout.parts:
-            bounded = [int(low) if math.isfinite(low) else 0 for low in part.low]
-            first.append(None if component in owned else np.array(bounded, np.int64))
-            component += part.size
-        return first
+        return [
+            None
+            if span.start in self._owners
+            else np.array([int(low) if math.isfinite(low) else 0 for low in part.low], np.int64)
+            for part, span in zip(self.layout.parts, self.layout.spans, strict=True)
+        ]
 
     @cached_property
     def _dtype(self) -> "np.dtype[Any]":
@@ -262,8 +264,7 @@ class Composite(Discretizer):
     @cached_property
     def _indices(self) -> tuple[NDArray[np.bool_], NDArray[np.int64]]:
         """A mask of the components that are indices, and the number of their values, huge for unbounded integers."""
-        owned = {component for group in self.groups for component in group.components}
-        indices = np.array([component not in owned for component in range(self.layout.size)])
+        indices = np.array([component not in self._owners for component in range(self.layout.size)])
         return indices, np.array([count or 2**62 for count in self.counts])
 
     @cached_property
@@ -271,8 +272,7 @@ class Composite(Discretizer):
         """The discretizer and the dtype of each component that is not an index."""
         return {
             component: (_core.Discretizer(group.spec_of(component)), group.discretizer.dtype)
-            for group in self.groups
-            for component in group.components
+            for component, group in self._owners.items()
         }
 
     def _cells(self, observation: Any, shape: tuple[int, ...]) -> NDArray[np.int64]:

@@ -54,31 +54,18 @@ def choose_groups(layout: Layout, config: Config, n_actions: int) -> tuple[Group
     """
     if kind(config.discretizer) == MAPPING:
         return _by_key(layout, config, n_actions)
-    parts = discretized_parts(layout, config)
     if config.discretizer == "identity":
+        _check_indices(layout.parts, config, "discretizer")
         return ()
+    # The floats and the integers with many values, or, if there are none, all integers.
+    divided = [part for part in layout.parts if not part.is_small and not (part.kind == "integer" and config.max_rows)]
+    parts = divided or [part for part in layout.parts if part.kind == "integer"]
     if not parts:
         raise ValueError(
             "discretizer must be left out for an observation space of discrete parts alone, got "
             f"{shown(config.discretizer)}"
         )
     return (_group(layout, parts, config, n_actions),)
-
-
-def discretized_parts(layout: Layout, config: Config) -> list[Part]:
-    """Returns the parts that a single discretizer divides.
-
-    These are the floats and the integers with many values, or, if there are none, all integers.
-
-    Raises:
-        ValueError: if parts must be indices and cannot.
-    """
-    indexed = config.discretizer == "identity"
-    if indexed:
-        _check_indices(layout.parts, config, "discretizer")
-        return []
-    found = [part for part in layout.parts if not part.is_small and not (part.kind == "integer" and config.max_rows)]
-    return found or [part for part in layout.parts if part.kind == "integer"]
 
 
 def is_discrete(layout: Layout, config: Config) -> bool:

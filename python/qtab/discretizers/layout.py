@@ -4,6 +4,7 @@ import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import accumulate
 from typing import Any
 
 import numpy as np
@@ -40,6 +41,12 @@ class Layout:
         """A name for each component."""
         return tuple(name for part in self.parts for name in part.names())
 
+    @cached_property
+    def spans(self) -> tuple[slice, ...]:
+        """The components of each part."""
+        ends = accumulate(part.size for part in self.parts)
+        return tuple(slice(end - part.size, end) for part, end in zip(self.parts, ends, strict=True))
+
     def keys(self) -> dict[str, list[Part]]:
         """Returns the parts under each key of the outermost Dict, or each index of the outermost Tuple."""
         found: dict[str, list[Part]] = {}
@@ -50,13 +57,8 @@ class Layout:
 
     def components(self, parts: "list[Part] | tuple[Part, ...]") -> list[int]:
         """Returns the indices of the components of some parts."""
-        indices: list[int] = []
-        first = 0
-        for part in self.parts:
-            if part in parts:
-                indices += range(first, first + part.size)
-            first += part.size
-        return indices
+        spans = [span for part, span in zip(self.parts, self.spans, strict=True) if part in parts]
+        return [component for span in spans for component in range(span.start, span.stop)]
 
     def name_of(self, component: int) -> str:
         """Returns the name of a component in messages: ``observation['agent'][0]``."""
@@ -131,9 +133,7 @@ class Layout:
             ValueError: if an observation does not have the shape of the space.
         """
         is_flat = self._is_flat(observation)
-        start = 0
-        for part, offset in zip(self.parts, first, strict=True):
-            components = slice(start, start + part.size)
+        for part, components, offset in zip(self.parts, self.spans, first, strict=True):
             values = observation[..., components] if is_flat else part.find(observation)
             if not is_flat:
                 if values.shape != (*shape, *part.shape):
@@ -143,21 +143,18 @@ class Layout:
                 values = np.rint(values)  # the cell of an index extends 0.5 to either side
             values = part.numbers(values)
             yield components, values if offset is None else values.astype(np.int64) - offset
-            start = components.stop
 
     def split(self, observation: Any, count: int | None) -> list[Any]:
         """Returns a list of ``count`` batched observations in the structure of the space; None means a single one."""
         is_flat = self._is_flat(observation)
         if count is None and not is_flat:
             return [observation]
-        columns, start = [], 0
-        for part in self.parts:
-            stop = start + part.size
-            column = np.reshape(observation, (-1, self.size))[:, start:stop] if is_flat else part.find(observation)
+        columns = []
+        for part, span in zip(self.parts, self.spans, strict=True):
+            column = np.reshape(observation, (-1, self.size))[:, span] if is_flat else part.find(observation)
             if is_flat and part.kind != "float":
                 column = np.rint(column).astype(np.int64)
             columns.append((part.path, column.reshape(-1, *part.shape)))
-            start = stop
         return [
             _nested([(path, column[index]) for path, column in columns])
             for index in range(1 if count is None else count)
