@@ -5,8 +5,8 @@ from qtab.planning.gap import Gap
 from qtab.planning.optimum import Optimum
 from qtab.planning.policy_values import PolicyValues, policy_values
 from qtab.planning.solve import optimum
-from qtab.planning.stationary import StationaryPolicy
 from qtab.planning.sweeps import Improvement, policy_evaluation, policy_iteration, value_iteration
+from qtab.planning.tabular import StationaryPolicy
 
 __all__ = [
     "ExpectedUpdates",

@@ -18,8 +18,7 @@ from qtab.envs.origin.description import EnvironmentDescription, differences
 from qtab.envs.registry import gymnasium_id, spec_of
 from qtab.planning.gap import Gap
 from qtab.planning.search import Search
-from qtab.planning.stationary import StationaryPolicy
-from qtab.planning.tabular import TabularSolver
+from qtab.planning.tabular import StationaryPolicy, TabularSolver
 from qtab.results.run import Run
 from qtab.results.runs import Runs
 from qtab.results.summary import FINAL_EPISODES

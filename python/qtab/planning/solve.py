@@ -74,10 +74,10 @@ def optimum(
             unbounded without a discount.
     """
     check_progress(progress)
-    if isinstance(env, Run | Runs):
-        return _optimum_for_run(env, discount, max_episode_steps, method, env_kwargs, progress)
     if max_episode_steps is not None:
         max_episode_steps = checks.count("max_episode_steps", max_episode_steps, least=1)
+    if isinstance(env, Run | Runs):
+        return _optimum_for_run(env, discount, max_episode_steps, method, env_kwargs, progress)
     known = "an environment id, an EnvSpec, an environment or a run"
     with opened_env(env, env_kwargs, known) as (name, opened):
         description = None if opened is env else describe(opened, is_new=True)
@@ -101,8 +101,6 @@ def _optimum_for_run(
         raise ValueError(
             f"env must be an environment object for this run: its environment {config.env!r} is not a registered id"
         ) from None
-    if max_episode_steps is not None:
-        max_episode_steps = checks.count("max_episode_steps", max_episode_steps, least=1)
     with closing(make_run_env(config, of="gymnasium")) as made:
         limit = max_episode_steps or config.max_episode_steps
         return _optimum_for_env(config.env, made, limit, discount, method, progress, trained_on(config))

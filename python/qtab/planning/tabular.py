@@ -1,17 +1,40 @@
 """The best policy of an environment with a transition table, by dynamic programming."""
 
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qtab._utils.fields import with_fields
 from qtab.discretizers.time_aware import TimeAware
-from qtab.planning.stationary import StationaryPolicy
 from qtab.planning.table import Table
 from qtab.results.run import Run
 
 METHODS = ("finite_horizon", "value_iteration", "policy_iteration")
+
+
+@with_fields
+@dataclass(frozen=True, eq=False, repr=False)
+class StationaryPolicy:
+    """A policy that does not depend on the number of steps taken, and its return under the time limit."""
+
+    policy: NDArray[np.int64]
+    """(*cells,): the action in each cell, as the environment numbers it."""
+    expected_return: float
+    """The undiscounted expected return under the time limit."""
+    proven: bool
+    """Whether no stationary policy returns more: true if no policy at all does."""
+
+    @property
+    def label(self) -> str:
+        """``"best"``, or ``"best known"`` if it is not proven."""
+        return "best" if self.proven else "best known"
+
+    def __repr__(self) -> str:
+        """A one-line summary without the actions."""
+        return f"<StationaryPolicy: {self.label} expected return {self.expected_return:.6g}>"
 
 
 class TabularSolver:
