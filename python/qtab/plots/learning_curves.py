@@ -1,6 +1,7 @@
 """The learning curves of many runs with confidence intervals."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -13,6 +14,7 @@ from qtab.plots.parts.colors import line_style, palette
 from qtab.plots.parts.inputs import Entry, color_keys, entries, only_threshold
 from qtab.plots.parts.labels import episode_ticks, finish, joined
 from qtab.plots.parts.marks import check_optimum, check_threshold, common_block, mark_optimum, mark_threshold
+from qtab.results.summary import block_means
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -85,10 +87,10 @@ def learning_curves(
         checks.instance("label", label, str)
         if isinstance(returns, Mapping) or len(drawn) > 1:
             raise ValueError(f"label must be None where returns has names or several settings, got {label!r}")
-        drawn = [Entry(**{**vars(drawn[0]), "label": label})]
+        drawn = [replace(drawn[0], label=label)]
     block = common_block(block, [entry.values.shape[1] * entry.unit for entry in drawn], [e.unit for e in drawn])
     # The numbers come before the figure, so that an error leaves no empty figure.
-    means = [_block_means(entry, block) for entry in drawn]
+    means = [block_means(entry.values, block // entry.unit) for entry in drawn]
     points = [
         stats.curve(runs, block=1, statistic=statistic, confidence=confidence) if len(runs) > 1 else None
         for runs in means
@@ -143,11 +145,3 @@ def _names(drawn: list[Entry], statistic: str, confidence: str) -> tuple[list[st
         f"{entry.label}: {count} run{'' if count == 1 else 's'}" for entry, count in zip(drawn, counts, strict=True)
     ]
     return names, f"{statistic} of the runs, {confidence} intervals"
-
-
-def _block_means(entry: Entry, block: int) -> NDArray[np.float64]:
-    """Returns (runs, blocks): the mean returns of each whole block."""
-    points = block // entry.unit
-    whole = entry.values.shape[1] // points * points
-    means: NDArray[np.float64] = entry.values[:, :whole].reshape(len(entry.values), -1, points).mean(axis=2)
-    return means

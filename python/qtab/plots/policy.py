@@ -12,7 +12,7 @@ from qtab.plots.arrangements.raster import DIRECTIONS
 from qtab.plots.parts.colors import COLORS, brightness, is_dark
 from qtab.plots.parts.labels import below_label
 from qtab.plots.parts.panels import arranged, axes_for, cell_font_size, draw_cells, finish_panel, shade_unknown
-from qtab.plots.parts.subject import Drawable, Subject
+from qtab.plots.parts.subject import Drawable
 from qtab.results.words import checked_action_names
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ def policy(
         ValueError: for one that does not fit the environment, or runs without tables.
     """
     panels = arranged(run, at, layout, title, step)
-    names = [checked_names(subject, action_names) for subject, _ in panels]
+    names = [checked_action_names(subject.action_names, action_names) for subject, _ in panels]
     axes = axes_for([raster for _, raster in panels], ax)
     for (subject, raster), panel, named in zip(panels, axes, names, strict=True):
         greedy, handles = subject.greedy_actions(raster.rows), list[Any]()
@@ -68,16 +68,6 @@ def policy(
         if handles:
             _add_legend(panel, handles)
     return axes[0]
-
-
-def checked_names(subject: Subject, given: Sequence[str] | None) -> tuple[str, ...]:
-    """Returns the names of a subject's actions.
-
-    Raises:
-        TypeError: if the given ones are not strings.
-        ValueError: if there are too few or too many.
-    """
-    return checked_action_names(subject.action_names, given)
 
 
 def draw_moves(ax: "Axes", raster: Raster, taken: NDArray[np.bool_], names: Sequence[str]) -> None:

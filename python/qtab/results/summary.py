@@ -50,9 +50,9 @@ def block_means(returns: NDArray[np.float64], block: int) -> NDArray[np.float64]
     return means
 
 
-def best_mean_returns(returns: NDArray[np.float64], window: int = SOLVED_EPISODES) -> NDArray[np.float64]:
-    """Returns (runs,): each run's highest mean return over ``window`` consecutive episodes; -inf for shorter runs."""
-    runs, episodes = returns.shape
+def best_mean_returns(returns: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Returns (runs,): each run's highest mean return over 100 consecutive episodes; -inf for shorter runs."""
+    (runs, episodes), window = returns.shape, SOLVED_EPISODES
     if episodes < window:
         return np.full(runs, -np.inf)
     sums = np.cumsum(np.pad(returns, ((0, 0), (1, 0))), axis=1)

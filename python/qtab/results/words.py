@@ -12,7 +12,7 @@ from qtab.envs.quantities import Quantities
 from qtab.results.axes import Axis, run_quantities
 from qtab.results.run import Run
 
-_PLACES = ("red", "green", "yellow", "blue")
+PLACES = ("red", "green", "yellow", "blue")
 
 
 @dataclass(frozen=True)
@@ -152,8 +152,8 @@ def _within(axis: Axis, index: int) -> str:
 def _taxi(state: int) -> str:
     """Describes a state of Taxi, encoded as ((row * 5 + column) * 5 + passenger) * 4 + destination."""
     place, passenger, destination = state // 20, state // 4 % 5, state % 4
-    where = f"at {_PLACES[passenger]}" if passenger < len(_PLACES) else "in the taxi"
-    return f"taxi in row {place // 5}, column {place % 5}, passenger {where}, destination {_PLACES[destination]}"
+    where = f"at {PLACES[passenger]}" if passenger < len(PLACES) else "in the taxi"
+    return f"taxi in row {place // 5}, column {place % 5}, passenger {where}, destination {PLACES[destination]}"
 
 
 def _has_parts(value: Any) -> bool:

@@ -89,7 +89,11 @@ def plane(subject: Subject, at: Mapping[str, float] | None, sampled: bool = Fals
     chosen, fixed = _choose(subject, known, at)
     discretizer = subject.discretizer
     as_cells = discretizer.has_cells and not sampled and all(one.edges is not None for one in known)
-    edges = [_edges(one, as_cells) for one in chosen]
+    sampled_at = RESOLUTION + 1
+    edges = [
+        one.edges if as_cells and one.edges is not None else np.linspace(one.low, one.high, sampled_at)
+        for one in chosen
+    ]
     if len(edges) == 1:
         edges.append(np.array([0.0, 1.0]))
     shape = (len(edges[1]) - 1, len(edges[0]) - 1)
@@ -163,10 +167,6 @@ def _choose(
     preferred = [one for one in free if one.name in subject.quantities.plane]
     chosen = preferred if len(preferred) == 2 and len(free) > 2 else free[:2]
     return chosen, fixed | {one.name: one.default for one in free if one not in chosen}
-
-
-def _edges(one: Coordinate, as_cells: bool) -> NDArray[np.float64]:
-    return one.edges if as_cells and one.edges is not None else np.linspace(one.low, one.high, RESOLUTION + 1)
 
 
 def _observations(

@@ -7,6 +7,7 @@ from gymnasium.envs.toy_text.taxi import MAP
 from numpy.typing import NDArray
 
 from qtab.plots.arrangements.raster import Raster
+from qtab.results.words import PLACES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -14,7 +15,6 @@ if TYPE_CHECKING:
 SIDE, PASSENGERS, DESTINATIONS = 5, 5, 4
 PITCH = SIDE + 1
 """The distance from one map to the next, which leaves one cell between them."""
-PLACES = ("red", "green", "yellow", "blue")
 LOCATIONS = ((0, 0), (0, 4), (4, 0), (4, 3))
 """The row and column of each place."""
 
@@ -55,6 +55,7 @@ def _place(states: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int
 
 def _decorate(ax: "Axes", ink: str) -> None:
     from matplotlib.collections import LineCollection
+    from matplotlib.patches import Rectangle
 
     columns = range(1, SIDE)
     walls = [(row, column) for row, line in enumerate(MAP[1:-1]) for column in columns if line[2 * column] == "|"]
@@ -66,15 +67,11 @@ def _decorate(ax: "Axes", ink: str) -> None:
     for x, y in corners:
         for index, (row, column) in enumerate(LOCATIONS):
             if index in (x // PITCH, y // PITCH):
-                style = "-" if index == y // PITCH else (0, (2, 1.5))
-                _draw_square(ax, x + column, y + row, ink, style)
+                style: Any = "-" if index == y // PITCH else (0, (2, 1.5))
+                corner = x + column + 0.06, y + row + 0.06
+                square = Rectangle(
+                    corner, 0.88, 0.88, fill=False, edgecolor=ink, linestyle=style, linewidth=1.3, zorder=6
+                )
+                ax.add_patch(square)
     ax.set_xticks(PITCH * np.arange(PASSENGERS) + 2.5, [*PLACES, "in the taxi"])
     ax.set_yticks(PITCH * np.arange(DESTINATIONS) + 2.5, PLACES)
-
-
-def _draw_square(ax: "Axes", x: int, y: int, ink: str, style: Any) -> None:
-    from matplotlib.patches import Rectangle
-
-    ax.add_patch(
-        Rectangle((x + 0.06, y + 0.06), 0.88, 0.88, fill=False, edgecolor=ink, linestyle=style, linewidth=1.3, zorder=6)
-    )

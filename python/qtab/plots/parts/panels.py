@@ -44,8 +44,15 @@ def arranged(
             fit the environment.
     """
     check_title(title)
-    subjects = _subjects_of("run", run, step)
-    _check_same_environment("run", subjects)
+    if not isinstance(run, list | tuple):
+        subjects = [subject_of("run", run, step)]
+    elif run:
+        subjects = [subject_of(f"run[{index}]", one, step) for index, one in enumerate(run)]
+    else:
+        raise ValueError(f"run must hold at least one run, got an empty {type(run).__name__}")
+    names = {gymnasium_id(subject.env) for subject in subjects}
+    if len(names) > 1:
+        raise ValueError(f"run must hold runs of one environment, got {', '.join(sorted(map(repr, names)))}")
     return [(subject, arrange(subject, at, layout)) for subject in subjects]
 
 
@@ -135,31 +142,6 @@ def cell_font_size(ax: "Axes", raster: Raster) -> float:
     width = ax.get_position().width * figure.get_figwidth() * 72 / len(raster.x_edges)
     height = ax.get_position().height * figure.get_figheight() * 72 / len(raster.y_edges)
     return max(4.0, min(11.0, float(width) / 3.3, float(height) / 1.6))
-
-
-def _subjects_of(name: str, source: Any, step: int) -> list[Subject]:
-    """Returns the subjects of one run, of Runs or of an optimum, or of a sequence of them.
-
-    Raises:
-        TypeError: for anything else.
-        ValueError: for an empty sequence, and runs whose tables were not kept.
-    """
-    if not isinstance(source, list | tuple):
-        return [subject_of(name, source, step)]
-    if not source:
-        raise ValueError(f"{name} must hold at least one run, got an empty {type(source).__name__}")
-    return [subject_of(f"{name}[{index}]", one, step) for index, one in enumerate(source)]
-
-
-def _check_same_environment(name: str, subjects: Sequence[Subject]) -> None:
-    """Checks that panels with one scale of colors show one environment.
-
-    Raises:
-        ValueError: if they do not.
-    """
-    names = {gymnasium_id(subject.env) for subject in subjects}
-    if len(names) > 1:
-        raise ValueError(f"{name} must hold runs of one environment, got {', '.join(sorted(map(repr, names)))}")
 
 
 Text = Callable[[float], str]
