@@ -17,6 +17,7 @@ from qtab.discretizers import Discretizer
 from qtab.prediction import storage
 from qtab.prediction.observation_policies import ObservationPolicies
 from qtab.prediction.settings import PredictionSettings
+from qtab.results.action_values import summed
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -264,10 +265,7 @@ class ValueEstimates:
 
 def _summed(weights: NDArray[np.float64], active: NDArray[Any]) -> NDArray[np.float64]:
     """Returns (seeds, ...): the sums of (n_active, ...) weights, added from left to right as in the methods."""
-    total: NDArray[np.float64] = weights[:, active[0]]
-    for rows in active[1:]:
-        total = total + weights[:, rows]
-    return total
+    return summed(weights[:, rows] for rows in active)
 
 
 def _of_shape(name: str, numbers: ArrayLike, shape: tuple[int, ...], where: str) -> NDArray[np.float64]:

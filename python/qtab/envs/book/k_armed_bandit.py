@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils import checks
+from qtab.config.value_checks import not_negative
 
 
 class KArmedBanditEnv(gym.Env[Any, Any]):
@@ -41,8 +42,8 @@ class KArmedBanditEnv(gym.Env[Any, Any]):
     def __init__(self, k: int = 10, mean: float = 0.0, deviation: float = 1.0, random_walk: float = 0.0) -> None:
         self.k = checks.integer("k", k, least=1)
         self.mean = checks.finite("mean", mean)
-        self.deviation = _not_negative("deviation", deviation)
-        self.random_walk = _not_negative("random_walk", random_walk)
+        self.deviation = not_negative("deviation", deviation)
+        self.random_walk = not_negative("random_walk", random_walk)
         self.observation_space = gym.spaces.Discrete(1)
         self.action_space = gym.spaces.Discrete(self.k)
 
@@ -65,10 +66,3 @@ class KArmedBanditEnv(gym.Env[Any, Any]):
         if self.random_walk > 0:
             self.action_values = self.action_values + self.random_walk * self.np_random.standard_normal(self.k)
         return 0, reward, True, False, {"optimal": optimal}
-
-
-def _not_negative(name: str, value: float) -> float:
-    number = checks.finite(name, value)
-    if number < 0:
-        raise ValueError(f"{name} must not be negative, got {value!r}")
-    return number
