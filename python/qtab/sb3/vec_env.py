@@ -11,7 +11,6 @@ from stable_baselines3.common.vec_env.base_vec_env import VecEnv as StableBaseli
 
 from qtab._utils import checks
 from qtab.envs.vector import RustVectorEnv
-from qtab.sb3.infos import info_rows
 
 _CONSTANT = ("action_space", "metadata", "observation_space", "render_mode", "spec")
 """Attributes that all sub-environments share; reading them does not switch to Python stepping."""
@@ -176,3 +175,22 @@ class VecEnv(StableBaselines3VecEnv):  # type: ignore[misc]
             layer = layer.env
             found = isinstance(layer, wrapper_class)
         return [found for _ in self._get_indices(indices)]
+
+
+def info_rows(infos: dict[str, Any], num_envs: int) -> list[dict[str, Any]]:
+    """Returns the info of each sub-environment, from the arrays in which Gymnasium batches them.
+
+    Args:
+        infos: An array for each name, and under ``_name`` the mask of the sub-environments that have it.
+        num_envs: The number of sub-environments.
+    """
+    rows: list[dict[str, Any]] = [{} for _ in range(num_envs)]
+    for name, values in infos.items():
+        mask = infos.get(f"_{name}")
+        if mask is None:  # the array is a mask
+            continue
+        for index in np.flatnonzero(mask).tolist():
+            value = values[index]
+            # Numbers are Python's, as a single environment returns them.
+            rows[index][name] = value.item() if isinstance(value, np.generic) else value
+    return rows
