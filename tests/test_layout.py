@@ -17,7 +17,7 @@ MAX_LINES = 300
 
 ORDER = (
     {"_utils"},
-    {"_discretizer_spec", "_spec", "compilation", "config", "discretizers", "envs"},
+    {"_spec", "compilation", "config", "discretizers", "envs"},
     {"reference"},
     {"results"},
     {"training"},

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from qtab import _core
-from qtab._discretizer_spec import DiscretizerSpec
+from qtab._spec import DiscretizerSpec
 from qtab.reference.parts.observations import discretizer as numpy_discretizer
 from qtab.training.setup.resolve import resolve
 

@@ -152,7 +152,8 @@ def check_progress(progress: Any) -> None:
 
 def _tqdm(total: int | None, unit: str, progress: bool | None, description: str | None) -> Any:
     check_progress(progress)
-    if progress is False or (progress is None and not is_terminal(sys.stderr) and not in_notebook()):
+    is_terminal = sys.stderr is not None and sys.stderr.isatty()
+    if progress is False or (progress is None and not is_terminal and not in_notebook()):
         return None
     options = {
         "total": total,
@@ -171,11 +172,6 @@ def _tqdm(total: int | None, unit: str, progress: bool | None, description: str 
             raise missing(error, "cli") from None
         return None
     return tqdm(**options)
-
-
-def is_terminal(stream: Any) -> bool:
-    """Returns whether a stream is a terminal."""
-    return stream is not None and stream.isatty()
 
 
 def print_above(line: str) -> None:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab._discretizer_spec import IdentitySpec
+from qtab._spec import IdentitySpec
 from qtab._utils.checks import required
 from qtab.config import Config
 from qtab.discretizers.base import Discretizer, check_table_size

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab import _core
-from qtab._discretizer_spec import DiscretizerSpec
+from qtab._spec import DiscretizerSpec
 from qtab._utils import html
 from qtab._utils.memory import ALWAYS_FREE, free_memory, readable_size
 from qtab._utils.shown import shown

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab import _core
-from qtab._discretizer_spec import DiscretizerSpec, FactorSpec, IdentitySpec
+from qtab._spec import DiscretizerSpec, FactorSpec, IdentitySpec
 from qtab.config import Config
 from qtab.discretizers.base import Discretizer, check_table_size
 from qtab.discretizers.groups import Group, choose_groups

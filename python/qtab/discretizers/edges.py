@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab._discretizer_spec import BinsSpec
+from qtab._spec import BinsSpec
 from qtab._utils.checks import required
 from qtab._utils.shown import shown
 from qtab.config import Config

@@ -10,7 +10,7 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from qtab._discretizer_spec import IdentitySpec
+from qtab._spec import IdentitySpec
 from qtab._utils.shown import shown
 from qtab.config import Config
 from qtab.config.functions import function_name

@@ -9,7 +9,7 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from qtab._discretizer_spec import IdentitySpec
+from qtab._spec import IdentitySpec
 from qtab.config import Config
 from qtab.discretizers.base import Discretizer, check_table_size
 from qtab.discretizers.part import too_large

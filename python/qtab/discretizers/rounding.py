@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab._discretizer_spec import RoundSpec
+from qtab._spec import RoundSpec
 from qtab._utils.shown import counted, shown
 from qtab.config import Config
 from qtab.discretizers.base import check_table_size

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab._discretizer_spec import TilesSpec
+from qtab._spec import TilesSpec
 from qtab._utils.checks import required
 from qtab.config import Config
 from qtab.discretizers.base import check_table_size

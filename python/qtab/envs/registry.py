@@ -201,7 +201,12 @@ def make_env(spec: EnvSpec, env_kwargs: Mapping[str, Any], **of_gymnasium: Any) 
 
 
 def spec_of(env: str) -> EnvSpec:
-    """Returns the spec of an id, after importing the package that the id names (``"package:id"``).
+    """Returns the spec of an id; see :func:`named_spec`."""
+    return named_spec(env)[1]
+
+
+def named_spec(env: str) -> tuple[str, EnvSpec]:
+    """Returns an id with its version, and its spec, after importing the package that the id names (``"package:id"``).
 
     Nothing is imported for an id that was read from a file.
 
@@ -210,7 +215,8 @@ def spec_of(env: str) -> EnvSpec:
         ModuleNotFoundError: if the package is not installed.
     """
     try:
-        return gym.spec(versioned(env).rpartition(":")[2])
+        name = versioned(env)
+        return name, gym.spec(name.rpartition(":")[2])
     except gym.error.UnregisteredEnv:
         if isinstance(env, StoredId):
             raise unregistered(env) from None

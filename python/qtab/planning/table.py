@@ -15,7 +15,7 @@ from qtab.discretizers.identity import Identity
 from qtab.envs.actions import Actions, choose_actions
 from qtab.envs.matching import unknown_wrapper
 from qtab.envs.native import table_env
-from qtab.envs.registry import make_env, spec_of, versioned
+from qtab.envs.registry import make_env, named_spec
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,8 +60,8 @@ def opened_env(
         raise TypeError(f"env must be {known}, got {shown(env)}")
     if env_kwargs is not None and not isinstance(env_kwargs, Mapping):
         raise TypeError(f"env_kwargs must map names to values, got {shown(env_kwargs)}")
-    name = versioned(env) if isinstance(env, str) else env.id
-    with closing(make_env(spec_of(name) if isinstance(env, str) else env, env_kwargs or {})) as made:
+    name, spec = named_spec(env) if isinstance(env, str) else (env.id, env)
+    with closing(make_env(spec, env_kwargs or {})) as made:
         yield name, made
 
 

@@ -19,7 +19,7 @@ from qtab.config import DEFAULTS, Config
 from qtab.config.help import default
 from qtab.config.merge import merge
 from qtab.config.options import is_set
-from qtab.envs.registry import spec_of, versioned
+from qtab.envs.registry import named_spec
 from qtab.results.recording import snapshot_episodes
 from qtab.training.setup.resolve import resolve
 from qtab.training.setup.resolved_run import ResolvedRun, time_limit_notice
@@ -105,9 +105,9 @@ def _flags(asked: Namespace, settings: Mapping[str, Any]) -> tuple[str, ...]:
 
 def _effective_defaults(env: str, settings: Mapping[str, Any]) -> dict[str, Any]:
     """Returns the values of the settings that are not given as flags."""
-    env = versioned(env)
+    env, spec = named_spec(env)
     given = {name: value for name, value in settings.items() if not isinstance(value, Path)}
-    merged = vars(merge(env, {"env_kwargs": dict(spec_of(env).kwargs)}, given))
+    merged = vars(merge(env, {"env_kwargs": dict(spec.kwargs)}, given))
     shown = {name: value if is_set(value) else default(name) for name, value in merged.items()}
     return {**shown, **{name: settings[name] for name in settings.keys() - given.keys()}}
 

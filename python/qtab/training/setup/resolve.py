@@ -29,8 +29,7 @@ from qtab.envs.registry import (
     EnvEntry,
     entry_for_spec,
     make_env,
-    spec_of,
-    versioned,
+    named_spec,
 )
 from qtab.training.setup.environment import (
     NO_MASKS,
@@ -126,9 +125,7 @@ def resolve(
 
 def _from_spec(env: str | EnvSpec, asked: Mapping[str, Any]) -> _Request:
     # The id keeps its package, so that the config can make the environment anywhere.
-    if isinstance(env, str):
-        env = versioned(env)
-    name, spec = (env.id, env) if isinstance(env, EnvSpec) else (env, spec_of(env))
+    name, spec = (env.id, env) if isinstance(env, EnvSpec) else named_spec(env)
     asked = {"env_kwargs": dict(spec.kwargs), **asked}
     config = config_of(name, asked)
     entry: InRust | None = None if config.backend == "numba" else entry_for_spec(spec, config.env_kwargs)
