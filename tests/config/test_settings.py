@@ -11,7 +11,7 @@ import pytest
 import qtab
 from qtab import _core
 from qtab.config import DEFAULTS, choices
-from qtab.config.functions import FUNCTION, MAPPING
+from qtab.config.choices import FUNCTION, MAPPING
 from qtab.config.help import explanations, groups
 from qtab.config.options import OPTIONS, SETTINGS
 from qtab.config.settings import ConfigSettings, Settings, SharedSettings

@@ -89,3 +89,7 @@ CHOICES: Mapping[str, tuple[str, ...]] = {
     "backend": get_args(Backend),
 }
 """The possible values of each setting."""
+
+FUNCTION = "function"
+MAPPING = "mapping"
+"""The kinds of discretizers without a name."""

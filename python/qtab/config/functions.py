@@ -1,6 +1,6 @@
-"""Settings that may be functions, ``discretizer`` and ``action_mask``: their kinds, and what files store of them."""
+"""Settings that may be functions, ``discretizer`` and ``action_mask``: what files store of them, and masks."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
@@ -8,24 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils.shown import shown
-
-FUNCTION = "function"
-MAPPING = "mapping"
-
-
-def kind(discretizer: Any) -> str:
-    """Returns the name of a discretizer, or ``"function"`` or ``"mapping"``."""
-    if isinstance(discretizer, Mapping):
-        return MAPPING
-    return FUNCTION if callable(discretizer) else str(discretizer)
-
-
-def uses_tiles(discretizer: Any) -> bool:
-    """Whether a discretizer is, or contains, tile coding, so that no state has a row of its own."""
-    if isinstance(discretizer, Mapping):
-        names = (one.get("discretizer") if isinstance(one, Mapping) else one for one in discretizer.values())
-        return any(isinstance(name, str) and name == "tiles" for name in names)
-    return bool(discretizer == "tiles")
 
 
 @dataclass(frozen=True)
@@ -51,15 +33,6 @@ def function_name(function: Callable[[Any], Any]) -> str:
     if isinstance(function, MissingFunction):
         return function.name
     return str(getattr(function, "__qualname__", type(function).__qualname__))
-
-
-def stored_function(config: dict[str, Any]) -> dict[str, str]:
-    """Removes a function from the fields of a config; returns its entry in a file, empty if there is no function."""
-    function = config["discretizer"]
-    if kind(function) != FUNCTION:
-        return {}
-    config["discretizer"] = None
-    return {"discretizer_function": function_name(function)}
 
 
 Mask: TypeAlias = bool | str | Callable[[Any], Any]

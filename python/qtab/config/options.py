@@ -9,7 +9,8 @@ from typing import Any
 
 from qtab._utils import checks
 from qtab.config import value_checks as check
-from qtab.config.functions import FUNCTION, MAPPING, mask_setting
+from qtab.config.choices import FUNCTION, MAPPING
+from qtab.config.functions import mask_setting
 from qtab.config.value_checks import Check
 
 MAX_TILINGS = 32

@@ -7,8 +7,7 @@ import numpy as np
 
 from qtab._utils import checks
 from qtab._utils.shown import did_you_mean, shown
-from qtab.config.choices import CHOICES
-from qtab.config.functions import kind, uses_tiles
+from qtab.config.choices import CHOICES, FUNCTION, MAPPING
 from qtab.config.options import (
     FIXED,
     NO_MASKED_TILES,
@@ -127,6 +126,21 @@ def _effective(choice: str, fields: Mapping[str, Any]) -> Any:
         option = OPTIONS[choice]
         return option.default if _effective(option.choice, fields) in option.values else None
     return value
+
+
+def kind(discretizer: Any) -> str:
+    """Returns the name of a discretizer, or ``"function"`` or ``"mapping"``."""
+    if isinstance(discretizer, Mapping):
+        return MAPPING
+    return FUNCTION if callable(discretizer) else str(discretizer)
+
+
+def uses_tiles(discretizer: Any) -> bool:
+    """Whether a discretizer is, or contains, tile coding, so that no state has a row of its own."""
+    if isinstance(discretizer, Mapping):
+        names = (one.get("discretizer") if isinstance(one, Mapping) else one for one in discretizer.values())
+        return any(isinstance(name, str) and name == "tiles" for name in names)
+    return bool(discretizer == "tiles")
 
 
 _OPTIONS = [

@@ -9,10 +9,10 @@ from gymnasium import spaces
 
 from qtab._utils.shown import did_you_mean, shown
 from qtab.config import Config
+from qtab.config.choices import MAPPING
 from qtab.config.config import replace_checked
-from qtab.config.functions import MAPPING, kind
 from qtab.config.options import OPTIONS
-from qtab.config.validation import defaults
+from qtab.config.validation import defaults, kind
 from qtab.discretizers.bins import Bins
 from qtab.discretizers.box import BoxDiscretizer
 from qtab.discretizers.edges import Edges

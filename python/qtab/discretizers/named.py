@@ -8,8 +8,8 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from qtab.config import Config
-from qtab.config.choices import DiscretizerName
-from qtab.config.functions import FUNCTION, MAPPING, kind
+from qtab.config.choices import FUNCTION, MAPPING, DiscretizerName
+from qtab.config.validation import kind
 from qtab.discretizers.base import Discretizer
 from qtab.discretizers.identity import integer_bounds
 from qtab.envs.actions import FLOATS

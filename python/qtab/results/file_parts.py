@@ -11,9 +11,11 @@ from numpy.typing import NDArray
 
 from qtab._utils import checks
 from qtab._utils.shown import shown
+from qtab.config.choices import FUNCTION
 from qtab.config.config import DEFAULTS, Config, replace_checked
-from qtab.config.functions import STORED, stored_function
+from qtab.config.functions import STORED, function_name
 from qtab.config.options import OPTIONS, SETTINGS, fixed_settings
+from qtab.config.validation import kind
 from qtab.config.value_checks import MAX_ACTIONS
 from qtab.envs.actions import ActionParts, Actions
 from qtab.results import run_file
@@ -50,7 +52,7 @@ def write(
         stored["initial_q"] = result.config.initial_q
         config["initial_q"] = None
     content = {
-        **stored_function(config),
+        **_stored_function(config),
         "config": config,
         "actions": len(result.actions),
         "first_action": result.actions.first,
@@ -211,6 +213,15 @@ def checked_masks(masks: NDArray[Any], shape: tuple[int, ...]) -> NDArray[np.boo
     if masks.dtype != np.bool_ or masks.shape != shape or not masks.any(axis=-1).all():
         raise ValueError(f"its action masks are not booleans of shape {shape} that leave each state an action")
     return masks
+
+
+def _stored_function(config: dict[str, Any]) -> dict[str, str]:
+    """Removes a function from the fields of a config; returns its entry in a file, empty if there is no function."""
+    function = config["discretizer"]
+    if kind(function) != FUNCTION:
+        return {}
+    config["discretizer"] = None
+    return {"discretizer_function": function_name(function)}
 
 
 ADDED = tuple(name for name, setting in SETTINGS.items() if setting.added)

@@ -10,9 +10,8 @@ from gymnasium import spaces
 
 from qtab.config import DEFAULTS, Config
 from qtab.config.config import replace_checked
-from qtab.config.functions import uses_tiles
 from qtab.config.options import OPTIONS, WITH_STATE_VALUES, is_set, n_tables
-from qtab.config.validation import mismatch
+from qtab.config.validation import mismatch, uses_tiles
 from qtab.discretizers import Discretizer, is_plain
 from qtab.discretizers.identity import integer_bounds
 
