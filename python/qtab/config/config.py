@@ -209,10 +209,6 @@ class Config(WithOrigin):
         # For type checkers, which would otherwise expect the stored types, not the types that may be given.
         def __init__(self, env: str = ..., **settings: Unpack[Settings]) -> None: ...
 
-    def __post_init__(self) -> None:
-        """Checks the values and converts NumPy's numbers to Python's."""
-        vars(self).update(validated(vars(self), DEFAULTS))
-
     def __eq__(self, other: object) -> bool:
         """Whether all settings are equal; arrays are compared byte by byte."""
         if not isinstance(other, Config):
@@ -271,8 +267,11 @@ def _comparable(value: Any) -> Any:
     return value
 
 
-def _suggesting(init: Callable[..., None]) -> Callable[..., None]:
-    """Makes the generated constructor suggest the nearest setting for an unknown keyword."""
+def _checking(init: Callable[..., None]) -> Callable[..., None]:
+    """Makes the generated constructor check the settings, and convert NumPy's numbers to Python's.
+
+    It suggests the nearest setting for an unknown keyword, and adds settings that follow from those given.
+    """
 
     @wraps(init)
     def checked(self: Config, *args: Any, **settings: Any) -> None:
@@ -285,11 +284,12 @@ def _suggesting(init: Callable[..., None]) -> Callable[..., None]:
             settings.setdefault("on_truncation", "terminate")
         settings.update(implied_schedules(settings, {**DEFAULTS, **settings}))
         init(self, *args, **settings)
+        vars(self).update(validated(vars(self), DEFAULTS))
 
     return checked
 
 
-setattr(Config, "__init__", _suggesting(Config.__init__))  # noqa: B010 - type checkers refuse the assignment
+setattr(Config, "__init__", _checking(Config.__init__))  # noqa: B010 - type checkers refuse the assignment
 
 
 def replace_checked(config: Config, **changes: Any) -> Config:

@@ -227,8 +227,9 @@ def allocate_results(
     """
     episodes = resolved.config.episodes
     values = math.prod(tables_shape(resolved, 1))
-    keep_masks = keep_tables and resolved.masks.known is None and resolved.discretizer.has_cells
-    masks = mask_bytes(resolved.masks, resolved.discretizer, len(resolved.actions)) if keep_masks else 0
+    unknown_masks = resolved.masks is not None and resolved.masks.known is None
+    keep_masks = unknown_masks and keep_tables and resolved.discretizer.has_cells
+    masks = mask_bytes(resolved.discretizer, len(resolved.actions)) if keep_masks else 0
     stored = BYTES_PER_RUN + episodes * BYTES_PER_EPISODE + (8 * values if keep_tables else 0) + masks
     needed = runs * stored + at_once * bytes_in_progress(resolved)
     check_memory(f"{runs} runs of {episodes} episodes", needed, limit)
@@ -290,6 +291,6 @@ def _masks(resolved: ResolvedRun, results: Results, rows: Any) -> NDArray[np.boo
     """Returns (runs, *cells, actions): the masks, which are known from the start in Rust; None without masks."""
     shape = (*resolved.discretizer.shape, len(resolved.actions))
     runs = len(results["finished"][rows])
-    if resolved.masks.known is not None:
+    if resolved.masks is not None and resolved.masks.known is not None:
         return np.broadcast_to(resolved.masks.known.reshape(shape), (runs, *shape))
     return results["masks"][rows].reshape(runs, *shape) if results["masks"].shape[1] else None

@@ -33,27 +33,21 @@ class ActionMasks:
 
     def spec(self) -> ActionMasksSpec:
         """Returns the masks as the extension takes them."""
-        if self.source["type"] == "none":
-            return {"type": "none"}
         return {"type": "observed"} if self.known is None else {"type": "known", "available": self.known}
 
-
-NO_MASKS = ActionMasks({"type": "none"})
-"""No masks: every state allows all actions."""
 
 WRITTEN_MASKS = ActionMasks({"type": "info"})
 """The masks that the functions of an environment in a capsule write at each step."""
 
 
-def asks_for_masks(action_mask: Mask) -> bool:
-    """Returns whether a run with this setting of ``action_mask`` has masks.
+def check_mask_is_given(action_mask: Mask) -> None:
+    """Checks the setting ``action_mask`` of a run with masks.
 
     Raises:
         ValueError: for the setting of a saved run whose function is not given.
     """
     if isinstance(action_mask, str):
         raise ValueError(FORGOTTEN)
-    return action_mask is not False
 
 
 def observed_masks(action_mask: Mask, env: gym.Env) -> ActionMasks:
@@ -123,10 +117,8 @@ def _observations(discretizer: Identity) -> Iterator[Any]:
         yield numbers if discretizer.low.shape else numbers[0]
 
 
-def mask_bytes(masks: ActionMasks, discretizer: Discretizer, n_actions: int) -> int:
+def mask_bytes(discretizer: Discretizer, n_actions: int) -> int:
     """Returns the memory that the masks take while a run trains, in bytes."""
-    if masks.source["type"] == "none":
-        return 0
     return n_actions * (math.prod(discretizer.shape) if discretizer.n_active == 1 else 1)
 
 
@@ -163,7 +155,8 @@ class PythonEnvironment:
     actions: Actions
     owns_env: bool
     """Whether to close the environment after the run."""
-    masks: ActionMasks = NO_MASKS
+    masks: ActionMasks | None = None
+    """Its action masks; None if every state allows all actions."""
 
     def spec(self) -> PythonEnvSpec:
         """Returns the environment as the extension takes it."""
@@ -172,7 +165,7 @@ class PythonEnvironment:
             "env": self.env,
             "first_action": self.actions.first,
             "actions": self.actions.objects(),
-            "action_mask": self.masks.source,
+            "action_mask": {"type": "none"} if self.masks is None else self.masks.source,
         }
 
     def exclusively(self) -> AbstractContextManager[None]:

@@ -32,12 +32,11 @@ from qtab.envs.registry import (
     named_spec,
 )
 from qtab.training.setup.environment import (
-    NO_MASKS,
     WRITTEN_MASKS,
     Environment,
     NativeEnvironment,
     PythonEnvironment,
-    asks_for_masks,
+    check_mask_is_given,
     known_masks,
     observed_masks,
     with_discretizer,
@@ -130,7 +129,7 @@ def _from_spec(env: str | EnvSpec, asked: Mapping[str, Any]) -> _Request:
     config = config_of(name, asked)
     entry: InRust | None = None if config.backend == "numba" else entry_for_spec(spec, config.env_kwargs)
     known, python_reason = None, None
-    if entry is not None and config.backend not in IN_PYTHON and not asks_for_masks(config.action_mask):
+    if entry is not None and config.backend not in IN_PYTHON and config.action_mask is False:
         known = known_table(spec, config.env_kwargs)
     made = _make(spec, config) if known is None else known
     if entry is None:
@@ -216,18 +215,20 @@ def _fill_defaults(request: _Request, owns_env: bool) -> ResolvedRun:
     in_python = discretizer.reads_space
     if in_python:
         environment, in_python = with_discretizer(environment, discretizer)
-    masks = None if asks_for_masks(config.action_mask) else NO_MASKS
+    masks, has_masks = None, config.action_mask is not False
+    if has_masks:
+        check_mask_is_given(config.action_mask)
     in_rust = isinstance(environment, NativeEnvironment)
     external = request.entry if isinstance(request.entry, _core.ExternalEnv) else None
-    if in_rust and masks is None and config.action_mask is True and external is not None:
+    if in_rust and has_masks and config.action_mask is True and external is not None:
         masks = WRITTEN_MASKS if external.has_action_mask else None
-    elif in_rust and masks is None and not in_python:
+    elif in_rust and has_masks and not in_python:
         masks = known_masks(config.action_mask, env, discretizer, len(actions))
-    if in_rust and (masks is None or in_python):
+    if in_rust and (in_python or (has_masks and masks is None)):
         in_rust, python_reason = False, READ_IN_PYTHON if in_python else MASKS_BY_STEP
         if config.backend in INSISTING:
             raise rust_unavailable(python_reason, config.backend)
-    if masks is None:
+    if has_masks and masks is None:
         masks = observed_masks(config.action_mask, env)
     if not in_rust:
         if isinstance(env, KnownTable) and request.spec is not None:

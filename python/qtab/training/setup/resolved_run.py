@@ -29,7 +29,8 @@ class ResolvedRun:
     environment: Environment
     discretizer: Discretizer
     actions: Actions
-    masks: ActionMasks
+    masks: ActionMasks | None
+    """The action masks; None if every state allows all actions."""
     seed: int
     max_episode_steps: int
     default_time_limit: bool
@@ -68,7 +69,7 @@ class ResolvedRun:
             "discretizer": self.discretizer.spec(),
             "num_actions": len(self.actions),
             "max_episode_steps": self.max_episode_steps,
-            "action_masks": self.masks.spec(),
+            "action_masks": {"type": "none"} if self.masks is None else self.masks.spec(),
             "settings": vars(self.config),
         }
 

@@ -45,7 +45,7 @@ def bytes_in_progress(resolved: ResolvedRun) -> int:
         per_value += BYTES_PER_VISIT_COUNT
     if resolved.config.exploration == "ucb":
         per_value += BYTES_PER_VISIT_COUNT
-    masks = mask_bytes(resolved.masks, resolved.discretizer, len(resolved.actions))
+    masks = 0 if resolved.masks is None else mask_bytes(resolved.discretizer, len(resolved.actions))
     external = resolved.environment.external if isinstance(resolved.environment, NativeEnvironment) else None
     states = 0 if external is None else 2 * external.state_size  # that before a step and that after it
     return resolved.config.episodes * BYTES_PER_EPISODE + values * per_value + masks + states
