@@ -16,11 +16,6 @@ pub(super) struct Problem<'a> {
 }
 
 impl<'a> Problem<'a> {
-    /// The same problem without discounting.
-    pub(super) fn undiscounted(self) -> Self {
-        Self { discount: 1.0, ..self }
-    }
-
     /// A zero for each state.
     pub(super) fn zeros(&self) -> Result<Vec<f64>, AllocationError> {
         filled(&0.0, self.mdp.num_states(), self.stop)

@@ -53,6 +53,7 @@ pub fn finite_horizon(
     stop: &StopFlag<'_>,
 ) -> Result<FiniteHorizon, PlanningError> {
     let problem = Problem { mdp, discount, stop };
+    let undiscounted = Problem { discount: 1.0, ..problem };
     let zeros = || problem.zeros();
     let (mut values, mut returns, mut next_values, mut next_returns) = (zeros()?, zeros()?, zeros()?, zeros()?);
     // Bounds on the errors of the values.
@@ -81,7 +82,7 @@ pub fn finite_horizon(
                 changes.push(PolicyChange { steps_to_go: sweeps, state, action: best });
             }
             next_values[state] = row[best];
-            next_returns[state] = problem.undiscounted().action_value(state, *kept, &returns);
+            next_returns[state] = undiscounted.action_value(state, *kept, &returns);
             if !(next_values[state].is_finite() && next_returns[state].is_finite()) {
                 return Err(PlanningError::Overflow(state));
             }
