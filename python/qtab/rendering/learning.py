@@ -5,15 +5,14 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from qtab._utils.progress import ProgressBar
 from qtab._utils.shown import counted
-from qtab.plots.arrangements import Raster, arrange
+from qtab.plots.arrangements import arrange
 from qtab.plots.arrangements.grid_map import Layout
 from qtab.plots.parts.axes import new_figure
 from qtab.plots.parts.panels import color_bar, draw_heat_map
-from qtab.plots.parts.subject import Subject, subject_of
+from qtab.plots.parts.subject import subject_of
 from qtab.plots.policy import policy
 from qtab.plots.values import common_norm, value_label, value_text
 from qtab.rendering.frames import Frames
@@ -78,62 +77,34 @@ def draw_learning(
     figure.set_dpi(DOTS_PER_INCH)
     canvas: Any = FigureCanvasAgg(figure)
     frames = Frames(fps)
-    painter = _Painter(figure, raster, subjects, panels, at, layout)
+    axes: Any = figure.subplots(1, len(panels), squeeze=False)[0]
+    grids = [subject.state_values(raster.rows) for subject in subjects] if "values" in panels else []
+    norm, color_bars = common_norm(grids), list[Any]()
+
+    def draw(index: int) -> None:
+        """Draws a state in place of the previous one: the axes, their ticks and the color bar stay, to save time."""
+        for ax, panel, title in zip(axes, panels, titles, strict=True):
+            drawn = [*ax.collections, *ax.lines, *ax.texts, *ax.patches, *ax.images, *ax.child_axes, ax.get_legend()]
+            for artist in drawn:
+                if artist is not None and artist not in color_bars:
+                    artist.remove()
+            heading = f"{title}\n{after_episodes(states[index][0])}"
+            if panel == "policy":
+                source: Any = subjects[index].source
+                policy(source, ax, at=at, layout=layout, title=heading)
+                continue
+            image = draw_heat_map(ax, raster, grids[index], norm, heading, value_text)
+            if not color_bars:
+                color_bars.append(color_bar([ax], raster, image, value_label(subjects)).ax)
+        canvas.draw()
+
     # With a fixed height of the titles, matplotlib does not measure all labels for each picture.
     with rc_context({"axes.titley": 1.0}), ProgressBar(len(states), "snapshot", progress, "draw") as bar:
         # The last picture, which shows the most, determines the layout of all.
-        painter.draw(len(states) - 1, _below(titles, states[-1][0]))
-        canvas.draw()
+        draw(len(states) - 1)
         figure.set_layout_engine("none")
         for index, (done, _) in enumerate(states):
-            painter.draw(index, _below(titles, done))
-            canvas.draw()
+            draw(index)
             frames.append(np.asarray(canvas.buffer_rgba())[..., :3].copy(), after_episodes(done))
             bar.move_to(index + 1)
     return frames
-
-
-def _below(titles: Sequence[str], done: int) -> list[str]:
-    return [f"{title}\n{after_episodes(done)}" for title in titles]
-
-
-class _Painter:
-    """Draws the panels of one state on the same axes."""
-
-    def __init__(
-        self,
-        figure: Any,
-        raster: Raster,
-        subjects: Sequence[Subject],
-        panels: Sequence[str],
-        at: Mapping[str, float] | None,
-        layout: Layout | None,
-    ) -> None:
-        self.raster, self.subjects, self.panels = raster, subjects, panels
-        self.at, self.layout = at, layout
-        self.bar: Any = None
-        self.axes = list(figure.subplots(1, len(panels), squeeze=False)[0])
-        self.grids: list[NDArray[np.float64]] = []
-        if "values" in panels:
-            self.grids = [subject.state_values(raster.rows) for subject in subjects]
-            self.norm = common_norm(self.grids)
-
-    def draw(self, index: int, titles: Sequence[str]) -> None:
-        """Draws the state with an index in place of the previous one."""
-        for ax, panel, title in zip(self.axes, self.panels, titles, strict=True):
-            self._clear(ax)
-            if panel == "values":
-                image = draw_heat_map(ax, self.raster, self.grids[index], self.norm, title, value_text)
-                if self.bar is None:
-                    self.bar = color_bar([ax], self.raster, image, value_label(self.subjects)).ax
-            else:
-                source: Any = self.subjects[index].source
-                policy(source, ax, at=self.at, layout=self.layout, title=title)
-
-    def _clear(self, ax: Any) -> None:
-        """Removes the drawing; the axes, their ticks and the color bar stay, which saves a third of the time."""
-        legend = ax.get_legend()
-        drawn = [*ax.collections, *ax.lines, *ax.texts, *ax.patches, *ax.images, *ax.child_axes, legend]
-        for artist in drawn:
-            if artist is not None and artist is not self.bar:
-                artist.remove()
