@@ -49,10 +49,17 @@ class TabularEnv(_core.ToyText, ToyTextMixin, gym.Env[Any, Any]):
         _check_not_empty(P)
         checked = _core.TransitionTable(P, self.initial_state_distrib)
         states, actions = checked.states, checked.actions
+        # By the id of a list of transitions: the list, so that no other gets this id, and the copy that actions share.
+        copies: dict[int, tuple[Sequence[Transition], list[Transition]]] = {}
+
+        def copied(transitions: Sequence[Transition]) -> list[Transition]:
+            if id(transitions) not in copies:
+                copies[id(transitions)] = transitions, [_copy(transition) for transition in transitions]
+            return copies[id(transitions)][1]
+
         # Copied, so that later changes to the argument do not change the environment.
-        copies = _Copies()
         self.P: dict[int, dict[int, list[Transition]]] = {
-            state: {action: copies.of(P[state][action]) for action in range(actions)} for state in range(states)
+            state: {action: copied(P[state][action]) for action in range(actions)} for state in range(states)
         }
         self.observation_space = gym.spaces.Discrete(states)
         self.action_space = gym.spaces.Discrete(actions)
@@ -94,22 +101,8 @@ def _check_not_empty(P: TransitionTable) -> None:  # noqa: N803 - Gymnasium's na
         raise ValueError("P[0] must have at least 1 action, got none")
 
 
-class _Copies:
-    """Copies of lists of transitions: one copy of a list that several actions share, and no copies of tuples."""
-
-    def __init__(self) -> None:
-        self._copies: dict[int, tuple[Sequence[Transition], list[Transition]]] = {}
-        """By the id of a list: the list itself, so that no other gets this id, and its copy."""
-
-    def of(self, transitions: Sequence[Transition]) -> list[Transition]:
-        """Returns the copy of a list."""
-        found = self._copies.get(id(transitions))
-        if found is None:
-            found = self._copies[id(transitions)] = transitions, [_copy(transition) for transition in transitions]
-        return found[1]
-
-
 def _copy(transition: Transition) -> Transition:
+    """Returns a transition with a float as its probability; a tuple that has one is not copied."""
     if type(transition) is tuple and type(transition[0]) is float:
         return transition
     probability, next_state, reward, terminated = transition
