@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
-from typing import Any, Protocol, overload
+from typing import Any, overload
 
 import gymnasium as gym
 import numpy as np
@@ -16,39 +16,13 @@ from qtab.config import Config
 from qtab.config.origin import Origin, copied, trained_on
 from qtab.envs.origin.description import EnvironmentDescription, differences
 from qtab.envs.registry import gymnasium_id, spec_of
+from qtab.planning.classic_control import GridSolver
 from qtab.planning.gap import Gap
 from qtab.planning.search import Search
 from qtab.planning.tabular import StationaryPolicy, TabularSolver
 from qtab.results.run import Run
 from qtab.results.runs import Runs
 from qtab.results.summary import FINAL_EPISODES
-
-
-class Solver(Protocol):
-    """The solution of an environment: it chooses actions and evaluates the policies of runs."""
-
-    needs_step_count: bool
-    """Whether the best action depends on the number of steps taken in the episode."""
-
-    @property
-    def has_continuous_actions(self) -> bool:
-        """Whether the actions are chosen from a Box, such as Pendulum's torques."""
-
-    @property
-    def observation_shape(self) -> tuple[int, ...]:
-        """The shape of an observation."""
-
-    def in_rows(self, observation: Any) -> Any:
-        """Returns n observations of a Tuple space as one array; any other observation unchanged."""
-
-    def action(self, observation: ArrayLike, steps_taken: int) -> int:
-        """Returns the best action after a number of steps of the episode."""
-
-    def greedy_return(self, run: Run) -> tuple[float, float]:
-        """Returns the expected return of a run's greedy policy, and its standard error."""
-
-    def attainable_return(self, run: Run) -> float | None:
-        """Returns the return of the best policy known with the table of a run; None if none is known."""
 
 
 @with_fields
@@ -88,7 +62,7 @@ class Optimum:
     """The wall-clock time of the computation."""
     search: Search | None = field(repr=False)
     """The episodes that the search found; None for a transition table."""
-    solver: Solver = field(repr=False)
+    solver: TabularSolver | GridSolver = field(repr=False)
     """The solution behind :meth:`predict` and :meth:`gap`."""
     environment: EnvironmentDescription | None = field(default=None, repr=False)
     """The environment in detail, with the changes made to it after its construction."""
