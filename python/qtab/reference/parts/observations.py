@@ -1,7 +1,8 @@
 """Discretization of observations of any space, in plain NumPy."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from itertools import islice
 from typing import Any
 
 import gymnasium as gym
@@ -45,44 +46,42 @@ class Components:
     """Each component of an observation is an index or is discretized, in Gymnasium's order, arrays in C order."""
 
     def __init__(self, space: gym.Space[Any], config: Config) -> None:
-        self.leaves = list(leaves(space))
+        self.leaves = dict(leaves(space))
         self.groups = [
             (paths, of_box(joined(self.leaves, paths), chosen)) for paths, chosen in grouped(self.leaves, config)
         ]
         self.grouped = {path for paths, _ in self.groups for path in paths}
         self.tiles = next((group for _, group in self.groups if isinstance(group, TileCoding)), None)
         self.n_active = 1 if self.tiles is None else self.tiles.n_active
-        counts: dict[Path, list[int]] = {}
-        for path, leaf in self.leaves:
-            counts[path] = [] if path in self.grouped else [count for _, count in integers(leaf)]
+        indices = {path: integers(leaf) for path, leaf in self.leaves.items() if path not in self.grouped}
+        counts = {path: [count for _, count in found] for path, found in indices.items()}
         for paths, group in self.groups:
-            sizes = iter(group.shape if group is not self.tiles else ())
-            for path in paths:
-                counts[path] = (
-                    [] if group is self.tiles else [next(sizes) for _ in range(size(dict(self.leaves)[path]))]
-                )
-        self.cell_shape = tuple(count for path, _ in self.leaves for count in counts[path])
-        self.first = {
-            path: np.array([first for first, _ in integers(leaf)], np.int64)
-            for path, leaf in self.leaves
-            if path not in self.grouped
-        }
+            if group is not self.tiles:
+                counts |= self.by_part(paths, group.shape)
+        self.cell_shape = self.in_order(counts)
+        self.first = {path: np.array([first for first, _ in found], np.int64) for path, found in indices.items()}
         rows = 1 if self.tiles is None else math.prod(self.tiles.shape)
         self.shape: tuple[int, ...] = self.cell_shape if self.tiles is None else (math.prod(self.cell_shape) * rows,)
 
     def cells(self, observation: Any) -> tuple[int, ...]:
         """Returns the index of each component that is not tiled."""
         found: dict[Path, list[int]] = {}
-        for path, _ in self.leaves:
-            if path not in self.grouped:
-                found[path] = (np.ravel(part(observation, path)).astype(np.int64) - self.first[path]).tolist()
+        for path, first in self.first.items():
+            found[path] = (np.ravel(part(observation, path)).astype(np.int64) - first).tolist()
         for paths, group in self.groups:
             if group is not self.tiles:
                 (row,) = group.rows(self.numbers(observation, paths))
-                indices = iter(np.unravel_index(row, group.shape))
-                for path in paths:
-                    found[path] = [int(next(indices)) for _ in range(size(dict(self.leaves)[path]))]
-        return tuple(index for path, _ in self.leaves for index in found.get(path, ()))
+                found |= self.by_part(paths, map(int, np.unravel_index(row, group.shape)))
+        return self.in_order(found)
+
+    def by_part(self, paths: list[Path], numbers: Iterable[int]) -> dict[Path, list[int]]:
+        """Returns the numbers of some parts, given one after the other, for each part."""
+        left = iter(numbers)
+        return {path: list(islice(left, size(self.leaves[path]))) for path in paths}
+
+    def in_order(self, numbers: dict[Path, list[int]]) -> tuple[int, ...]:
+        """Returns the numbers of the parts in the order of the space; a tiled part has none."""
+        return tuple(number for path in self.leaves for number in numbers.get(path, ()))
 
     def numbers(self, observation: Any, paths: list[Path]) -> Any:
         """Returns the numbers of some parts of an observation, one after the other."""
@@ -194,26 +193,25 @@ def is_divided(leaf: Any, config: Config) -> bool:
     return config.max_rows is None and not few
 
 
-def grouped(parts: list[tuple[Path, Any]], config: Config) -> list[tuple[list[Path], Config]]:
+def grouped(parts: dict[Path, Any], config: Config) -> list[tuple[list[Path], Config]]:
     """Returns the parts that are discretized together, and the config with the options for them."""
     if isinstance(config.discretizer, dict):
         groups = []
         for key, options in config.discretizer.items():
             if options["discretizer"] != "identity":
-                boxes = [
-                    path for path, leaf in parts if str(path[0]) == key and (is_integer_box(leaf) or is_float_box(leaf))
-                ]
+                of_key = {path: leaf for path, leaf in parts.items() if str(path[0]) == key}
+                boxes = [path for path, leaf in of_key.items() if is_integer_box(leaf) or is_float_box(leaf)]
                 groups.append((boxes, replace_checked(config, **options)))
         return groups
     if config.discretizer == "identity":
         return []
-    divided = [path for path, leaf in parts if is_divided(leaf, config)]
-    return [(divided or [path for path, leaf in parts if is_integer_box(leaf)], config)]
+    divided = [path for path, leaf in parts.items() if is_divided(leaf, config)]
+    return [(divided or [path for path, leaf in parts.items() if is_integer_box(leaf)], config)]
 
 
-def joined(parts: list[tuple[Path, Any]], paths: list[Path]) -> gym.spaces.Box:
+def joined(parts: dict[Path, Any], paths: list[Path]) -> gym.spaces.Box:
     """Returns one Box of the components of several, in float64 unless float32 holds all of them."""
-    boxes = [leaf for path, leaf in parts if path in paths]
+    boxes = [leaf for path, leaf in parts.items() if path in paths]
     dtype: Any = np.float32 if all(box.dtype in (np.float16, np.float32) for box in boxes) else np.float64
     low = np.concatenate([np.where(box.bounded_below, box.low.astype(dtype), -np.inf).ravel() for box in boxes])
     high = np.concatenate([np.where(box.bounded_above, box.high.astype(dtype), np.inf).ravel() for box in boxes])
