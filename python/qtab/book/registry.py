@@ -7,16 +7,15 @@ from types import ModuleType
 
 from qtab._utils.shown import did_you_mean
 from qtab.book.experiment import Experiment
-from qtab.book.figures import random_walk
+from qtab.book.figures import mountain_car, random_walk
 from qtab.book.figures.chapter_02 import figure_2_1, figure_2_2, figure_2_3, figure_2_4, figure_2_5, figure_2_6
 from qtab.book.figures.chapter_03 import example_3_5, example_3_8
 from qtab.book.figures.chapter_04 import figure_4_1, figure_4_2, figure_4_3
 from qtab.book.figures.chapter_05 import figure_5_1, figure_5_2, figure_5_3, figure_5_4
-from qtab.book.figures.chapter_06 import example_6_2, example_6_5, example_6_6, figure_6_2, figure_6_3, figure_6_5
+from qtab.book.figures.chapter_06 import cliff, example_6_2, example_6_5, figure_6_2, figure_6_5
 from qtab.book.figures.chapter_08 import changing_mazes, example_8_4, figure_8_2, figure_8_7, figure_8_8
 from qtab.book.figures.chapter_09 import figure_9_1, figure_9_2, figure_9_10
-from qtab.book.figures.chapter_10 import figure_10_1, figure_10_4, figure_10_5, learning_curves
-from qtab.book.figures.chapter_12 import figure_12_10, figure_12_11
+from qtab.book.figures.chapter_10 import figure_10_1, figure_10_5
 from qtab.book.figures.chapter_13 import short_corridor
 from qtab.book.result import Result
 
@@ -43,7 +42,7 @@ CHAPTERS: Sequence[Chapter] = (
     _chapter(
         6,
         "Temporal-difference learning",
-        *(example_6_2, figure_6_2, example_6_5, example_6_6, figure_6_3, figure_6_5),
+        *(example_6_2, figure_6_2, example_6_5, cliff.EXAMPLE_6_6, cliff.FIGURE_6_3, figure_6_5),
     ),
     _chapter(7, "n-step bootstrapping", random_walk.FIGURE_7_2),
     _chapter(
@@ -55,12 +54,15 @@ CHAPTERS: Sequence[Chapter] = (
     _chapter(
         10,
         "On-policy control with approximation",
-        *(figure_10_1, learning_curves.FIGURE_10_2, learning_curves.FIGURE_10_3, figure_10_4, figure_10_5),
+        figure_10_1,
+        *(mountain_car.FIGURE_10_2, mountain_car.FIGURE_10_3, mountain_car.FIGURE_10_4),
+        figure_10_5,
     ),
     _chapter(
         12,
         "Eligibility traces",
-        *(random_walk.FIGURE_12_3, random_walk.FIGURE_12_6, random_walk.FIGURE_12_8, figure_12_10, figure_12_11),
+        *(random_walk.FIGURE_12_3, random_walk.FIGURE_12_6, random_walk.FIGURE_12_8),
+        *(mountain_car.FIGURE_12_10, mountain_car.FIGURE_12_11),
     ),
     _chapter(
         13,
