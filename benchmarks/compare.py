@@ -5,6 +5,7 @@ python benchmarks/compare.py training stepping --seconds 60
 
 import argparse
 from collections.abc import Callable, Mapping, Sequence
+from importlib.util import find_spec
 
 import algorithms
 import environment_presets
@@ -13,18 +14,19 @@ import mountain_car
 import numba_loops
 import own_functions
 import own_library
+import own_start
 import vector_envs
 from qtab._utils.versions import versions
 from tables import Table
 
-PARTS: Mapping[str, Sequence[Callable[[], Table]]] = {
+PARTS: Mapping[str, Sequence[Callable[[], Table | own_start.StartTable]]] = {
     "training": [mountain_car.training],
     "environments": [environment_presets.training],
     "learners": [algorithms.learners],
     "book": [algorithms.book],
     "stepping": [mountain_car.stepping, idle_env.learning],
     "vectors": [vector_envs.stepping],
-    "own": [own_functions.training, own_library.training],
+    "own": [own_functions.training, own_library.training, own_start.starting],
 }
 
 
@@ -44,10 +46,16 @@ def main(arguments: Sequence[str] | None = None) -> None:
         print(f"WARNING: this is a {found['build']} build, many times slower: maturin develop --release\n")
     if not numba_loops.numba:
         print("numba is not installed, and its loops are left out: pip install numba\n")
-    for part in options.parts or PARTS:
+    parts = options.parts or [*PARTS]
+    if not find_spec("envpool") and {"vectors", "own"} & set(parts):
+        print("EnvPool is not installed, and its rows are left out: pip install envpool\n")
+    for part in parts:
         for table in PARTS[part]:
             print(f"{table().measured(options.seconds, options.rounds)}\n", flush=True)
-    print("ns/step is the median over the rounds, × (times as fast) and rel. time the medians of the ratios in a round")
+    print(
+        "ns/step is the median over the rounds, × (times as fast) and rel. time the medians of the ratios in a round;"
+    )
+    print("for environments of one's own, they are the minima over the rounds and the ratios of these")
     print(", ".join(f"{name} {value}" for name, value in found.items()))
 
 

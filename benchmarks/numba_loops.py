@@ -23,6 +23,11 @@ SIDE = TILES + 1
 F = TypeVar("F", bound=Callable[..., Any])
 
 
+def compiles() -> bool:
+    """Whether Numba is installed and compiles, which the environment variable NUMBA_DISABLE_JIT turns off."""
+    return bool(numba) and not numba.config.DISABLE_JIT
+
+
 def compiled(function: F) -> F:
     """Returns the function as Numba compiles it at its first call."""
     compiled_function: F = numba.njit(function) if numba else function

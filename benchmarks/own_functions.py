@@ -1,5 +1,6 @@
-"""Training on an environment of one's own in Python, compiled by Numba, beside the package's and a loop by hand."""
+"""Training on environments of one's own in Python, compiled by Numba, beside the package's and a loop by hand."""
 
+from collections.abc import Callable
 from typing import Any
 
 import gymnasium as gym
@@ -7,80 +8,70 @@ import numpy as np
 
 import numba_loops
 import qtab
+import vector_envs
+from own_cars import SETTINGS, limited, limited_class
 from tables import Benchmark, Column, Table, relative_time, relative_to
 
-STEPS = 200
-"""The time limit of an episode."""
-SETTINGS: dict[str, Any] = {"scale": (10, 100), "terminal_update": "assign", "progress": False}
-"""The settings of the article, which the preset of MountainCar-v0 has."""
+EPISODES, EPISODES_IN_PYTHON = 5000, 20
+ENVPOOL_STEPS = 2_000
+"""The steps in a round of EnvPool."""
 
-CORE, COMPILED = "qtab.train on MountainCar-v0", "the same as a FunctionalEnv, compiled"
-PYTHON, NUMBA = "the same, stepped in Python", "a loop by hand under numba"
-COMPILED_ONE, COMPILED_TWO = "compiled, 16 seeds, one thread", "compiled, 32 seeds, two threads"
-
-
-class OwnCar(qtab.FunctionalEnv):
-    """MountainCar-v0 as functions of its state, the position and the velocity."""
-
-    observation_space = gym.spaces.Box(np.array([-1.2, -0.07], np.float32), np.array([0.6, 0.07], np.float32))
-    action_space = gym.spaces.Discrete(3)
-
-    def __init__(self, force: float = 0.001, gravity: float = 0.0025) -> None:
-        self.force, self.gravity = force, gravity
-
-    def initial_state(self, rng: np.random.Generator) -> tuple[float, float]:
-        """Returns a position near the bottom, and no velocity."""
-        return rng.uniform(low=-0.6, high=-0.4), 0.0
-
-    def transition(self, state: Any, action: int, rng: np.random.Generator) -> Any:  # noqa: ARG002 - it does not draw
-        """Returns the next state, the reward and whether the goal is reached."""
-        position, velocity = state
-        velocity += (action - 1) * self.force + np.cos(3 * position) * (-self.gravity)
-        velocity = min(max(velocity, -0.07), 0.07)
-        position = min(max(position + velocity, -1.2), 0.6)
-        if position == -1.2 and velocity < 0:
-            velocity = 0.0
-        return (position, velocity), -1.0, position >= 0.5 and velocity >= 0.0
-
-    def observe(self, state: Any) -> Any:
-        """Returns the state."""
-        return state
-
-
-def limited() -> gym.Env[Any, Any]:
-    """Returns the environment with the time limit of MountainCar-v0."""
-    return gym.wrappers.TimeLimit(OwnCar(), STEPS)
+CORE, NUMBA = "qtab.train on MountainCar-v0", "a loop by hand under numba"
+COMPILED, PYTHON = "the same as a FunctionalEnv, compiled", "the FunctionalEnv, stepped in Python"
+ORDINARY, ORDINARY_PYTHON = "the same as an ordinary class, compiled", "the ordinary class, stepped in Python"
+COMPILED_ONE, COMPILED_TWO = "the FunctionalEnv, 16 seeds, one thread", "the FunctionalEnv, 16 seeds, two threads"
+ENVPOOL = "EnvPool's MountainCar, one environment, only stepped"
 
 
 def training() -> Table:
     """Returns the table of training with the default settings of MountainCar-v0."""
     loops: dict[str, Benchmark] = {CORE: lambda seed: _steps(qtab.train("MountainCar-v0", seed=seed, progress=False))}
-    if numba_loops.numba and not numba_loops.numba.config.DISABLE_JIT:
+    if numba_loops.compiles():
         loops |= {
-            COMPILED: lambda seed: _steps(train(seed, "numba", 5000)),
+            COMPILED: lambda seed: _steps(train(limited, seed, "numba", EPISODES)),
+            ORDINARY: lambda seed: _steps(train(limited_class, seed, "numba", EPISODES)),
             NUMBA: numba_loops.single_run,
-            COMPILED_ONE: lambda _: _many(16, 1),
-            COMPILED_TWO: lambda _: _many(32, 2),
+            COMPILED_ONE: lambda _: _many(1),
+            COMPILED_TWO: lambda _: _many(2),
         }
-    loops[PYTHON] = lambda seed: _steps(train(seed, "python", 20))
+    loops[PYTHON] = lambda seed: _steps(train(limited, seed, "python", EPISODES_IN_PYTHON))
+    loops[ORDINARY_PYTHON] = lambda seed: _steps(train(limited_class, seed, "python", EPISODES_IN_PYTHON))
+    pool = vector_envs.envpool_cars(1, threads=1)
+    if pool is not None:
+        loops[ENVPOOL] = _stepping(pool)
+    of_functions = [name for name in loops if name not in (ORDINARY, ORDINARY_PYTHON)]
     columns = [
-        Column("× Python", relative_to(PYTHON, [*loops])),
-        Column("× numba", relative_to(NUMBA, [*loops])),
+        Column(
+            "× Python",
+            relative_to(PYTHON, of_functions) | {ORDINARY: ORDINARY_PYTHON, ORDINARY_PYTHON: ORDINARY_PYTHON},
+        ),
+        Column("× numba", relative_to(NUMBA, [CORE, COMPILED, ORDINARY, NUMBA])),
         Column("× one thread", relative_to(COMPILED_ONE, [COMPILED_TWO])),
-        Column("rel. to core", relative_to(CORE, [COMPILED]), relative_time),
+        Column("rel. to core", relative_to(CORE, [COMPILED, ORDINARY]), relative_time),
     ]
-    return Table("Training on an own MountainCar, default settings", loops, columns)
+    return Table("Training on an own MountainCar, default settings", loops, columns, minimum=True)
 
 
-def train(seed: int, backend: Any, episodes: int) -> qtab.Run:
-    """Trains on the own environment with the article's settings."""
-    return qtab.train(limited(), seed=seed, backend=backend, episodes=episodes, **SETTINGS)
+def train(make: Callable[[], gym.Env[Any, Any]], seed: int, backend: Any, episodes: int) -> qtab.Run:
+    """Trains on an environment of one's own with the article's settings."""
+    return qtab.train(make(), seed=seed, backend=backend, episodes=episodes, **SETTINGS)
 
 
-def _many(seeds: int, threads: int) -> int:
-    runs = qtab.train_many(limited, seeds, threads=threads, backend="numba", episodes=5000, **SETTINGS)
-    return int(runs.episode_lengths.sum())
+def _many(threads: int) -> int:
+    return _steps(qtab.train_many(limited, 16, threads=threads, backend="numba", episodes=EPISODES, **SETTINGS))
 
 
-def _steps(run: qtab.Run) -> int:
+def _stepping(pool: Any) -> Benchmark:
+    actions = list(np.random.default_rng(0).integers(0, 3, (ENVPOOL_STEPS, 1)))
+    pool.reset()
+
+    def run(_: int) -> int:
+        for action in actions:
+            pool.step(action)
+        return ENVPOOL_STEPS
+
+    return run
+
+
+def _steps(run: qtab.Run | qtab.Runs) -> int:
     return int(run.episode_lengths.sum())

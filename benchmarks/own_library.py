@@ -35,7 +35,8 @@ def training() -> Table:
             MANY_ON_TWO: lambda _: _many(library, 2, settings),
         }
     column = Column("rel. time", relative_to(CORE, [*loops]), relative_time)
-    return Table("Training on MountainCar-v0 as one's own environment", loops, [column])
+    columns = [column, Column("× one thread", relative_to(MANY, [MANY_ON_TWO]))]
+    return Table("Training on MountainCar-v0 as one's own library", loops, columns, minimum=True)
 
 
 def build() -> Path | None:

@@ -1,6 +1,7 @@
 """The table of a group of benchmarks: nanoseconds per step, and how the benchmarks compare with each other.
 
-Ratios are computed within each round, in which all benchmarks of a table take turns. pytest-benchmark and pyperf time
+Ratios are computed within each round, in which all benchmarks of a table take turns; a table of minima has ratios of
+minima. pytest-benchmark and pyperf time
 one benchmark after another, and asv interleaves only processes, each of which would compile Numba's loops again.
 """
 
@@ -51,6 +52,8 @@ class Table:
     title: str
     benchmarks: Mapping[str, Benchmark]
     columns: Sequence[Column]
+    minimum: bool = False
+    """Whether to show the minimum of the rounds and ratios of minima, instead of medians."""
 
     def measured(self, seconds: float, rounds: int | None) -> str:
         """Runs the benchmarks and returns the table as text. See :func:`qtab.cli.commands.bench.measure`."""
@@ -58,15 +61,17 @@ class Table:
 
     def text(self, times: Mapping[str, Times]) -> str:
         """Returns the table of benchmarks with these times."""
-        lines = [_line(self.title, "ns/step", *(column.head for column in self.columns))]
+        if self.minimum:
+            times = {name: row.min(keepdims=True) for name, row in times.items()}
+        lines = [line(self.title, "ns/step", *(column.head for column in self.columns))]
         for name, row in times.items():
             cells = [self._cell(column, name, times) for column in self.columns]
-            lines.append(_line(name, _number(row), *cells))
+            lines.append(line(name, number(row), *cells))
         return "\n".join(lines)
 
     def _cell(self, column: Column, name: str, times: Mapping[str, Times]) -> str:
         base = column.bases.get(name)
-        return "" if base is None or base not in times else _number(column.compare(times[name], times[base]))
+        return "" if base is None or base not in times else number(column.compare(times[name], times[base]))
 
 
 def relative_to(base: str, names: Sequence[str]) -> dict[str, str]:
@@ -74,11 +79,13 @@ def relative_to(base: str, names: Sequence[str]) -> dict[str, str]:
     return dict.fromkeys(names, base)
 
 
-def _line(name: str, *columns: str) -> str:
+def line(name: str, *columns: str) -> str:
+    """Returns a line of a table."""
     return f"{name:55}{''.join(f'{column:>13}' for column in columns)}".rstrip()
 
 
-def _number(values: Times) -> str:
+def number(values: Times | float) -> str:
+    """Returns the median of some numbers as text."""
     median = float(np.median(values))
     if abs(median) < 1:
         return f"{median:.2g}"

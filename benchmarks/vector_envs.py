@@ -33,11 +33,12 @@ COLUMNS = (
 
 def stepping() -> Table:
     """Returns the table of stepping with resets."""
+    pool = envpool_cars(NUM_ENVS, threads=2)
     poles = gym.make_vec(POLE, NUM_ENVS, vectorization_mode="vector_entry_point")
     benchmarks = {
         QTAB_MAKE: mountain_car.stepping().benchmarks[QTAB_MAKE],
         SYNC: _steps(SyncVectorEnv([lambda: gym.make(CAR)] * NUM_ENVS), 3, 2),
-        **_envpool(),
+        **({} if pool is None else {ENVPOOL: _steps(pool, 3, 5)}),
         QTAB_CARS: _steps(gym.make_vec(f"qtab/{CAR}", NUM_ENVS), 3, 200),
         NUMPY_POLES: _steps(poles, 2, 60),
         QTAB_POLES: _steps(gym.make_vec(f"qtab/{POLE}", NUM_ENVS), 2, 200),
@@ -47,15 +48,15 @@ def stepping() -> Table:
     return Table("Stepping many sub-environments", benchmarks, COLUMNS)
 
 
-def _envpool() -> dict[str, Benchmark]:
+def envpool_cars(num_envs: int, threads: int) -> Any:
+    """Returns EnvPool's MountainCars, or None where it is not installed."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # Gymnasium warns that its spaces lose precision
         try:
             import envpool
         except ModuleNotFoundError:
-            return {}
-        pool = envpool.make_gymnasium(CAR, num_envs=NUM_ENVS, num_threads=2)
-        return {ENVPOOL: _steps(pool, 3, 5)}
+            return None
+        return envpool.make_gymnasium(CAR, num_envs=num_envs, num_threads=threads)
 
 
 def _steps(env: Any, actions: int, count: int) -> Benchmark:

@@ -1,6 +1,7 @@
 """``qtab bench`` and ``benchmarks/`` count their steps and print their tables; no test asserts a time."""
 
 import json
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -19,6 +20,7 @@ import idle_env
 import mountain_car
 import numba_loops
 import own_library
+import own_start
 import qtab as package
 import tables
 import vector_envs
@@ -57,6 +59,8 @@ def test_benchmarks_are_compared_within_each_round() -> None:
     assert head.split() == ["title", "ns/step", "×", "rel.", "added"]
     assert slow.split() == ["slow", "30.0", "27.0"]
     assert fast.split() == ["fast", "3.0", "10.0", "0.1"]
+    least = Table("title", {}, columns, minimum=True).text(times).splitlines()
+    assert [row.split() for row in least[1:]] == [["slow", "10.0", "9.0"], ["fast", "1.0", "10.0", "0.1"]]
 
 
 def test_every_benchmark_counts_its_steps() -> None:
@@ -169,6 +173,21 @@ def test_it_warns_of_a_debug_build_and_of_missing_numba(
     assert printed.startswith("WARNING: this is a debug build")
     assert "pip install numba" in printed
     assert mountain_car.NUMBA not in printed
+
+
+@pytest.mark.slow
+def test_the_second_start_of_a_class_loads_the_code_of_the_first(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    pytest.importorskip("numba")
+    monkeypatch.setenv("NUMBA_DISABLE_JIT", "0")
+    shutil.copy(ROOT / "benchmarks" / "own_cars.py", tmp_path)
+    written = []
+    for _ in range(2):
+        assert own_start._run_class(tmp_path) > 0
+        written.append({(path, path.stat().st_mtime_ns) for path in tmp_path.rglob("*.compiled")})
+    assert len(written[0]) == 1
+    assert written[0] == written[1]
 
 
 def test_the_footprint_is_one_sentence() -> None:

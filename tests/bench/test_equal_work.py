@@ -13,6 +13,7 @@ import c_loop
 import environment_presets
 import idle_env
 import numba_loops
+import own_cars
 import own_functions
 import plain_loop
 import qtab
@@ -31,8 +32,10 @@ def test_the_numba_loop_equals_the_articles_loop_to_the_bit() -> None:
     assert steps == run.episode_lengths.sum()
 
 
-def test_the_own_environment_equals_the_packages() -> None:
-    run, same = own_functions.train(4, "python", 10), qtab.train("MountainCar-v0", seed=4, episodes=10, backend="rust")
+@pytest.mark.parametrize("make", [own_cars.limited, own_cars.limited_class])
+def test_the_own_environments_equal_the_packages(make: Any) -> None:
+    run = own_functions.train(make, 4, "python", 10)
+    same = qtab.train("MountainCar-v0", seed=4, episodes=10, backend="rust")
     assert run.q_table.tobytes() == same.q_table.tobytes()
     assert run.episode_returns.tobytes() == same.episode_returns.tobytes()
 
