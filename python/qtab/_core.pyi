@@ -114,7 +114,12 @@ class ExternalEnv:
     def __new__(
         cls,
         capsule: Any,
-        on_failure: Callable[[bytes | None, int, int | None, int | None, int], object] | None = None,
+        on_failure: Callable[
+            [bytes | None, tuple[int, int | None], int | None, int, tuple[tuple[int, int | None], list[int]] | None],
+            object,
+        ]
+        | None = None,
+        repeats_episodes: bool = False,
     ) -> ExternalEnv: ...
     @property
     def state_size(self) -> int: ...

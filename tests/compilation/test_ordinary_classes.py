@@ -11,8 +11,9 @@ import pytest
 
 import qtab
 from qtab.compilation.interface.compiled_env import Stepper
-from qtab.compilation.ordinary import ClassTwin, OrdinaryEnv
+from qtab.compilation.ordinary import OrdinaryEnv
 from qtab.compilation.rewriting.helpers import helpers
+from qtab.compilation.twins.class_twin import ClassTwin
 from support.gym_classes import control, failing, games, grids, operations
 
 pytest.importorskip("numba")

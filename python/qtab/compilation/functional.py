@@ -2,6 +2,7 @@
 
 import logging
 import os
+import re
 import time
 import warnings
 from importlib.util import find_spec
@@ -13,7 +14,7 @@ from gymnasium import spaces
 
 from qtab._utils.progress import ProgressBar
 from qtab.compilation.cache import machine_code
-from qtab.compilation.cache.digest import Digest, digest_of
+from qtab.compilation.cache.digest import Digest, digest_of, numba_version
 from qtab.compilation.cache.store import Store
 from qtab.compilation.called_functions import helper_methods, methods_of, names_of, plain, reachable
 from qtab.compilation.checks.source_constructs import refuse_constructs
@@ -26,6 +27,9 @@ from qtab.compilation.proof import FunctionalTwin, prove
 
 SLOW_SECONDS = 1.0
 """The duration of a compilation above which it is reported."""
+
+LEAST_NUMBA = (0, 61)
+"""The oldest version of Numba, as in the extra ``numba`` of pyproject.toml."""
 
 _logger = logging.getLogger("qtab")
 _store = Store()
@@ -73,15 +77,18 @@ def compiled_env(env: Any) -> tuple[CompiledEnv, Parameters]:
 
 
 def require_numba() -> None:
-    """Refuses a compilation now if Numba is not installed or disabled.
+    """Refuses a compilation now if Numba is not installed, too old or disabled.
 
     Raises:
-        NotNow: if Numba is not installed or disabled.
+        NotNow: if Numba is not installed, too old or disabled.
     """
     if not is_installed():
         raise NotNow("Numba is not installed", advice="pip install numba")
     if os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
         raise NotNow("NUMBA_DISABLE_JIT is set")
+    version = numba_version()
+    if tuple(map(int, re.findall(r"\d+", version)[:2])) < LEAST_NUMBA:
+        raise NotNow(f"Numba {version} is too old", advice="pip install 'qtab[numba]'")
 
 
 def is_installed() -> bool:

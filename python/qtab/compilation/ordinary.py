@@ -1,9 +1,9 @@
 """The compilation of ordinary Gymnasium classes, with its proof and its file."""
 
-import copy
 import logging
 import time
 import warnings
+from collections.abc import Callable
 from itertools import count
 from typing import Any
 
@@ -17,11 +17,15 @@ from qtab.compilation.cache.digest import digest_of
 from qtab.compilation.cache.store import Store
 from qtab.compilation.functional import SLOW_SECONDS, require_numba
 from qtab.compilation.interface.compiled_env import FUNCTIONS, CompiledEnv
-from qtab.compilation.layouts.attribute_record import layout_of_record, restore, state_bytes, with_observation
+from qtab.compilation.layouts.attribute_record import layout_of_record, with_observation
 from qtab.compilation.layouts.observation_layout import ObservationLayout
 from qtab.compilation.not_compilable import NotCompilable, NotNow
 from qtab.compilation.proof import prove
 from qtab.compilation.rewriting import Rewritten, rewrite
+from qtab.compilation.twins.class_twin import ClassTwin, restored, twin_of
+from qtab.compilation.twins.repetition import Repetition, Result
+from qtab.compilation.twins.side_effects import refuse_effects
+from qtab.envs.external.positions import Position
 
 _logger = logging.getLogger("qtab")
 _store = Store()
@@ -41,8 +45,10 @@ class OrdinaryEnv:
     def __init__(self, env: gym.Env) -> None:
         require_numba()
         observation = ObservationLayout.of(env.observation_space)
-        self.env = env
-        self.rewritten = rewrite(env)
+        shared = refuse_effects(env)
+        self.env = twin_of(env)
+        with restored(shared):
+            self.rewritten = rewrite(self.env)
         _check_episodes(env, self.rewritten)
         self.record = with_observation(self.rewritten.dtype, observation)
         first = np.zeros(1, self.record)
@@ -55,28 +61,38 @@ class OrdinaryEnv:
         """Returns the capsule ``qtab.env.1``."""
         return self.compiled.capsule(self.parameters)
 
-    def failed(self, state: bytes | None, action: int | None, rng: np.random.Generator) -> None:
-        """Repeats a call in Python that failed in compiled code, so that it raises the error.
+    def repeat(
+        self,
+        state: bytes | None,
+        before: Position,
+        action: int | None,
+        seed: int,
+        played: tuple[Position, list[int]] | None,
+    ) -> tuple[Result, Callable[[int], Result]]:
+        """Repeats a call in Python that failed in compiled code; it raises the error, if there is one in Python.
 
         Args:
             state: The bytes of the state before the step; None for a reset.
+            before: The position of the generator before the call.
             action: The action, counted from 0; None for a reset.
-            rng: A generator in the state before the call.
+            seed: The seed of the run.
+            played: The position before the reset of the episode, and the actions since then; None if unknown, for a run
+                that was resumed within an episode.
 
-        Raises:
-            RuntimeError: if the call does not fail in Python.
+        Returns:
+            The result, and a function of an action that takes the next step.
         """
-        twin = ClassTwin(self.env, self.record, self.compiled.observation)
+        repetition = Repetition(self.env, self.record, self.compiled.observation, seed)
         if state is None or action is None:
-            observation = twin.reset_class(rng)
+            result = repetition.reset(before)
         else:
-            twin.reset_class(np.random.default_rng(0))
-            restore(self.record, twin.env, state)
-            observation = twin.step_class(action, rng)[0]
-        name = type(self.env).__name__
-        if not self.env.observation_space.contains(observation):
-            raise ValueError(f"{name} returned an observation outside its space: {observation!r}")
-        raise RuntimeError(f"{name} failed in compiled code, but not in Python; train with backend='gymnasium'")
+            if played is None:
+                repetition.raise_error(state, before, action)
+            else:
+                repetition.play(*played, before)
+            result = repetition.step(action)
+        repetition.log()
+        return result, repetition.step
 
     def _compiled(self, observation: ObservationLayout) -> CompiledEnv:
         space: Any = self.env.action_space
@@ -160,56 +176,3 @@ def _check_episodes(env: gym.Env, rewritten: Rewritten) -> None:
             code.co_firstlineno,
             f"assign self.{name} in reset, before it is read",
         )
-
-
-class ClassTwin:
-    """Steps a copy of an environment in Python.
-
-    Args:
-        env: The environment.
-        record: The record with the observation.
-        observation: The layout of its observations.
-    """
-
-    def __init__(self, env: gym.Env, record: np.dtype[Any], observation: ObservationLayout) -> None:
-        self.env: Any = copy.deepcopy(env)
-        self._record, self._observation = record, observation
-        space: Any = env.action_space
-        self._start = int(space.start)
-
-    def reset_class(self, rng: np.random.Generator) -> Any:
-        """Resets the copy with a generator, and returns the observation."""
-        self.env._np_random = rng
-        observation, self._info = self.env.reset()
-        return observation
-
-    def step_class(self, action: int, rng: np.random.Generator) -> Any:
-        """Takes an action, counted from 0, and returns what ``step`` does."""
-        self.env._np_random = rng
-        stepped = self.env.step(self._start + action)
-        self._info = stepped[4]
-        return stepped
-
-    def reset(self, rng: np.random.Generator) -> dict[str, Any]:
-        """Resets the copy, and returns the numbers by their names."""
-        return self._numbers(self.reset_class(rng))
-
-    def step(self, action: int, rng: np.random.Generator) -> dict[str, Any]:
-        """Takes an action, counted from 0, and returns the numbers by their names."""
-        observation, reward, terminated, truncated, _ = self.step_class(action, rng)
-        flags = {"terminated": bool(terminated), "truncated": bool(truncated)}
-        return {"reward": float(reward), **flags, **self._numbers(observation)}
-
-    def _numbers(self, given: Any) -> dict[str, Any]:
-        observation = self._observation.numbers(self._in_order(self.env.observation_space, given))
-        mask = self.env.action_masks() if hasattr(self.env, "action_masks") else self._info.get("action_mask")
-        numbers = {"observation": observation, "state": state_bytes(self._record, self.env, observation)}
-        return numbers if mask is None else {**numbers, "action_mask": np.asarray(mask).astype(np.uint8)}
-
-    def _in_order(self, space: Any, given: Any) -> Any:
-        """Returns an observation with the keys of dicts in the order of their spaces."""
-        if isinstance(space, gym.spaces.Dict):
-            return {key: self._in_order(inner, given[key]) for key, inner in space.spaces.items()}
-        if isinstance(space, gym.spaces.Tuple):
-            return tuple(self._in_order(inner, part) for inner, part in zip(space.spaces, given, strict=True))
-        return given

@@ -56,7 +56,7 @@ def _environment() -> tuple[str, ...]:
     import llvmlite
     import llvmlite.binding as llvm
 
-    versions = [distribution_version(), np.__version__, llvmlite.__version__, _numba_version()]
+    versions = [distribution_version(), np.__version__, llvmlite.__version__, numba_version()]
     machine = [llvm.get_process_triple(), llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()]
     return sys.version, platform.machine(), _own_code(), *versions, *machine
 
@@ -67,8 +67,8 @@ def _own_code() -> str:
     return hashlib.sha256(b"".join(path.read_bytes() for path in files)).hexdigest()
 
 
-def _numba_version() -> str:
-    # Without the import of numba, which takes longer than everything else when compiled code is loaded.
+def numba_version() -> str:
+    """Returns the version of Numba without its import, which takes longer than all else when code is loaded."""
     from importlib.metadata import version
 
     return version("numba")

@@ -1,6 +1,5 @@
 """From an environment to functions over a record."""
 
-import copy
 import inspect
 from types import FunctionType
 from typing import Any
@@ -20,6 +19,7 @@ from qtab.compilation.rewriting.rewritten import Rewritten
 from qtab.compilation.rewriting.source.sources import Source, source_of
 from qtab.compilation.rewriting.user_functions import called, compiled_function
 from qtab.compilation.rewriting.values import INT, WIDE, Scalar, TupleKind, Value, constant, in_words
+from qtab.compilation.twins.class_twin import reset_twin
 
 MAX_ATTEMPTS = 200
 SPECIAL_METHODS = ("__getattr__", "__getattribute__", "__setattr__", "__delattr__")
@@ -38,8 +38,7 @@ def rewrite(env: gym.Env) -> Rewritten:
     """
     _check(env)
     try:
-        twin = copy.deepcopy(env)
-        twin.reset(seed=0)
+        twin = reset_twin(env)
     except Exception as error:
         kind = type(error).__name__
         raise NotCompilable(f"a copy of the environment cannot be reset ({kind}: {error})") from error

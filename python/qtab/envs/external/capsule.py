@@ -4,10 +4,10 @@ from collections.abc import Callable
 from typing import Any
 
 import gymnasium as gym
-import numpy as np
 
 from qtab import _core
 from qtab.envs.class_code import is_of_library
+from qtab.envs.external.positions import Position, generator_at
 from qtab.envs.matching import NotInRustError, layers, overridden, unknown_wrapper
 
 
@@ -41,10 +41,7 @@ def external_env(env: gym.Env, backend: str, *, needs_masks: bool = False) -> _c
     if not has_capsule(env):
         if backend != "numba":
             return None
-        if is_of_library(type(env.unwrapped)):
-            reason = "Numba compiles your own classes, derived from gymnasium.Env or qtab.FunctionalEnv"
-            raise NotInRustError(reason, "leave out backend")
-        return _compiled_class(env, needs_masks)
+        return compiled_class(env, needs_masks)
     unwrapped = _unwrapped(env)
     cls = type(unwrapped)
     owner = next(base for base in cls.__mro__ if "__qtab_env__" in vars(base))
@@ -59,7 +56,7 @@ def external_env(env: gym.Env, backend: str, *, needs_masks: bool = False) -> _c
     return external
 
 
-def _compiled_class(env: gym.Env, needs_masks: bool) -> _core.ExternalEnv:
+def compiled_class(env: gym.Env, needs_masks: bool) -> _core.ExternalEnv:
     """Returns an ordinary Gymnasium class as Rust steps it: compiled by Numba from its source code.
 
     Args:
@@ -72,13 +69,16 @@ def _compiled_class(env: gym.Env, needs_masks: bool) -> _core.ExternalEnv:
     from qtab.compilation import NotCompilable
     from qtab.compilation.ordinary import OrdinaryEnv
 
+    if is_of_library(type(env.unwrapped)):
+        reason = "Numba compiles your own classes, derived from gymnasium.Env or qtab.FunctionalEnv"
+        raise NotInRustError(reason, "leave out backend")
     try:
         compiled = OrdinaryEnv(_unwrapped(env))
         if needs_masks and compiled.rewritten.mask_refusal is not None:
             raise compiled.rewritten.mask_refusal
     except NotCompilable as refusal:
         raise NotInRustError(refusal.place_and_reason, refusal.advice) from None
-    return _core.ExternalEnv(compiled.capsule(), _failure_handler(compiled.failed))
+    return _core.ExternalEnv(compiled.capsule(), compiled.repeat, repeats_episodes=True)
 
 
 def _unwrapped(env: gym.Env) -> Any:
@@ -98,25 +98,8 @@ def _unwrapped(env: gym.Env) -> Any:
     return unwrapped
 
 
-def _failure_handler(failed: Callable[..., Any]) -> Callable[[bytes | None, int, int | None, int | None, int], None]:
-    def handle(
-        state: bytes | None, words_drawn: int, buffered_uint32: int | None, action: int | None, seed: int
-    ) -> None:
-        failed(state, action, generator_at(seed, words_drawn, buffered_uint32))
+def _failure_handler(failed: Callable[..., Any]) -> Callable[[bytes | None, Position, int | None, int, object], None]:
+    def handle(state: bytes | None, before: Position, action: int | None, seed: int, _played: object) -> None:
+        failed(state, action, generator_at(seed, before))
 
     return handle
-
-
-def generator_at(seed: int, words_drawn: int, buffered_uint32: int | None) -> np.random.Generator:
-    """Returns the generator of ``env.reset(seed=seed)`` after it has drawn some words.
-
-    Args:
-        seed: The seed.
-        words_drawn: The number of 64-bit words.
-        buffered_uint32: The half of the last word that was not used yet; None if there is none.
-    """
-    bit_generator = np.random.PCG64(seed)
-    bit_generator.advance(words_drawn)
-    if buffered_uint32 is not None:
-        bit_generator.state = {**bit_generator.state, "has_uint32": 1, "uinteger": buffered_uint32}
-    return np.random.Generator(bit_generator)

@@ -154,6 +154,15 @@ impl<E: Deref<Target = Environment>> Episode<E> {
         self.state.bytes_mut().copy_from_slice(state);
     }
 
+    /// Replaces the observation, given as bytes, and the action mask, as a step writes them that is taken elsewhere.
+    ///
+    /// # Panics
+    /// If a number of bytes differs.
+    pub fn set_observation(&mut self, observation: &[u8], action_mask: &[u8]) {
+        self.observation.bytes_mut().copy_from_slice(observation);
+        self.action_mask.bytes_mut().copy_from_slice(action_mask);
+    }
+
     /// The last observation; empty if its numbers are of another type.
     #[inline]
     pub fn observation<T: Number>(&self) -> &[T] {

@@ -1,6 +1,7 @@
 """The source code of functions, as syntax trees with the lines of the user's files."""
 
 import ast
+import functools
 import inspect
 import linecache
 import textwrap
@@ -20,7 +21,8 @@ class Source:
     file: str
 
 
-_known: dict[CodeType, Source] = {}
+_known: dict[tuple[CodeType, str], Source] = {}
+"""The sources by code objects and their files, which the comparison of code objects leaves out."""
 
 
 def source_of(function: FunctionType) -> Source:
@@ -29,10 +31,10 @@ def source_of(function: FunctionType) -> Source:
     Raises:
         NotCompilable: if it is not available, or if the file was edited since it was imported.
     """
-    code = function.__code__
-    if code not in _known:
-        _known[code] = _read(function)
-    found = _known[code]
+    key = function.__code__, function.__code__.co_filename
+    if key not in _known:
+        _known[key] = _read(function)
+    found = _known[key]
     return Source(function, found.node, found.file)
 
 
@@ -68,12 +70,20 @@ def _is_current(function: FunctionType, node: ast.FunctionDef) -> bool:
     if is_rewritten and any(isinstance(one, ast.Assert) for one in ast.walk(node)):
         return node.name == function.__name__
     code = function.__code__
-    try:
-        module = compile("".join(linecache.getlines(code.co_filename)), code.co_filename, "exec", dont_inherit=True)
-    except (SyntaxError, ValueError):
-        return node.name == function.__name__  # a cell of a notebook with commands of IPython
-    same = [one for one in _nested(module) if (one.co_name, one.co_firstlineno) == (code.co_name, code.co_firstlineno)]
+    found = _codes_of("".join(linecache.getlines(code.co_filename)), code.co_filename)
+    if found is None:
+        return node.name == function.__name__
+    same = [one for one in found if (one.co_name, one.co_firstlineno) == (code.co_name, code.co_firstlineno)]
     return any(_form(one) == _form(code) for one in same)
+
+
+@functools.lru_cache(maxsize=16)
+def _codes_of(text: str, file: str) -> list[CodeType] | None:
+    """Returns the code objects of a file; None for a cell of a notebook with commands of IPython."""
+    try:
+        return _nested(compile(text, file, "exec", dont_inherit=True))
+    except (SyntaxError, ValueError):
+        return None
 
 
 def _form(value: Any) -> Any:

@@ -26,40 +26,56 @@ pub(crate) struct ExternalEnv {
     pub(super) step_work: u64,
     /// Keeps the environment alive.
     pub(super) _capsule: Py<PyAny>,
-    /// Called where a function of the environment fails, to raise the error.
+    /// Called where a function of the environment fails, to raise the error or to give the result of the call.
     pub(super) on_failure: Option<Py<PyAny>>,
+    /// Whether `on_failure` repeats the whole episode, so that its actions are kept.
+    pub(super) repeats_episodes: bool,
 }
+
+/// The number of words that a generator has drawn, and its buffered half-word.
+pub(super) type Position = (u64, Option<u32>);
 
 /// A call that failed: what is needed to repeat it.
 pub(super) struct FailedCall<'a> {
     /// The state before the step; `None` for a reset.
     pub(super) state: Option<&'a [u8]>,
-    pub(super) words_drawn: u64,
-    pub(super) buffered_u32: Option<u32>,
+    /// The position of the generator before the call.
+    pub(super) before: Position,
     pub(super) action: Option<usize>,
     pub(super) seed: &'a Seed,
+    /// The position of the generator before the reset of the episode, and the actions before the call; `None` if they
+    /// are not known.
+    pub(super) played: Option<(Position, &'a [u32])>,
 }
 
+/// The result of a call that Python repeated: the observation and the action mask as bytes, the reward, the code as of
+/// `step`, and the position of the generator.
+pub(super) type Repeated = (Vec<u8>, Vec<u8>, f64, i32, Position);
+
 impl ExternalEnv {
-    /// The error of a call, which `on_failure` raises if the function itself reported it.
-    pub(super) fn error(&self, py: Python<'_>, error: CallError, failed: &FailedCall<'_>) -> PyErr {
-        let FailedCall { state, words_drawn, buffered_u32, action, seed } = failed;
+    /// Repeats a call in Python by `on_failure`, which raises the error, or returns the result and a function of an
+    /// action that takes the next step.
+    pub(super) fn repeat(
+        &self,
+        py: Python<'_>,
+        error: CallError,
+        failed: &FailedCall<'_>,
+    ) -> PyResult<(Repeated, Py<PyAny>)> {
+        let FailedCall { state, before, action, seed, played } = failed;
         if error != CallError::Failed {
-            return PyValueError::new_err(error.to_string());
+            return Err(PyValueError::new_err(error.to_string()));
         }
         if let Some(on_failure) = &self.on_failure {
             let state = state.map(|bytes| PyBytes::new(py, bytes));
-            let raised = seed
-                .to_python(py)
-                .and_then(|seed| on_failure.call1(py, (state, *words_drawn, *buffered_u32, *action, seed)));
-            if let Err(raised) = raised {
-                return raised;
+            let repeated = on_failure.call1(py, (state, *before, *action, seed.to_python(py)?, *played))?;
+            if !repeated.is_none(py) {
+                return repeated.extract(py);
             }
         }
-        PyRuntimeError::new_err(match action {
+        Err(PyRuntimeError::new_err(match action {
             Some(action) => format!("step of the environment failed: it returned QTAB_FAILED for action {action}"),
             None => "reset of the environment failed: it returned QTAB_FAILED".into(),
-        })
+        }))
     }
 
     /// Runs with the features of the spec's discretizer, for observations of type `T`.

@@ -7,15 +7,15 @@ use std::sync::Arc;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use qtab_core::checkpoint::{Checkpoint, CheckpointError, Persist};
-use qtab_core::memory::{AllocationError, collect, out_of_memory, with_capacity};
+use qtab_core::memory::{AllocationError, collect, out_of_memory, reserve, with_capacity};
 use qtab_core::prediction::ObservableTask;
 use qtab_core::random::Pcg64;
 use qtab_core::tasks::{NextKind, RngSnapshot, Transition};
 use qtab_core::{Features, Task};
-use qtab_env::Number;
 use qtab_env::host::{BitGenerator, CallError, Ending, Environment, Episode, RandomBits};
+use qtab_env::{CONTINUES, Number, TRUNCATED};
 
-use super::external_env::{ExternalEnv, FailedCall};
+use super::external_env::{ExternalEnv, FailedCall, Position, Repeated};
 use crate::convert::Seed;
 use crate::error::{RunError, allocation};
 use crate::rng::environment_rng;
@@ -56,6 +56,14 @@ pub(super) struct TaskOptions {
     pub(super) has_masks: bool,
 }
 
+/// An episode so far.
+#[derive(Default)]
+struct Played {
+    /// The position of the generator before the reset.
+    start: Position,
+    actions: Vec<u32>,
+}
+
 /// An environment with features of its observations, which are numbers of type `T`, its time limit and its generator.
 pub(super) struct ExternalTask<T, F> {
     episode: Episode<SharedEnv>,
@@ -65,6 +73,10 @@ pub(super) struct ExternalTask<T, F> {
     seed: Seed,
     /// The actions available in the last state that is not terminal; `None` if the learner does not use action masks.
     mask: Option<Vec<bool>>,
+    /// The episode so far, for an environment that repeats it in Python where a step fails; `None` if it is not known.
+    played: Option<Played>,
+    /// A function of an action, which takes the next step in Python, after a step that failed.
+    in_python: Option<Py<PyAny>>,
     numbers: PhantomData<T>,
 }
 
@@ -86,6 +98,8 @@ impl<T: Number, F: Features<[T]>> ExternalTask<T, F> {
             bits: EnvironmentBits(environment_rng(seed)),
             seed: seed.clone(),
             mask,
+            played: None,
+            in_python: None,
             numbers: PhantomData,
         })
     }
@@ -97,23 +111,52 @@ impl<T: Number, F: Features<[T]>> ExternalTask<T, F> {
 
     /// The number of words that the generator has drawn, and its buffered half-word.
     #[inline]
-    fn position(&self) -> (u64, Option<u32>) {
+    fn position(&self) -> Position {
         (self.bits.0.words_drawn(), self.bits.0.buffered_u32())
     }
 
-    /// The error of a call. The generator is moved back to its position before the call.
+    /// Repeats a call that failed in Python. The generator is moved back to its position before the call.
     #[cold]
-    fn call_error(&mut self, error: CallError, before: (u64, Option<u32>), action: Option<usize>) -> RunError {
+    fn repeat(&mut self, error: CallError, before: Position, action: Option<usize>) -> Result<(f64, Ending), RunError> {
         let (words_drawn, buffered_u32) = before;
         self.bits.0.move_to(words_drawn, buffered_u32);
         let failed = FailedCall {
             state: action.map(|_| self.episode.state()),
-            words_drawn,
-            buffered_u32,
+            before,
             action,
             seed: &self.seed,
+            played: self.played.as_ref().map(|played| (played.start, played.actions.as_slice())),
         };
-        Python::attach(|py| self.episode.shared().0.error(py, error, &failed)).into()
+        let (result, next_step) = Python::attach(|py| self.episode.shared().0.repeat(py, error, &failed))?;
+        self.in_python = Some(next_step);
+        self.take_over(result)
+    }
+
+    /// Takes over the result of a call in Python.
+    #[cold]
+    fn take_over(&mut self, result: Repeated) -> Result<(f64, Ending), RunError> {
+        let (observation, mask, reward, code, (words_drawn, buffered_u32)) = result;
+        self.bits.0.move_to(words_drawn, buffered_u32);
+        self.episode.set_observation(&observation, &mask);
+        let ending = match code {
+            CONTINUES => Ending::Continues,
+            TRUNCATED => Ending::Truncated,
+            _ => Ending::Terminated,
+        };
+        if reward.is_finite() {
+            Ok((reward, ending))
+        } else {
+            Err(PyValueError::new_err(CallError::Reward(reward).to_string()).into())
+        }
+    }
+
+    /// Notes the action of a step, for an environment that repeats episodes.
+    #[inline]
+    fn note(&mut self, action: usize) -> Result<(), RunError> {
+        let Some(played) = &mut self.played else { return Ok(()) };
+        reserve(&mut played.actions, 1).map_err(RunError::Allocation)?;
+        played.actions.push(action as u32);
+        Ok(())
     }
 
     /// Reads the action mask of a state that is not terminal.
@@ -144,13 +187,20 @@ impl<T: Number, F: Features<[T]>> ExternalTask<T, F> {
     #[inline]
     fn take_step(&mut self, elapsed: &mut u64, action: usize) -> Result<(f64, NextKind), RunError> {
         let before = self.position();
-        match self.episode.step(action, &mut RandomBits::new(&mut self.bits)) {
-            Ok((reward, ending)) => {
-                *elapsed += 1;
-                Ok((reward, self.next_kind(ending, *elapsed)))
+        let (reward, ending) = if let Some(next_step) = &self.in_python {
+            let result = Python::attach(|py| next_step.call1(py, (action,))?.extract(py))?;
+            self.take_over(result)?
+        } else {
+            match self.episode.step(action, &mut RandomBits::new(&mut self.bits)) {
+                Ok(stepped) => {
+                    self.note(action)?;
+                    stepped
+                }
+                Err(error) => self.repeat(error, before, Some(action))?,
             }
-            Err(error) => Err(self.call_error(error, before, Some(action))),
-        }
+        };
+        *elapsed += 1;
+        Ok((reward, self.next_kind(ending, *elapsed)))
     }
 }
 
@@ -168,8 +218,14 @@ impl<T: Number, F: Features<[T]>> Task for ExternalTask<T, F> {
 
     fn reset(&mut self) -> Result<(u64, F::Active), RunError> {
         let before = self.position();
+        self.in_python = None;
+        if self.episode.shared().0.repeats_episodes {
+            let played = self.played.get_or_insert_default();
+            played.start = before;
+            played.actions.clear();
+        }
         if let Err(error) = self.episode.reset(&mut RandomBits::new(&mut self.bits)) {
-            return Err(self.call_error(error, before, None));
+            self.repeat(error, before, None)?;
         }
         let rows = self.features.active_rows(self.episode.observation())?;
         self.read_mask()?;
@@ -219,6 +275,9 @@ impl<T: Number, F: Features<[T]>> Task for ExternalTask<T, F> {
         const INVALID: CheckpointError = CheckpointError::Invalid("state of the environment");
         self.bits.0.persist(checkpoint)?;
         let Some(elapsed) = state else { return Ok(()) };
+        if self.in_python.is_some() && !checkpoint.is_restoring() {
+            return Err(CheckpointError::Invalid("state of the environment, which is stepped in Python"));
+        }
         let mut size = self.episode.state().len() as u64;
         size.persist(checkpoint)?;
         checkpoint.check(size == self.episode.state().len() as u64, "size of the environment's state")?;
@@ -236,6 +295,7 @@ impl<T: Number, F: Features<[T]>> Task for ExternalTask<T, F> {
             self.episode.observe().map_err(|_| INVALID)?;
             let observed = self.numbers().map_err(|_| CheckpointError::OutOfMemory)?;
             checkpoint.check(observed == saved, "observation of the state")?;
+            self.played = None;
             // A terminal state may have no available action, and `step` or `reset` writes the mask before it is used.
             let _ = self.read_mask();
         }

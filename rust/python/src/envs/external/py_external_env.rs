@@ -25,22 +25,29 @@ const NANOSECONDS_OF_WORK: u128 = 25;
 const LARGEST_WORK: u64 = 1 << 20;
 
 /// An environment of another library. `capsule` is what `__qtab_env__()` returned, and is kept. Where a function of the
-/// environment fails, `on_failure(state, words_drawn, buffered_u32, action, seed)` is called, which should raise the
-/// error: `state` are the bytes of the state before the step, or None for a reset; `words_drawn` and `buffered_u32` are
-/// the position of the run's generator, which was seeded with `seed`.
+/// environment fails, `on_failure(state, before, action, seed, played)` is called: `state` are the bytes of the state
+/// before the step, or None for a reset; `before` is the position of the run's generator, which was seeded with `seed`.
+/// With `repeats_episodes`, `played` is the position before the episode and the actions since then, else None. It should
+/// raise the error. If the call does not fail in Python, it may return its result, of type `Repeated`, and a function of
+/// an action that takes the next step and returns the result.
 #[pyclass(frozen, name = "ExternalEnv", module = "qtab._core")]
 pub(crate) struct PyExternalEnv(Arc<ExternalEnv>);
 
 #[pymethods]
 impl PyExternalEnv {
     #[new]
-    #[pyo3(signature = (capsule, on_failure = None))]
-    pub(crate) fn new(capsule: &Bound<'_, PyAny>, on_failure: Option<Py<PyAny>>) -> PyResult<Self> {
+    #[pyo3(signature = (capsule, on_failure = None, repeats_episodes = false))]
+    pub(crate) fn new(
+        capsule: &Bound<'_, PyAny>,
+        on_failure: Option<Py<PyAny>>,
+        repeats_episodes: bool,
+    ) -> PyResult<Self> {
         let environment = environment_of(capsule)?;
         let mut rng = EnvironmentBits(Pcg64::new(&SeedSequence::new(&[0])));
         let nanoseconds = capsule.py().detach(|| step_time(&environment, TIMED_STEPS, &mut rng)).as_nanos();
         let step_work = u64::try_from(nanoseconds / NANOSECONDS_OF_WORK).unwrap_or(u64::MAX).min(LARGEST_WORK);
-        Ok(Self(Arc::new(ExternalEnv { environment, step_work, _capsule: capsule.clone().unbind(), on_failure })))
+        let capsule = capsule.clone().unbind();
+        Ok(Self(Arc::new(ExternalEnv { environment, step_work, _capsule: capsule, on_failure, repeats_episodes })))
     }
 
     /// The environment as training takes it. `first` are the numbers to subtract from those of an observation, so that

@@ -1,0 +1,131 @@
+"""Copies of an environment that are stepped in Python with any generator, and leave the environment as it is."""
+
+import copy
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+
+from qtab.compilation.layouts.attribute_record import state_bytes
+from qtab.compilation.layouts.observation_layout import ObservationLayout
+from qtab.compilation.not_compilable import NotCompilable
+from qtab.compilation.twins.plain_data import is_plain, same
+
+
+def twin_of(env: gym.Env) -> Any:
+    """Returns a copy of an environment, without a call of its methods.
+
+    Attributes that are data are copied. Other objects, such as windows and files, are shared: they must not be used.
+    """
+    twin = object.__new__(type(env))
+    known: dict[int, Any] = {}
+    for name, value in vars(env).items():
+        vars(twin)[name] = copy.deepcopy(value, known) if is_plain(value) else value
+    return twin
+
+
+@contextmanager
+def restored(shared: Sequence[Any]) -> Iterator[None]:
+    """Restores lists, dicts, sets and arrays that are changed meanwhile.
+
+    Args:
+        shared: The values, which are data.
+
+    Raises:
+        NotCompilable: if one of them was changed.
+    """
+    before = copy.deepcopy(list(shared))
+    try:
+        yield
+    finally:
+        changed = [(one, old) for one, old in zip(shared, before, strict=True) if not same(one, old)]
+        for value, old in changed:
+            _restore(value, old)
+    if changed:
+        kind = type(changed[0][0]).__name__
+        raise NotCompilable(f"a {kind} outside of the environment is changed", advice="keep what changes in self")
+
+
+def _restore(value: Any, old: Any) -> None:
+    if isinstance(value, np.ndarray):
+        value[...] = old
+    elif isinstance(value, list):
+        value[:] = old
+    else:
+        value.clear()
+        value.update(old)
+
+
+class ClassTwin:
+    """Steps a copy of an environment in Python.
+
+    Args:
+        env: The environment.
+        record: The record with the observation.
+        observation: The layout of its observations.
+    """
+
+    def __init__(self, env: gym.Env, record: np.dtype[Any], observation: ObservationLayout) -> None:
+        self.env: Any = twin_of(env)
+        self._record, self._observation = record, observation
+        space: Any = env.action_space
+        self._start = int(space.start)
+        self.info: Any = None
+        """The last info dict."""
+
+    def reset_class(self, rng: np.random.Generator) -> Any:
+        """Resets the copy with a generator, and returns the observation."""
+        self.env._np_random = rng
+        observation, self.info = self.env.reset()
+        return observation
+
+    def step_class(self, action: int, rng: np.random.Generator) -> Any:
+        """Takes an action, counted from 0, and returns what ``step`` does."""
+        self.env._np_random = rng
+        stepped = self.env.step(self._start + action)
+        self.info = stepped[4]
+        return stepped
+
+    def reset(self, rng: np.random.Generator) -> dict[str, Any]:
+        """Resets the copy, and returns the numbers by their names."""
+        return self._numbers(self.reset_class(rng))
+
+    def step(self, action: int, rng: np.random.Generator) -> dict[str, Any]:
+        """Takes an action, counted from 0, and returns the numbers by their names."""
+        observation, reward, terminated, truncated, _ = self.step_class(action, rng)
+        flags = {"terminated": bool(terminated), "truncated": bool(truncated)}
+        return {"reward": float(reward), **flags, **self._numbers(observation)}
+
+    def observed(self, given: Any) -> dict[str, Any]:
+        """Returns the numbers of an observation, and the action mask if there is one, by their names."""
+        observation = self._observation.numbers(_in_order(self.env.observation_space, given))
+        mask = self.env.action_masks() if hasattr(self.env, "action_masks") else self.info.get("action_mask")
+        return {
+            "observation": observation,
+            **({} if mask is None else {"action_mask": np.asarray(mask).astype(np.uint8)}),
+        }
+
+    def _numbers(self, given: Any) -> dict[str, Any]:
+        numbers = self.observed(given)
+        return {"state": state_bytes(self._record, self.env, numbers["observation"]), **numbers}
+
+
+def _in_order(space: Any, given: Any) -> Any:
+    """Returns an observation with the keys of dicts in the order of their spaces."""
+    if isinstance(space, gym.spaces.Dict):
+        return {key: _in_order(inner, given[key]) for key, inner in space.spaces.items()}
+    if isinstance(space, gym.spaces.Tuple):
+        return tuple(_in_order(inner, part) for inner, part in zip(space.spaces, given, strict=True))
+    return given
+
+
+def reset_twin(env: gym.Env) -> Any:
+    """Returns a copy of an environment after a reset with seed 0."""
+    twin = twin_of(env)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        twin.reset(seed=0)
+    return twin

@@ -1,0 +1,105 @@
+"""Calls that failed in compiled code, repeated in Python."""
+
+import logging
+from typing import Any, TypeAlias
+
+import gymnasium as gym
+import numpy as np
+
+from qtab.compilation.interface.qtab_env import TERMINATED, TRUNCATED
+from qtab.compilation.layouts.attribute_record import restore
+from qtab.compilation.layouts.observation_layout import ObservationLayout
+from qtab.compilation.twins.class_twin import ClassTwin
+from qtab.envs.external.positions import Position, generator_at, position_of
+
+Result: TypeAlias = tuple[bytes, bytes, float, int, Position]
+"""The observation and the action mask, the reward, the code as of ``qtab_step``, and the position of the generator."""
+
+ADVICE = "train with backend='gymnasium'"
+
+_logger = logging.getLogger("qtab")
+_logged: set[type] = set()
+
+
+class Repetition:
+    """An episode that goes on in Python.
+
+    Args:
+        env: The environment, which is not changed.
+        record: The record with the observation.
+        observation: The layout of its observations.
+        seed: The seed of the run.
+    """
+
+    def __init__(self, env: gym.Env, record: np.dtype[Any], observation: ObservationLayout, seed: int) -> None:
+        self._env, self._record, self._observation, self._seed = env, record, observation, seed
+        self._twin, self._name = ClassTwin(env, record, observation), type(env).__name__
+        self._rng = np.random.default_rng(0)
+
+    def reset(self, before: Position) -> Result:
+        """Begins an episode, with the generator at a position."""
+        self._rng = generator_at(self._seed, before)
+        return self._result(self._twin.reset_class(self._rng), 0.0, 0)
+
+    def play(self, start: Position, actions: list[int], before: Position) -> None:
+        """Repeats the steps of an episode.
+
+        Args:
+            start: The position of the generator before the reset.
+            actions: The actions, counted from 0.
+            before: The position of the generator after these steps in compiled code.
+
+        Raises:
+            RuntimeError: if it is another in Python.
+        """
+        self.reset(start)
+        for action in actions:
+            self._twin.step_class(action, self._rng)
+        if position_of(self._rng, self._seed) != before:
+            raise RuntimeError(f"{self._name} draws other random numbers in compiled code than in Python; {ADVICE}")
+
+    def raise_error(self, state: bytes, before: Position, action: int) -> None:
+        """Repeats a step from a state, in an episode whose beginning is not known, so that it raises the error.
+
+        The types of the attributes are those after a reset, which may differ from those in the episode: the result
+        is therefore not used.
+
+        Raises:
+            RuntimeError: if the step does not fail in Python.
+        """
+        self._twin.reset_class(np.random.default_rng(0))
+        restore(self._record, self._twin.env, state)
+        self._rng = generator_at(self._seed, before)
+        self.step(action)
+        raise RuntimeError(
+            f"{self._name} failed in compiled code, but not in Python, in an episode within which the run was resumed; "
+            + ADVICE
+        )
+
+    def step(self, action: int) -> Result:
+        """Takes an action, counted from 0."""
+        observation, reward, terminated, truncated, _ = self._twin.step_class(action, self._rng)
+        return self._result(observation, float(reward), TERMINATED * bool(terminated) + TRUNCATED * bool(truncated))
+
+    def log(self) -> None:
+        """Logs once for each class that a call failed in compiled code only."""
+        cls = type(self._env)
+        if cls not in _logged:
+            _logged.add(cls)
+            code = cls.step.__code__
+            _logger.warning(
+                "%s:%s: an episode of %s goes on in Python, which does not fail where compiled code does: with "
+                "integers of more than 64 bits, integers beyond 2**53 in floats, or an observation outside its space",
+                *(code.co_filename, code.co_firstlineno, cls.__name__),
+            )
+
+    def _result(self, given: Any, reward: float, code: int) -> Result:
+        numbers = self._twin.observed(given)
+        observation = numbers["observation"]
+        num_actions = int(self._env.action_space.n)  # type: ignore[attr-defined]
+        mask = numbers.get("action_mask", np.zeros(num_actions, np.uint8))
+        if len(observation) != self._observation.size or mask.shape != (num_actions,):
+            raise ValueError(
+                f"{self._name} returned an observation outside its space, or a wrong action mask: {given!r}"
+            )
+        return observation.tobytes(), mask.tobytes(), reward, code, position_of(self._rng, self._seed)

@@ -1,0 +1,392 @@
+"""The search for effects of an environment's methods outside of it, by their source code: nothing is run."""
+
+import ast
+import builtins
+import inspect
+import operator
+import sys
+from collections.abc import Callable
+from types import FunctionType, ModuleType
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from gymnasium import spaces
+
+from qtab.compilation.not_compilable import NotCompilable
+from qtab.compilation.rewriting.attributes import MISSING, Attributes, own_attribute
+from qtab.compilation.rewriting.expressions.calls import MODULE_ADVICE, SIDE_EFFECTS
+from qtab.compilation.rewriting.source.sources import Source, source_of
+from qtab.compilation.rewriting.source.syntax import CHANGING, Names
+from qtab.compilation.rewriting.statements.effects import PURE_BUILTINS, PURE_METHODS
+from qtab.compilation.twins.plain_data import is_plain
+
+METHODS = ("reset", "step", "action_masks", "action_mask")
+"""The methods that are run in Python before they are compiled."""
+SAFE_BUILTINS = (
+    *PURE_BUILTINS,
+    "bytes",
+    "chr",
+    "complex",
+    "format",
+    "hash",
+    "issubclass",
+    "iter",
+    "next",
+    "ord",
+    "slice",
+)
+SAFE_METHODS = {
+    *(
+        *CHANGING,
+        *PURE_METHODS,
+        "dot",
+        "endswith",
+        "isdigit",
+        "nonzero",
+        "isspace",
+        "prod",
+        "replace",
+        "rotate",
+        "searchsorted",
+    ),
+    *("split", "startswith", "strip", "transpose", "union", "var", "cumsum", "difference", "intersection", "squeeze"),
+}
+"""The methods of numbers, texts, arrays and collections."""
+UNSAFE_NUMPY = ("save", "load", "fromfile", "memmap", "open", "set", "genfromtxt", "fromregex", "DataSource", "test")
+"""The beginnings of the names of NumPy's functions that use files or change NumPy."""
+REFUSED: tuple[type[ast.AST], ...] = (
+    *(ast.With, ast.AsyncWith, ast.AsyncFor, ast.Await, ast.Yield, ast.YieldFrom, ast.Try, ast.ClassDef),
+    *(ast.Global, ast.Nonlocal, ast.Delete, ast.FunctionDef, ast.AsyncFunctionDef, getattr(ast, "TryStar", ast.Try)),
+)
+"""The syntax that is not compiled and may have effects."""
+COMPARISONS: dict[type[ast.cmpop], Callable[[Any, Any], Any]] = {
+    ast.Eq: operator.eq,
+    ast.NotEq: operator.ne,
+    ast.Lt: operator.lt,
+    ast.LtE: operator.le,
+    ast.Gt: operator.gt,
+    ast.GtE: operator.ge,
+    ast.Is: operator.is_,
+    ast.IsNot: operator.is_not,
+    ast.In: lambda one, other: one in other,
+    ast.NotIn: lambda one, other: one not in other,
+}
+ADVICE = "use numbers, math, and the NumPy functions of the documentation"
+
+
+def refuse_effects(env: gym.Env) -> list[Any]:
+    """Refuses an environment whose resets or steps may have effects outside of it, such as files, prints or windows.
+
+    Args:
+        env: The environment, without wrappers. Nothing of it is run.
+
+    Returns:
+        The lists, dicts, sets and arrays of its class and of modules that its methods read.
+
+    Raises:
+        NotCompilable: if they may; it names the line. Also if the source code is not available.
+    """
+    if (base := next((one for one in type(env).__mro__ if "__del__" in vars(one)), None)) is not None:
+        raise NotCompilable(f"{base.__name__} defines __del__, which would be called for a copy", advice="use close")
+    search = _Search(env)
+    for name in METHODS:
+        member, owner = search.known.find(name)
+        if isinstance(member, FunctionType):
+            search.add(member, owner)
+    search.run()
+    return list(search.shared.values())
+
+
+class _Search:
+    """The functions that are reached, and what is known about the environment.
+
+    Args:
+        env: The environment.
+    """
+
+    def __init__(self, env: gym.Env) -> None:
+        self.env = env
+        self.known = Attributes(env, env)
+        self.shared: dict[int, Any] = {}
+        self._waiting: list[tuple[FunctionType, type | None, str]] = []
+        self._found: set[tuple[FunctionType, type | None, str]] = set()
+
+    def add(self, function: FunctionType, owner: type | None, receiver: str = "self") -> None:
+        """Adds a function that is called.
+
+        Args:
+            function: The function.
+            owner: The class that defines it; None if it is no method.
+            receiver: ``"self"`` or ``"class"`` if its first argument is the environment or its class, else ``""``.
+        """
+        one = (function, owner, receiver)
+        if one not in self._found:
+            self._found.add(one)
+            self._waiting.append(one)
+
+    def run(self) -> None:
+        """Searches all functions that are reached."""
+        while self._waiting:
+            function, owner, receiver = self._waiting.pop()
+            _Body(self, source_of(function), owner, receiver).search()
+
+
+class _Body:
+    """The search in the body of a function."""
+
+    def __init__(self, search: _Search, source: Source, owner: type | None, receiver: str) -> None:
+        self._all, self._source, self._owner = search, source, owner
+        self._names = Names(source)
+        arguments = source.node.args
+        first = [one.arg for one in (*arguments.posonlyargs, *arguments.args)][:1]
+        self._own = first[0] if first and receiver == "self" else ""
+        self._class = first[0] if first and receiver == "class" else ""
+        closure = inspect.getclosurevars(source.function)
+        self._globals = {**vars(builtins), **source.function.__globals__, **closure.nonlocals}
+        self._imported: dict[str, Any] = {}
+
+    def search(self) -> None:
+        """Searches the function.
+
+        Raises:
+            NotCompilable: for the first statement that may have effects.
+        """
+        for statement in self._source.node.body:
+            self._visit(statement)
+
+    def _refuse(self, node: ast.AST, reason: str, advice: str = ADVICE) -> NotCompilable:
+        return NotCompilable(reason, self._source.file, getattr(node, "lineno", self._source.node.lineno), advice)
+
+    def _visit(self, node: ast.AST) -> None:
+        if isinstance(node, REFUSED):
+            raise self._refuse(node, f"`{ast.unparse(node).splitlines()[0]}` may have effects", "write conditions")
+        if isinstance(node, ast.If | ast.IfExp) and isinstance(taken := self._constant(node.test), bool):
+            chosen = node.body if taken else node.orelse
+            for one in chosen if isinstance(chosen, list) else [chosen]:
+                self._visit(one)
+            return
+        if isinstance(node, ast.Import | ast.ImportFrom):
+            self._import(node)
+        elif isinstance(node, ast.AnnAssign):
+            for part in (node.target, node.value):
+                if part is not None:
+                    self._visit(part)
+        elif isinstance(node, ast.Call):
+            self._call(node)
+        elif isinstance(node, ast.Attribute | ast.Subscript) and isinstance(node.ctx, ast.Store):
+            self._store(node)
+        elif isinstance(node, ast.Attribute | ast.Name):
+            self._load(node)
+        else:
+            for child in ast.iter_child_nodes(node):
+                if not isinstance(child, ast.expr_context):
+                    self._visit(child)
+
+    def _import(self, node: ast.Import | ast.ImportFrom) -> None:
+        for alias in node.names:
+            name = alias.name if isinstance(node, ast.Import) else node.module or ""
+            module = sys.modules.get(name)
+            if module is None or (isinstance(node, ast.ImportFrom) and node.level):
+                raise self._refuse(node, f"`{ast.unparse(node)}` runs a module", "import it at the top of the file")
+            value = module if isinstance(node, ast.Import) else getattr(module, alias.name, MISSING)
+            self._imported[alias.asname or alias.name.partition(".")[0]] = value
+
+    def _store(self, node: ast.Attribute | ast.Subscript) -> None:
+        """Checks an assignment: to the environment, or to an element of its data or of a local variable."""
+        base: ast.expr = node
+        while isinstance(base, ast.Subscript):
+            self._visit(base.slice)
+            base = base.value
+        if isinstance(base, ast.Attribute) and self._is_own(base.value):
+            self._load(ast.Attribute(base.value, base.attr, ast.Load(), lineno=node.lineno), stores=base is node)
+        elif base is node or not (isinstance(base, ast.Name) and self._names.is_local(base.id)):
+            raise self._refuse(node, f"`{ast.unparse(node)}` is assigned", "change only attributes of self")
+
+    def _is_own(self, node: ast.expr) -> bool:
+        return isinstance(node, ast.Name) and node.id == self._own != ""
+
+    def _load(self, node: ast.Attribute | ast.Name, stores: bool = False) -> None:
+        """Checks a value that is read: it must be data, or a function without effects."""
+        if isinstance(node, ast.Attribute):
+            if self._is_own(node.value) or self._is_super(node.value):
+                self._member(node, stores)
+                return
+            if self._value(node.value) is MISSING:
+                self._visit(node.value)
+                return
+        elif self._is_own(node):
+            raise self._refuse(node, "self is passed on", "use self directly in the environment's methods")
+        value = self._value(node)
+        if value is MISSING:
+            if isinstance(node, ast.Attribute):
+                raise self._refuse(
+                    node, f"the attribute `{ast.unparse(node)}` is no data", "copy it to self in __init__"
+                )
+            return
+        self._data(node, value)
+
+    def _is_super(self, node: ast.expr) -> bool:
+        return isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "super"
+
+    def _member(self, node: ast.Attribute, stores: bool) -> None:
+        """Checks an attribute of the environment."""
+        known, name = self._all.known, node.attr
+        member, owner = known.find(name, self._owner if self._is_super(node.value) else None)
+        if name in ("np_random", "_np_random", "unwrapped", "np_random_seed") and owner is gym.Env:
+            return
+        if isinstance(member, property):
+            if stores or not isinstance(member.fget, FunctionType):
+                raise self._refuse(node, f"self.{name} is a property", "use an ordinary attribute")
+            self._all.add(member.fget, owner)
+        elif isinstance(member, FunctionType):
+            if member is not gym.Env.reset:
+                self._all.add(member, owner)
+        elif isinstance(member, staticmethod | classmethod):
+            if isinstance(member.__func__, FunctionType):
+                self._all.add(member.__func__, owner, "class" if isinstance(member, classmethod) else "")
+        elif not stores and name in vars(self._all.env):
+            self._data(node, vars(self._all.env)[name], is_copied=True)
+        elif not stores and member is not MISSING:
+            self._data(node, member)
+
+    def _data(self, node: ast.expr, value: Any, is_copied: bool = False) -> None:
+        """Checks a value that is no local variable; ``is_copied`` if it is an attribute that a copy has of its own."""
+        if isinstance(value, FunctionType | type) or callable(value):
+            self._callable(node, value)
+        elif not isinstance(value, ModuleType) and not is_plain(value):
+            kind = type(value).__name__
+            raise self._refuse(node, f"`{ast.unparse(node)}` is an object of type {kind}", "use numbers and arrays")
+        elif isinstance(value, list | dict | set | np.ndarray) and not is_copied:
+            self._all.shared[id(value)] = value
+
+    def _call(self, node: ast.Call) -> None:
+        function, passes_self = node.func, self._is_super(node)
+        if (
+            isinstance(function, ast.Attribute)
+            and not self._is_own(function.value)
+            and not self._is_super(function.value)
+        ):
+            value, owner = self._value(function), self._value(function.value)
+            if isinstance(value, FunctionType) and isinstance(owner, type) and isinstance(self._all.env, owner):
+                passes_self = True  # Base.method(self, ...)
+                if value is not gym.Env.reset:
+                    self._all.add(value, next(one for one in owner.__mro__ if function.attr in vars(one)))
+            elif isinstance(value, FunctionType | type) or isinstance(owner, ModuleType | type):
+                self._load(function)
+            elif owner is MISSING or is_plain(owner):
+                if not self._draws(function.value):
+                    self._method(node, function)
+            else:
+                self._load(function)
+        elif isinstance(function, ast.Name) and self._names.is_local(function.id) and function.id not in self._imported:
+            raise self._refuse(node, f"{function.id} is called, a variable", "call functions by name")
+        elif not isinstance(function, ast.Name | ast.Attribute):
+            raise self._refuse(node, f"`{ast.unparse(function)}` is called", "call functions by name")
+        elif not self._is_super(node):
+            self._visit(function)
+        for argument in (*node.args, *[keyword.value for keyword in node.keywords]):
+            if not (passes_self and self._is_own(argument)):
+                self._visit(argument)
+
+    def _draws(self, node: ast.expr) -> bool:
+        return isinstance(node, ast.Attribute) and node.attr == "np_random" and self._is_own(node.value)
+
+    def _method(self, node: ast.Call, function: ast.Attribute) -> None:
+        """Checks the call of a method of data."""
+        owner = self._value(function.value)
+        if isinstance(owner, spaces.Space) and function.attr != "contains":
+            raise self._refuse(node, "a space has a random generator of its own", "draw from self.np_random")
+        if isinstance(owner, np.random.Generator):
+            raise self._refuse(node, "a second random generator", "draw from self.np_random")
+        if function.attr not in (*SAFE_METHODS, "contains"):
+            raise self._refuse(node, f"`{ast.unparse(function)}` is called")
+        self._visit(function.value)
+
+    def _callable(self, node: ast.expr, value: Any) -> None:
+        """Checks a function or a class that is used."""
+        name, module = getattr(value, "__name__", type(value).__name__), str(getattr(value, "__module__", None) or "")
+        root = module.partition(".")[0]
+        if getattr(builtins, name, None) is value and (name in SAFE_BUILTINS or isinstance(value, type)):
+            return
+        if value is gym.Env.reset or module in ("math", "gymnasium.logger") or value is super:
+            return
+        if root == "numpy" and isinstance(
+            getattr(value, "__self__", None), np.random.Generator | np.random.RandomState
+        ):
+            raise self._refuse(node, *MODULE_ADVICE["numpy.random"])
+        if (isinstance(value, np.ufunc) or root == "numpy") and "random" not in module:
+            if not name.startswith(UNSAFE_NUMPY):
+                return
+        elif isinstance(value, type):
+            if issubclass(value, BaseException) and isinstance(value.__init__, type(object.__init__)):
+                return
+            if hasattr(value, "__members__") or hasattr(value, "_fields") or module == "collections":
+                return
+            if getattr(value, "__dataclass_params__", None) is not None and not hasattr(value, "__post_init__"):
+                return
+            raise self._refuse(node, f"an object of type {name} is made", "use numbers, tuples and NumPy arrays")
+        elif isinstance(value, FunctionType) and root not in sys.stdlib_module_names - {"__main__"}:
+            self._all.add(value, None, "")
+            return
+        if value in SIDE_EFFECTS:
+            raise self._refuse(node, *SIDE_EFFECTS[value])
+        for prefix, (reason, advice) in MODULE_ADVICE.items():
+            if module == prefix or module.startswith(prefix + "."):
+                raise self._refuse(node, reason, advice)
+        if type(getattr(value, "__self__", None)).__module__ == "random":
+            raise self._refuse(node, *MODULE_ADVICE["random"])
+        raise self._refuse(node, f"{name} is called")
+
+    def _value(self, node: ast.expr) -> Any:
+        """Returns the value of a name or an attribute that no method of the environment assigns, else ``MISSING``."""
+        if isinstance(node, ast.Constant):
+            return node.value
+        if isinstance(node, ast.Name):
+            if node.id in self._imported:
+                return self._imported[node.id]
+            if node.id == self._class != "":
+                return type(self._all.env)
+            return MISSING if self._names.is_local(node.id) else self._globals.get(node.id, MISSING)
+        if not isinstance(node, ast.Attribute):
+            return MISSING
+        if self._is_own(node.value):
+            if node.attr in self._all.known.assigned:
+                return MISSING
+            value = vars(self._all.env).get(node.attr, self._all.known.find(node.attr)[0])
+            return MISSING if hasattr(type(value), "__get__") and not isinstance(value, type) else value
+        owner = self._value(node.value)
+        if owner is MISSING:
+            return MISSING
+        if isinstance(owner, ModuleType | type):
+            return getattr(owner, node.attr, MISSING)
+        return getattr(owner, node.attr, MISSING) if is_plain(owner) else own_attribute(owner, node.attr)
+
+    def _constant(self, node: ast.expr) -> Any:
+        """Returns the truth of a condition that is the same at every step, else ``MISSING``."""
+        if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.Not):
+            inner = self._constant(node.operand)
+            return inner if inner is MISSING else not inner
+        if isinstance(node, ast.BoolOp):
+            is_and = isinstance(node.op, ast.And)
+            values = [self._constant(one) for one in node.values]
+            if any(value is not MISSING and value != is_and for value in values):
+                return not is_and
+            return MISSING if MISSING in values else is_and
+        if isinstance(node, ast.Compare) and len(node.ops) == 1:
+            item = self._value if isinstance(node.ops[0], ast.Is | ast.IsNot) else self._item
+            sides = [item(one) for one in (node.left, node.comparators[0])]
+            try:
+                return MISSING if any(one is MISSING for one in sides) else bool(COMPARISONS[type(node.ops[0])](*sides))
+            except (TypeError, ValueError):
+                return MISSING
+        value = self._item(node)
+        return bool(value) if isinstance(value, bool | int | float | str | type(None)) else MISSING
+
+    def _item(self, node: ast.expr) -> Any:
+        """Returns the value of a constant that can be compared, also of a display of constants."""
+        if isinstance(node, ast.List | ast.Tuple | ast.Set):
+            items = [self._item(one) for one in node.elts]
+            return MISSING if MISSING in items else items
+        value = self._value(node)
+        return value if isinstance(value, bool | int | float | str | tuple | list | type(None)) else MISSING
