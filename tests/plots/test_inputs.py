@@ -44,6 +44,12 @@ def test_the_curves_of_a_sweep_are_those_of_its_runs() -> None:
     assert ours.lines[-1].get_xydata().tolist() == theirs.lines[-1].get_xydata().tolist()  # type: ignore[union-attr]
 
 
+def test_the_final_return_of_a_run_is_that_of_its_last_hundred_episodes() -> None:
+    run = qtab.train("MountainCar-v0", seed=0, episodes=250, epsilon=0.0)
+    assert f"median {run.episode_returns[-100:].mean():.4g}" in labels(plots.distribution(run))[0]
+    assert f"{run.episode_returns[-100:].mean():.4g}" != f"{run.episode_returns[100:200].mean():.4g}"
+
+
 def test_of_many_settings_the_best_are_drawn_and_the_legend_reports_it() -> None:
     rates = np.linspace(0.1, 1, 11).tolist()
     sweep = qtab.sweep("CliffWalking-v1", {"learning_rate": rates}, seeds=2, episodes=30, max_episode_steps=200)

@@ -9,8 +9,10 @@ from numpy.typing import NDArray
 
 from qtab._utils import arrays, checks
 from qtab.envs.goals import threshold_of
+from qtab.plots.parts.labels import joined
 from qtab.results.run import Run
 from qtab.results.runs import Runs
+from qtab.results.summary import FINAL_EPISODES
 from qtab.sweeps.environments import sweep_threshold
 from qtab.sweeps.results import Sweep
 
@@ -96,7 +98,7 @@ def final_returns(name: str, value: Any) -> NDArray[np.float64]:
         value = value.final_returns()
     elif isinstance(value, Run):
         _require_episodes(name, value)
-        value = [value.mean_returns(min(100, len(value.episode_returns)))[-1]]
+        value = [value.episode_returns[-FINAL_EPISODES:].mean()]
     return arrays.sample(name, value)
 
 
@@ -154,7 +156,7 @@ def _of_sweep(key: str, sweep: Sweep, kind: Kind, chosen: list[int]) -> Iterator
             color_key = next(iter(values.values())) if len(varied) == 1 else None
             is_key = isinstance(color_key, str | int | float) and not key
             yield Entry(
-                ": ".join(part for part in (key, text) if part),
+                joined(key, text, separator=": "),
                 arrays.numbers("the sweep's returns", curves),
                 sweep.block,
                 sweep_threshold(sweep, setting),
