@@ -177,10 +177,13 @@ class Task:
     ) -> None:
         """Updates Q(S, A) <- Q(S, A) + α [R + γ following - Q(S, A)]; ``following`` is None at a terminal state."""
         self.observer.target(None if planned else self.step_number, (reward,), following)
-        if following is None:
-            self.end(Q, state, action, reward, rate)
+        if following is None and self.config.terminal_update == "assign":  # as the article does
+            self.observer.before_update(Q, state, action, reward)
+            Q[state[0], action] = reward
+            self.observer.after_update(Q, None)
         else:
-            self.update(Q, state, action, reward + self.discount * following, rate)
+            target = reward if following is None else reward + self.discount * following
+            self.update(Q, state, action, target, rate)
 
     def update(self, Q: Table, state: Rows, action: int, target: float, rate: LearningRate | None = None) -> None:
         """Updates Q(S, A) <- Q(S, A) + α [target - Q(S, A)]; the active rows of S share the change."""
@@ -198,15 +201,6 @@ class Task:
         for row, step_size in zip(state, step_sizes, strict=True):
             Q[row, action] += step_size * error
         self.observer.after_update(Q, step_sizes)
-
-    def end(self, Q: Table, state: Rows, action: int, reward: float, rate: LearningRate | None = None) -> None:
-        """Updates Q(S, A) before a terminal state, where the target is only the reward. The article assigns it."""
-        if self.config.terminal_update == "assign":
-            self.observer.before_update(Q, state, action, reward)
-            Q[state[0], action] = reward
-            self.observer.after_update(Q, None)
-        else:
-            self.update(Q, state, action, reward, rate)
 
     def result(self, *tables: Table) -> Result:
         """Returns the table in the shape of the grid (two are stacked), the returns and the lengths."""
