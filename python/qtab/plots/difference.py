@@ -11,7 +11,7 @@ from qtab.planning.optimum import Optimum
 from qtab.plots.arrangements import Raster, arrange
 from qtab.plots.arrangements.grid_map import Layout
 from qtab.plots.parts.colors import is_dark
-from qtab.plots.parts.labels import check_title
+from qtab.plots.parts.labels import check_title, joined
 from qtab.plots.parts.panels import axes_for, color_bar, draw_cells, finish_panel, shade_unknown, write_numbers
 from qtab.plots.parts.subject import Subject, subject_of
 from qtab.results.run import Run
@@ -94,8 +94,8 @@ def difference(
     image = draw_cells(ax, raster, np.where(wrong, cost, np.nan), cmap, norm)
     if raster.has_numbers:
         write_numbers(ax, raster, np.where(wrong, cost, np.nan), image, lambda value: f"{value:.2g}")
-    note = f"{share:.1%} of the states have a worse action"
-    finish_panel(ax, raster, title, ", ".join(filter(None, [note, raster.note])))
+    note = joined(f"{share:.1%} of the states have a worse action", raster.note, separator=", ")
+    finish_panel(ax, raster, title, note)
     extend = "max" if (cost[wrong] > highest).any() else "neither"
     color_bar([ax], raster, image, "cost of the action, V*(s) - Q*(s, a)", extend)
     return ax

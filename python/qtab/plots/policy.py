@@ -10,7 +10,7 @@ from qtab.plots.arrangements import Raster
 from qtab.plots.arrangements.grid_map import Layout
 from qtab.plots.arrangements.raster import DIRECTIONS
 from qtab.plots.parts.colors import COLORS, brightness, is_dark
-from qtab.plots.parts.labels import below_label
+from qtab.plots.parts.labels import below_label, joined
 from qtab.plots.parts.panels import arranged, axes_for, cell_font_size, draw_cells, finish_panel, shade_unknown
 from qtab.plots.parts.subject import Drawable
 from qtab.results.words import checked_action_names
@@ -63,7 +63,7 @@ def policy(
             draw_moves(panel, raster, greedy[..., np.newaxis] == np.arange(len(named)), named)
         else:
             handles = draw_regions(panel, raster, greedy, named)
-        note = "; ".join(filter(None, [raster.note, _initials(named) if raster.is_map else ""]))
+        note = joined(raster.note, _initials(named) if raster.is_map else "")
         finish_panel(panel, raster, subject.name if title is None else title, note)
         if handles:
             _add_legend(panel, handles)

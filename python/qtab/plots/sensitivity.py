@@ -35,8 +35,6 @@ class Point:
     estimate: float
     low: float
     high: float
-    setting: int
-    """The index of the setting."""
 
 
 def slice_of(
@@ -137,10 +135,10 @@ def _point(sweep: Sweep, setting: int, value: Any, column: str, statistic: str, 
     runs = sweep.values(column, setting)
     if confidence is None or len(runs) < 2:
         function: Any = {"mean": np.mean, "median": np.median, "iqm": interquartile_mean}[statistic]
-        return Point(value, float(function(runs)), np.nan, np.nan, setting)
+        return Point(value, float(function(runs)), np.nan, np.nan)
     estimate: Any = {"mean": stats.mean, "median": stats.median, "iqm": stats.iqm}[statistic]
     interval = estimate(runs, confidence=confidence, resamples=RESAMPLES)
-    return Point(value, interval.estimate, interval.low, interval.high, setting)
+    return Point(value, interval.estimate, interval.low, interval.high)
 
 
 LOG_SCALE_RATIO = 50
