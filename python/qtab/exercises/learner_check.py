@@ -18,8 +18,6 @@ from qtab.exercises.recording_env import RecordingEnv
 from qtab.reference.parts.discretizers import TileCoding
 from qtab.reference.parts.streams import agent_stream
 
-Table = NDArray[np.float64]
-
 
 @dataclass(frozen=True)
 class LearnerCheck:
@@ -43,7 +41,7 @@ class LearnerCheck:
         with closing(gym.make(self.env_id, max_episode_steps=self.max_episode_steps)) as env:
             rng: Any = agent_stream(self.seed, "PCG64")
             names = parameters(self.model)
-            table = self.initial_table(env)
+            table = np.random.default_rng(self.seed).uniform(-self.spread, self.spread, self.shape(env))
             used_rng = rng if "rng" in names else None
             known = quantities_of(self.env_id)
             recording = RecordingEnv(env, known, self.seed, self.episodes, {self.table: table}, used_rng, record)
@@ -55,20 +53,20 @@ class LearnerCheck:
                 **self.settings,
                 **self.own_arguments(env),
             }
-            fixed = {name: array.copy() for name, array in self._arrays(given).items()}
+            fixed = {
+                name: value.copy()
+                for name, value in given.items()
+                if isinstance(value, np.ndarray) and name != self.table
+            }
             guarded(function, [given[name] for name in names], record, seconds)
             recording.finish()
             for name, before in fixed.items():
                 if not np.array_equal(before, given[name]):
                     raise Misuse(f"it changes its argument {name}: work on a copy, {name}.copy()")
 
-    def _arrays(self, given: Mapping[str, Any]) -> dict[str, NDArray[Any]]:
-        """Returns the arrays among the arguments that a learner must not change."""
-        return {name: value for name, value in given.items() if isinstance(value, np.ndarray) and name != self.table}
-
-    def initial_table(self, env: gym.Env) -> Table:
-        """Returns the values before the first episode."""
-        return self._spread((self.states(env), int(env.action_space.n)))  # type: ignore[attr-defined]
+    def shape(self, env: gym.Env) -> tuple[int, ...]:
+        """Returns the shape of the table."""
+        return self.states(env), int(env.action_space.n)  # type: ignore[attr-defined]
 
     def states(self, env: gym.Env) -> int:
         """Returns the number of rows of the table."""
@@ -78,9 +76,6 @@ class LearnerCheck:
         """Returns the arguments that only this kind of learner takes."""
         return {}
 
-    def _spread(self, shape: tuple[int, ...]) -> Table:
-        return np.random.default_rng(self.seed).uniform(-self.spread, self.spread, shape)
-
 
 @dataclass(frozen=True)
 class PredictionCheck(LearnerCheck):
@@ -88,9 +83,9 @@ class PredictionCheck(LearnerCheck):
 
     table: str = "values"
 
-    def initial_table(self, env: gym.Env) -> Table:
-        """Returns the values before the first episode."""
-        return self._spread((self.states(env),))
+    def shape(self, env: gym.Env) -> tuple[int, ...]:
+        """Returns the shape of the values."""
+        return (self.states(env),)
 
     def own_arguments(self, env: gym.Env) -> Mapping[str, Any]:
         """Returns the policy: an action for each state."""
@@ -120,12 +115,5 @@ class FeatureCheck(LearnerCheck):
 
     def _tiles(self, env: gym.Env) -> TileCoding:
         space: Any = env.observation_space
-        config = Config(
-            env=self.env_id,
-            discretizer="tiles",
-            tilings=self.tilings,
-            tiles=self.tiles,
-            low=self.low,
-            high=self.high,
-        )
-        return TileCoding(space, config)
+        tiles: dict[str, Any] = {name: getattr(self, name) for name in ("tilings", "tiles", "low", "high")}
+        return TileCoding(space, Config(env=self.env_id, discretizer="tiles", **tiles))

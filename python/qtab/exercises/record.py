@@ -1,7 +1,7 @@
 """What a function does in a check, event by event: what it changes, draws, chooses and returns."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -77,7 +77,7 @@ def first_difference(yours: Record, reference: Record, exact: bool = True) -> Di
     before: dict[str, Any] = {}
     for mine, other in zip(yours.events, reference.events, strict=False):
         if (mine.place, mine.quantity) != (other.place, other.quantity):
-            return _length(mine, other)
+            return _difference(mine, other, (f"the reference is at {other.place}, {other.quantity}",))
         if not equal(mine.value, other.value, exact):
             entries = tuple(_entries(mine.quantity, mine.value, other.value, before.get(mine.quantity)))
             return _difference(mine, other, entries, exact and first_difference(yours, reference, exact=False) is None)
@@ -88,16 +88,13 @@ def first_difference(yours: Record, reference: Record, exact: bool = True) -> Di
         longer = yours if len(yours.events) > count else reference
         whose = "your function" if longer is yours else "the reference"
         event = longer.events[count]
-        difference = _difference(event, event, (f"only {whose} goes that far",), False)
-        return replace(difference, stopped_early=longer is reference)
+        return _difference(event, event, (f"only {whose} goes that far",), stopped_early=longer is reference)
     return None
 
 
-def _length(mine: Event, other: Event) -> Difference:
-    return _difference(mine, other, (f"the reference is at {other.place}, {other.quantity}",), False)
-
-
-def _difference(mine: Event, other: Event, entries: tuple[str, ...], only_rounding: bool) -> Difference:
+def _difference(
+    mine: Event, other: Event, entries: tuple[str, ...], only_rounding: bool = False, stopped_early: bool = False
+) -> Difference:
     return Difference(
         place=mine.place,
         episode=mine.episode,
@@ -108,6 +105,7 @@ def _difference(mine: Event, other: Event, entries: tuple[str, ...], only_roundi
         about=str(mine.about),
         entries=entries,
         only_rounding=only_rounding,
+        stopped_early=stopped_early,
     )
 
 

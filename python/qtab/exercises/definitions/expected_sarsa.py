@@ -79,14 +79,6 @@ EXERCISE = Exercise(
     section="6.6",
     starter=STARTER,
     model=expected_sarsa,
-    mistakes=(
-        "greedy_share",
-        "uniform_policy",
-        "greedy_policy",
-        "old_policy",
-        "value_of_old_state",
-        *UPDATE,
-        *POLICY,
-    ),
+    mistakes=("greedy_share", "uniform_policy", "greedy_policy", "old_policy", "value_of_old_state", *UPDATE, *POLICY),
     checks=control_checks(expected_sarsa),
 )

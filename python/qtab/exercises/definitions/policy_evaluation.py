@@ -72,13 +72,6 @@ EXERCISE = Exercise(
     section="4.1",
     starter=STARTER,
     model=policy_evaluation,
-    mistakes=(
-        "in_place",
-        "terminal_value",
-        "uniform_actions",
-        "no_probabilities",
-        "no_discount",
-        "discounted_reward",
-    ),
+    mistakes=("in_place", "terminal_value", "uniform_actions", "no_probabilities", "no_discount", "discounted_reward"),
     checks=[_check("CliffWalking-v1", 48, 3, 0.9), _check("FrozenLake-v1", 16, 10, 0.5)],
 )

@@ -76,14 +76,6 @@ EXERCISE = Exercise(
     section="6.4",
     starter=STARTER,
     model=sarsa,
-    mistakes=(
-        "old_action",
-        "max_in_sarsa",
-        "value_of_old_state",
-        "draws_again",
-        "draws_at_end",
-        *UPDATE,
-        *POLICY,
-    ),
+    mistakes=("old_action", "max_in_sarsa", "value_of_old_state", "draws_again", "draws_at_end", *UPDATE, *POLICY),
     checks=control_checks(sarsa),
 )

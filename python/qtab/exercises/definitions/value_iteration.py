@@ -76,12 +76,6 @@ EXERCISE = Exercise(
     section="4.4",
     starter=STARTER,
     model=value_iteration,
-    mistakes=(
-        "two_arrays",
-        "one_sweep_more",
-        "average_not_max",
-        "no_discount",
-        "discounted_reward",
-    ),
+    mistakes=("two_arrays", "one_sweep_more", "average_not_max", "no_discount", "discounted_reward"),
     checks=[_check("CliffWalking-v1", 48, 0.9), _check("FrozenLake-v1", 16, 0.95)],
 )
