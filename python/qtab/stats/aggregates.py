@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils import checks
-from qtab.stats.bootstrap import stratified_bootstrap
+from qtab.stats.bootstrap import bootstrap
 from qtab.stats.interval import Interval
 from qtab.stats.intervals import CONFIDENCE, TRIM_FRACTION, interquartile_mean
 from qtab.stats.scores import Scores, as_samples
@@ -74,7 +74,8 @@ def aggregate(
         ValueError: for an argument out of range.
     """
     function = AGGREGATES[checks.choice("statistic", statistic, AGGREGATES)]
-    return stratified_bootstrap(as_samples("scores", scores, least=2), function, confidence, resamples, seed)
+    samples = as_samples("scores", scores, least=2)
+    return bootstrap(samples, function, confidence, resamples, seed, stratified=True)
 
 
 def optimality_gap(
@@ -99,4 +100,4 @@ def optimality_gap(
     def gap(*samples: NDArray[np.float64]) -> float:
         return best - _mean(*(np.minimum(sample, best) for sample in samples))
 
-    return stratified_bootstrap(as_samples("scores", scores, least=2), gap, confidence, resamples, seed)
+    return bootstrap(as_samples("scores", scores, least=2), gap, confidence, resamples, seed, stratified=True)

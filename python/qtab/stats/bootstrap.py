@@ -51,7 +51,13 @@ def as_resamples(value: Any) -> int:
 
 
 def bootstrap(
-    values: NDArray[np.float64], statistic: Callable[..., Any], confidence: float, resamples: int, seed: int
+    samples: Sequence[NDArray[np.float64]],
+    statistic: Callable[..., Any],
+    confidence: float,
+    resamples: int,
+    seed: int,
+    *,
+    stratified: bool = False,
 ) -> Interval:
     """Returns a statistic with its bias-corrected and accelerated (BCa) bootstrap interval (Efron, 1987).
 
@@ -59,65 +65,30 @@ def bootstrap(
     percentile method, which ``method`` records.
 
     Args:
-        values: (runs,): at least two numbers.
-        statistic: Maps an array and an ``axis`` to the statistic along that axis.
+        samples: (runs,) each: at least two numbers. Each sample is resampled separately.
+        statistic: Maps an array and an ``axis`` to the statistic along that axis; if stratified, maps the samples to a
+            number.
         confidence: The coverage probability of the interval, between 0 and 1.
         resamples: The number of resamples.
         seed: Seeds the resampling.
+        stratified: Whether the interval is the percentile interval of a statistic of several samples.
 
     Raises:
         TypeError: for an argument of the wrong type.
         ValueError: for an argument out of range.
     """
-    return _interval([values], statistic, ("BCa", "percentile"), confidence, resamples, seed)
-
-
-def stratified_bootstrap(
-    samples: Sequence[NDArray[np.float64]],
-    statistic: Callable[..., float],
-    confidence: float,
-    resamples: int,
-    seed: int,
-) -> Interval:
-    """Returns a statistic of several samples with its percentile interval; each sample is resampled separately.
-
-    Args:
-        samples: (runs,) each: at least two numbers.
-        statistic: Maps the samples to a number.
-        confidence: The coverage probability of the interval, between 0 and 1.
-        resamples: The number of resamples.
-        seed: Seeds the resampling.
-
-    Raises:
-        TypeError: for an argument of the wrong type.
-        ValueError: for an argument out of range.
-    """
-    return _interval(samples, statistic, ("stratified percentile",), confidence, resamples, seed, vectorized=False)
-
-
-def _interval(
-    samples: Sequence[NDArray[np.float64]],
-    statistic: Callable[..., Any],
-    methods: Sequence[str],
-    confidence: float,
-    resamples: int,
-    seed: int,
-    *,
-    vectorized: bool = True,
-) -> Interval:
-    """Returns the interval of the first method whose bounds are finite, else of the last one."""
     confidence, resamples = as_confidence(confidence), as_resamples(resamples)
     seed = checks.integer("seed", seed, least=0)
     estimate = float(statistic(*samples))
     if all(np.ptp(sample) == 0 for sample in samples):
         return Interval(estimate, estimate, estimate, confidence, "constant")
-    for method in methods:
+    for method in ("stratified percentile",) if stratified else ("BCa", "percentile"):
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # SciPy warns of bounds that are not finite, which are checked below
             interval = stats.bootstrap(
                 samples,
                 statistic,
-                vectorized=vectorized,
+                vectorized=not stratified,
                 n_resamples=resamples,
                 batch=max(1, BATCH_VALUES // sum(map(len, samples))),
                 confidence_level=confidence,

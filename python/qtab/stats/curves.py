@@ -90,4 +90,4 @@ def curve(
         as_resamples(resamples)
         checks.integer("seed", seed, least=0)
         return t_intervals(means, confidence)
-    return [bootstrap(column, function, confidence, resamples, seed) for column in means.T]
+    return [bootstrap([column], function, confidence, resamples, seed) for column in means.T]

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from qtab._utils import arrays
 from qtab.stats.aggregates import AGGREGATE_RESAMPLES
-from qtab.stats.bootstrap import stratified_bootstrap
+from qtab.stats.bootstrap import bootstrap
 from qtab.stats.interval import Interval
 from qtab.stats.intervals import CONFIDENCE
 from qtab.stats.scores import Scores, as_samples
@@ -49,7 +49,7 @@ def probability_of_improvement(
         return float(np.mean([_wins(x, y) for x, y in pairs]))
 
     samples = [*(first[name] for name in names), *(second[name] for name in names)]
-    return stratified_bootstrap(samples, probability, confidence, resamples, seed)
+    return bootstrap(samples, probability, confidence, resamples, seed, stratified=True)
 
 
 def _wins(x: NDArray[np.float64], y: NDArray[np.float64]) -> float:

@@ -80,7 +80,7 @@ def median(values: ArrayLike, *, confidence: float = CONFIDENCE, resamples: int 
 
     Measured coverage of 95 % intervals, for the distributions listed there: 92 % to 95 % with 5 to 30 runs.
     """
-    return bootstrap(as_sample("values", values), np.median, confidence, resamples, seed)
+    return bootstrap([as_sample("values", values)], np.median, confidence, resamples, seed)
 
 
 def iqm(values: ArrayLike, *, confidence: float = CONFIDENCE, resamples: int = RESAMPLES, seed: int = 0) -> Interval:
@@ -90,7 +90,7 @@ def iqm(values: ArrayLike, *, confidence: float = CONFIDENCE, resamples: int = R
     statistical precipice" (2021). Measured coverage of 95 % intervals, for the distributions listed there: 88 % to 90 %
     with 5 runs, and 93 % to 95 % with 10 or more.
     """
-    return bootstrap(as_sample("values", values), interquartile_mean, confidence, resamples, seed)
+    return bootstrap([as_sample("values", values)], interquartile_mean, confidence, resamples, seed)
 
 
 def interquartile_mean(values: NDArray[np.float64], axis: int | None = None) -> Any:
