@@ -204,7 +204,7 @@ def test_a_log_of_an_interrupted_run_is_closed(tmp_path):
 
     with pytest.raises(ZeroDivisionError):
         qtab.train(CAR, callback=[log, fail], callback_every=5, **SHORT)
-    assert log._file is None
+    assert log._log is None
     assert len(lines(tmp_path / "log.csv")) == 1
 
 

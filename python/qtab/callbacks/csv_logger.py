@@ -3,7 +3,6 @@
 import csv
 import os
 from collections.abc import Iterable
-from typing import TextIO
 
 from qtab._utils.files import check_writable
 from qtab.callbacks.checkpoint import file_path
@@ -44,25 +43,18 @@ class CSVLogger(MetricsLogger):
     ) -> None:
         super().__init__(every, metrics, evaluation)
         self.path = file_path("path", path)
-        self._file: TextIO | None = None
 
     def _start(self, config: Config, finished: int) -> None:
         lines = self._lines(finished) if finished else []
         super()._start(config, int(lines[-1][0]) if lines else finished)
         check_writable("path", self.path)
-        self._file = self.path.open("w", encoding="utf-8", newline="")
+        self._log = self.path.open("w", encoding="utf-8", newline="")
         for line in (self._names, *lines):
             self._write(*line)
 
     def __call__(self, progress: Progress) -> None:
         """Writes a line."""
         self._write(progress.episodes, *self.measure(progress).values())
-
-    def on_end(self) -> None:
-        """Closes the file."""
-        if self._file is not None:
-            self._file.close()
-            self._file = None
 
     @property
     def _names(self) -> list[str]:
@@ -83,6 +75,6 @@ class CSVLogger(MetricsLogger):
         return [line for line in lines if int(line[0]) <= finished]
 
     def _write(self, *cells: str | float | None) -> None:
-        if self._file is not None:
-            csv.writer(self._file, lineterminator="\n").writerow(cells)
-            self._file.flush()
+        if self._log is not None:
+            csv.writer(self._log, lineterminator="\n").writerow(cells)
+            self._log.flush()

@@ -1,8 +1,7 @@
 """The numbers that the loggers write."""
 
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
 
 import gymnasium as gym
 import numpy as np
@@ -18,23 +17,7 @@ if TYPE_CHECKING:
     from qtab.results.run import Run
 
 
-@dataclass(frozen=True)
-class _Interval:
-    """The episodes since a logger last wrote."""
-
-    progress: Progress
-    returns: NDArray[np.float64]
-    lengths: NDArray[np.int64]
-
-
-METRICS: Mapping[str, Callable[[_Interval], float | int | None]] = {
-    "steps": lambda interval: interval.progress.steps,
-    "mean_return": lambda interval: _mean(interval.returns),
-    "mean_length": lambda interval: _mean(interval.lengths),
-    "epsilon": lambda interval: interval.progress.epsilon,
-    "learning_rate": lambda interval: interval.progress.learning_rate,
-    "seconds": lambda interval: interval.progress.seconds,
-}
+METRICS = ("steps", "mean_return", "mean_length", "epsilon", "learning_rate", "seconds")
 """The steps and seconds since the run began; the mean return and length of the episodes since the last line; and the
 exploration rate and learning rate of the last episode."""
 
@@ -60,9 +43,11 @@ class MetricsLogger(BaseCallback):
         super().__init__(every)
         if evaluation is not None and not isinstance(evaluation, EvaluateEvery):
             raise TypeError(f"evaluation must be an EvaluateEvery or a KeepBest, got {evaluation!r}")
-        self.metrics = tuple(METRICS) if metrics is None else check_metrics(metrics)
+        self.metrics = METRICS if metrics is None else check_metrics(metrics)
         self.evaluation = evaluation
         self._episodes = self._evaluations = 0
+        self._log: Any = None
+        """The open file or writer."""
 
     def on_start(self, config: Config, env: gym.Env | None) -> None:  # noqa: ARG002
         """Begins a log.
@@ -89,19 +74,22 @@ class MetricsLogger(BaseCallback):
         self._evaluations = len(self.evaluation.evaluations) if finished and self.evaluation else 0
         self._episodes = finished
 
+    def on_end(self) -> None:
+        """Closes the log."""
+        if self._log is not None:
+            self._log.close()
+            self._log = None
+
     def measure(self, progress: Progress) -> dict[str, float | int | None]:
         """Returns the metrics of the episodes since the last call; None if there is no value."""
         since, self._episodes = self._episodes, progress.episodes
-        interval = _Interval(progress, progress.returns[since:], progress.lengths[since:])
-        values = {name: METRICS[name](interval) for name in self.metrics}
+        means = {"mean_return": _mean(progress.returns[since:]), "mean_length": _mean(progress.lengths[since:])}
+        values = {name: means[name] if name in means else getattr(progress, name) for name in self.metrics}
         if self.evaluation is not None:
-            values[EVALUATION] = self._last_evaluation(self.evaluation)
+            evaluations = self.evaluation.evaluations
+            before, self._evaluations = self._evaluations, len(evaluations)
+            values[EVALUATION] = evaluations[-1].mean_return if len(evaluations) > before else None
         return values
-
-    def _last_evaluation(self, callback: EvaluateEvery) -> float | None:
-        """Returns the mean return of the last evaluation; None if there was none since the last call."""
-        before, self._evaluations = self._evaluations, len(callback.evaluations)
-        return callback.evaluations[-1].mean_return if self._evaluations > before else None
 
 
 def check_metrics(metrics: Iterable[str]) -> tuple[str, ...]:

@@ -2,7 +2,6 @@
 
 import os
 from collections.abc import Iterable
-from typing import Any
 
 from qtab._utils import checks
 from qtab._utils.extras import missing
@@ -40,7 +39,6 @@ class TensorBoardLogger(MetricsLogger):
     ) -> None:
         super().__init__(every, metrics, evaluation)
         self.folder = checks.path("folder", folder)
-        self._writer: Any = None
 
     def _start(self, config: Config, finished: int) -> None:
         super()._start(config, finished)
@@ -55,18 +53,12 @@ class TensorBoardLogger(MetricsLogger):
         # TensorBoard drops the points of earlier files from `purge_step` on. The suffix distinguishes two files of the
         # same second.
         again = {"purge_step": finished + 1, "filename_suffix": f".{finished}"} if finished else {}
-        self._writer = SummaryWriter(str(self.folder), **again)
+        self._log = SummaryWriter(str(self.folder), **again)
         settings = "\n".join(f"    {name} = {value!r}" for name, value in vars(config).items() if value is not None)
-        self._writer.add_text("settings", settings, finished)
+        self._log.add_text("settings", settings, finished)
 
     def __call__(self, progress: Progress) -> None:
         """Adds a point to each curve."""
         for name, value in self.measure(progress).items():
             if value is not None:
-                self._writer.add_scalar(name, value, progress.episodes)
-
-    def on_end(self) -> None:
-        """Closes the file."""
-        if self._writer is not None:
-            self._writer.close()
-            self._writer = None
+                self._log.add_scalar(name, value, progress.episodes)
