@@ -170,7 +170,7 @@ def test_errors_are_one_line_on_standard_error(folder: Path, command: str, flag:
 def test_a_verification_that_fails_is_json_too(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     run = qtab.load(folder / "run.npz")
     vars(run)["episode_returns"] = run.episode_returns + 1.0
-    monkeypatch.setattr("qtab.cli.commands.verify.load", lambda _: run)
+    monkeypatch.setattr("qtab.cli.saved_run.load", lambda _: run)
     content = printed("verify", "run.npz", "--episodes", "3", cwd=folder, code=1)
     assert content["equal"] is content["returns_equal"] is False
 

@@ -14,10 +14,6 @@ from qtab.config.unknown import meant
 
 REQUIRED = object()
 """The default of an argument that must be given."""
-ENV_OF_RUN = (
-    "The environment's id with its package, package:Name-v0, if one registers it: loading a run imports no package."
-)
-"""The help of ``--env`` beside the file of a run."""
 _MESSAGES = {"expected one argument": "needs a value", "ignored explicit argument": "takes no value, got"}
 _METAVARS = {values.integer: "INT", values.number: "FLOAT", Path: "FILE", str: "STR"}
 

@@ -1,6 +1,6 @@
 """The study file of ``qtab sweep``: a TOML file that describes a sweep."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -48,9 +48,7 @@ def read_study(path: Path) -> StudyFile:
 
 
 def _study(content: Mapping[str, Any]) -> StudyFile:
-    for key in content:
-        if key not in KEYS:
-            raise ValueError(f"unknown key {key!r}{did_you_mean(key, KEYS)}; use {', '.join(KEYS)}")
+    _check_keys(content, KEYS)
     if ("grid" in content) == ("design" in content):
         raise ValueError("a study must have either a [grid] or a [design]")
     grid = _grid(content["grid"]) if "grid" in content else _design(content["design"])
@@ -79,10 +77,7 @@ def _grid(grid: Any) -> Any:
 
 def _design(design: Any) -> list[dict[str, Any]]:
     table = _table("design", design)
-    for key in table:
-        if key not in _DESIGN_KEYS:
-            near = did_you_mean(key, _DESIGN_KEYS)
-            raise ValueError(f"unknown key {key!r} in [design]{near}; use {', '.join(_DESIGN_KEYS)}")
+    _check_keys(table, _DESIGN_KEYS, " in [design]")
     kind = table.get("kind", "sobol")
     if kind not in list(_DESIGNS) or "points" not in table or "space" not in table:
         raise ValueError("[design] must have kind = 'random' or 'sobol', points, space and optionally seed")
@@ -103,6 +98,12 @@ def _axis(name: str, axis: Any) -> Any:
         raise ValueError(f"design.space.{name}.log must be true or false, got {axis['log']!r:.100}")
     bounds = (axis["low"], axis["high"])
     return (*bounds, "log") if axis.get("log") else bounds
+
+
+def _check_keys(table: Mapping[str, Any], known: Sequence[str], where: str = "") -> None:
+    for key in table:
+        if key not in known:
+            raise ValueError(f"unknown key {key!r}{where}{did_you_mean(key, known)}; use {', '.join(known)}")
 
 
 def _table(key: str, value: Any) -> dict[str, Any]:

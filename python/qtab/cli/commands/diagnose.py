@@ -6,19 +6,19 @@ from typing import Any
 import numpy as np
 
 from qtab._utils import checks
-from qtab.cli.errors import reading, usage_errors
+from qtab.cli.errors import usage_errors
 from qtab.cli.parser import Parser
 from qtab.cli.reporting import Report
+from qtab.cli.saved_run import add_run, load_run
 from qtab.cli.values import integer
 from qtab.diagnosis.diagnose import diagnose
 from qtab.diagnosis.diagnosis import SEEDS
 from qtab.diagnosis.what_if import WhatIf
-from qtab.results.loading import load
 
 
 def add_arguments(parser: Parser) -> None:
     """Adds the arguments of the command."""
-    parser.positional("run", "A file written by qtab train --save.")
+    add_run(parser)
     parser.output_flags()
     parser.switch("what_if", "Also try the advised changes, one at a time, over many seeds.")
     parser.option("seeds", integer, "The number of seeds for --what-if.", SEEDS)
@@ -30,8 +30,7 @@ def run(options: Namespace) -> int:
         with usage_errors(options):
             if options.what_if:
                 checks.integer("seeds", options.seeds, least=2)
-            with reading("RUN", options.run):
-                saved = load(options.run)
+            saved = load_run(options)
             diagnosis = diagnose(saved)
         report.text(str(diagnosis))
         facts = ("findings", "unremarkable", "not_made", "reasons", "seconds")

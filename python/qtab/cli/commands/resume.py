@@ -4,14 +4,14 @@ from argparse import Namespace
 from contextlib import closing
 from pathlib import Path
 
-from qtab.cli.errors import reading, usage_errors
+from qtab.cli.errors import usage_errors
 from qtab.cli.outputs import Outputs
-from qtab.cli.parser import ENV_OF_RUN, Parser
+from qtab.cli.parser import Parser
 from qtab.cli.reporting import Report
+from qtab.cli.saved_run import ENV_OF_RUN, add_run, load_run
 from qtab.cli.training_report import OPTIMUM, Training, backend_words, optimum_of
 from qtab.cli.values import integer
 from qtab.config.merge import over
-from qtab.results.loading import load
 from qtab.results.run import Run
 from qtab.training.callbacks import TrainingOptions
 from qtab.training.earlier_run import check_agrees, counts_visits, has_finished, resolve_again, snapshots_of
@@ -21,7 +21,7 @@ from qtab.training.setup.resolved_run import ResolvedRun
 
 def add_arguments(parser: Parser) -> None:
     """Adds the arguments of the command."""
-    parser.positional("run", "A file written by qtab train --save.")
+    add_run(parser)
     parser.output_flags()
     episodes = "The number of episodes of the whole run, including the finished ones; by default that of the run. "
     episodes += "With more, a falling epsilon is spread over all of them, and therefore rises again at first."
@@ -42,8 +42,7 @@ def run(asked: Namespace) -> int:
     """Runs the command and returns its exit code."""
     with Report(asked) as report:
         with usage_errors(asked):
-            with reading("RUN", asked.run):
-                earlier = load(asked.run)
+            earlier = load_run(asked)
             check_agrees(earlier, asked.env, {})
             visits = counts_visits(earlier, False)
             options = TrainingOptions(visits=visits, snapshots=asked.snapshots)
@@ -74,9 +73,5 @@ def run(asked: Namespace) -> int:
 
 def _header(earlier: Run, resolved: ResolvedRun) -> str:
     config = resolved.config
-    parts = (
-        backend_words(config),
-        f"resumed after {len(earlier.episode_returns):,} of {config.episodes:,} episodes",
-        f"seed {config.seed}",
-    )
-    return ", ".join(parts)
+    done = f"resumed after {len(earlier.episode_returns):,} of {config.episodes:,} episodes"
+    return f"{backend_words(config)}, {done}, seed {config.seed}"

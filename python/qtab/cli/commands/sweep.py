@@ -71,8 +71,13 @@ def _run(options: Namespace, report: Report) -> None:
         given = {"seeds": DEFAULT_SEEDS, **study.options}
         if options.threads is not None:
             given["threads"] = options.threads
-        with _names_file(options.study), _says_what_is_kept(store, report):
-            result = sweep(study.env, study.grid, store=store, progress=report.progress, **given, **study.config)
+        try:
+            with _names_file(options.study):
+                result = sweep(study.env, study.grid, store=store, progress=report.progress, **given, **study.config)
+        except KeyboardInterrupt as error:
+            kept = counted(len(getattr(error, "run", ())), "run")
+            report.text(f"interrupted: kept {kept} in {store}; the same command resumes")
+            raise
     runs, settings = counted(len(result), "run"), counted(len(result.settings), "setting")
     report.text(f"{runs} of {settings} in {store}, {result.failed} failed")
     if note := versions_note(result.run_versions):
@@ -149,14 +154,3 @@ def _names_file(path: Path) -> Iterator[None]:
         raise UsageError(one_line(error)) from error
     except (ValueError, TypeError, OverflowError, MemoryError, gym.error.Error) as error:
         raise UsageError(f"{path}: {one_line(error)}") from error
-
-
-@contextmanager
-def _says_what_is_kept(store: Path, report: Report) -> Iterator[None]:
-    """On Ctrl-C, prints the number of runs kept in the store."""
-    try:
-        yield
-    except KeyboardInterrupt as error:
-        runs = counted(len(getattr(error, "run", ())), "run")
-        report.text(f"interrupted: kept {runs} in {store}; the same command resumes")
-        raise

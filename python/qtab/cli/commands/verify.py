@@ -6,12 +6,12 @@ from argparse import Namespace
 from collections.abc import Callable
 
 from qtab._utils.progress import ProgressBar
-from qtab.cli.errors import reading, usage_errors
-from qtab.cli.parser import ENV_OF_RUN, Parser
+from qtab.cli.errors import usage_errors
+from qtab.cli.parser import Parser
 from qtab.cli.reporting import Report
+from qtab.cli.saved_run import ENV_OF_RUN, add_run, load_run
 from qtab.cli.values import integer
 from qtab.envs.registry import spec_of
-from qtab.results.loading import load
 from qtab.results.run import Run
 from qtab.training.verify import verify
 
@@ -21,7 +21,7 @@ SILENT_SECONDS = 2.0
 
 def add_arguments(parser: Parser) -> None:
     """Adds the arguments of the command."""
-    parser.positional("run", "A file written by qtab train --save.")
+    add_run(parser)
     parser.output_flags()
     parser.option("episodes", integer, "Compare only the first episodes, using the schedules of the full run.")
     parser.option("env", str, ENV_OF_RUN, metavar="ENV")
@@ -31,8 +31,7 @@ def run(options: Namespace) -> int:
     """Runs the command and returns its exit code."""
     with Report(options) as report:
         with usage_errors(options):
-            with reading("RUN", options.run):
-                saved = load(options.run)
+            saved = load_run(options)
             if options.env is not None:
                 _import_environment(saved, options.env)
             total = options.episodes if options.episodes is not None else len(saved.episode_returns)

@@ -3,18 +3,18 @@
 from argparse import Namespace
 
 from qtab._utils.progress import print_above
-from qtab.cli.errors import UsageError, reading, usage_errors
+from qtab.cli.errors import UsageError, usage_errors
 from qtab.cli.parser import Parser
+from qtab.cli.saved_run import add_run, load_run
 from qtab.cli.values import integer, number
 from qtab.rendering.play import Playback, play
 from qtab.rendering.window import display_problem
-from qtab.results.loading import load
 from qtab.results.run import Run
 
 
 def add_arguments(parser: Parser) -> None:
     """Adds the arguments of the command, which ``qtab record`` has as well."""
-    parser.positional("run", "A file written by qtab train --save.")
+    add_run(parser)
     parser.option("episodes", integer, "The number of episodes.", 1)
     parser.option("seed", integer, "The seed of the environment; by default a random one, which is printed.")
     parser.option("fps", number, "Pictures per second; by default the environment's.")
@@ -33,12 +33,6 @@ def run(options: Namespace) -> int:
         played = played_by(saved, options, window=True)
     print_above(played.summary)
     return 0
-
-
-def load_run(options: Namespace) -> Run:
-    """Returns the run of the file."""
-    with reading("RUN", options.run):
-        return load(options.run)
 
 
 def played_by(saved: Run, options: Namespace, window: bool) -> Playback:
