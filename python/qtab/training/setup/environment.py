@@ -135,7 +135,7 @@ class NativeEnvironment:
     external: _core.ExternalEnv | None = None
     """The environment of a capsule; None for one of this package."""
 
-    def spec(self) -> NativeEnvSpec:
+    def spec(self, discretizer: Discretizer) -> NativeEnvSpec:  # noqa: ARG002 - Rust reads the observations itself
         """Returns the environment as the extension takes it."""
         return {"type": "native", "env": self.parameters}
 
@@ -158,14 +158,19 @@ class PythonEnvironment:
     masks: ActionMasks | None = None
     """Its action masks; None if every state allows all actions."""
 
-    def spec(self) -> PythonEnvSpec:
-        """Returns the environment as the extension takes it."""
+    def spec(self, discretizer: Discretizer) -> PythonEnvSpec:
+        """Returns the environment as the extension takes it, with observations as the discretizer converts them."""
+        env, mask = self.env, {"type": "none"} if self.masks is None else self.masks.source
+        if discretizer.reads_space:
+            env = ObservedEnv(env, discretizer)
+            if mask["type"] == "function":
+                mask = {"type": "function", "function": env.of_observation(mask["function"])}
         return {
             "type": "python",
-            "env": self.env,
+            "env": env,
             "first_action": self.actions.first,
             "actions": self.actions.objects(),
-            "action_mask": {"type": "none"} if self.masks is None else self.masks.source,
+            "action_mask": mask,
         }
 
     def exclusively(self) -> AbstractContextManager[None]:

@@ -7,13 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab import _core
-from qtab._spec import EnvironmentSpec, RunSpec
+from qtab._spec import RunSpec
 from qtab.config import Config
 from qtab.config.config import replace_checked
 from qtab.config.options import is_set
 from qtab.discretizers import Discretizer
 from qtab.envs.actions import Actions
-from qtab.training.setup.environment import ActionMasks, Environment, NativeEnvironment, ObservedEnv
+from qtab.training.setup.environment import ActionMasks, Environment, NativeEnvironment
 
 _LOGGER = logging.getLogger("qtab")
 _logged: set[str] = set()
@@ -53,19 +53,10 @@ class ResolvedRun:
         """Returns the same run with another seed, which must be valid for the bit generator."""
         return replace(self, seed=seed, config=replace_checked(self.config, seed=seed))
 
-    def _env_spec(self) -> EnvironmentSpec:
-        spec = self.environment.spec()
-        if spec["type"] == "python" and self.discretizer.reads_space:
-            env, masks = ObservedEnv(spec["env"], self.discretizer), spec["action_mask"]
-            if masks["type"] == "function":
-                masks = {"type": "function", "function": env.of_observation(masks["function"])}
-            return {**spec, "env": env, "action_mask": masks}
-        return spec
-
     def spec(self) -> RunSpec:
         """Returns the run without its seed, as the extension takes it."""
         return {
-            "env": self._env_spec(),
+            "env": self.environment.spec(self.discretizer),
             "discretizer": self.discretizer.spec(),
             "num_actions": len(self.actions),
             "max_episode_steps": self.max_episode_steps,
