@@ -35,6 +35,19 @@ print([name for name in {HEAVY!r} if name in sys.modules and name != "tqdm"])
     assert in_a_process(code).strip() == "[]"
 
 
+def test_training_loads_no_other_discretizer_and_no_part_for_files_and_resumed_runs():
+    code = """
+import sys, qtab
+qtab.train("MountainCar-v0", seed=0, episodes=3)
+print(sorted(name.removeprefix("qtab.") for name in sys.modules if name.startswith("qtab.")))
+"""
+    loaded = set(ast.literal_eval(in_a_process(code)))
+    assert loaded >= {"training.train", "discretizers.rounding"}
+    assert not loaded & {"discretizers.bins", "discretizers.composite", "discretizers.tile_coding"}
+    assert not loaded & {"envs.external.capsule", "envs.origin.describe", "results.file_parts", "results.loading"}
+    assert not loaded & {"training.earlier_run", "training.restore", "training.setup.run_env"}
+
+
 def test_the_command_loads_no_part_that_a_training_does_not_use():
     code = """
 import sys

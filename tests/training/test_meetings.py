@@ -8,6 +8,7 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 import pytest
+from gymnasium.envs.classic_control import mountain_car
 from gymnasium.envs.registration import WrapperSpec
 from gymnasium.wrappers import RescaleObservation, TransformReward
 
@@ -183,6 +184,15 @@ def test_a_replaced_method_of_gymnasiums_is_used(given: str, monkeypatch: pytest
     assert run.episode_returns.tolist() == [-7.0] * 3
     with pytest.raises(ValueError, match="methods of its class MountainCarEnv were replaced after the training"):
         qtab.evaluate(plain, 2, seed=0)
+
+
+def test_a_replaced_class_of_gymnasiums_is_used(monkeypatch: pytest.MonkeyPatch) -> None:
+    class MountainCarEnv(mountain_car.MountainCarEnv):
+        def step(self, action: Any) -> Any:
+            return np.array(self.state, np.float32), -7.0, True, False, {}
+
+    monkeypatch.setattr(mountain_car, "MountainCarEnv", MountainCarEnv)
+    assert qtab.train(CAR, **SHORT).episode_returns.tolist() == [-7.0] * 3
 
 
 def test_what_was_derived_is_derived_again() -> None:
