@@ -11,7 +11,15 @@ from qtab.plots.arrangements.grid_map import Layout
 from qtab.plots.arrangements.raster import DIRECTIONS
 from qtab.plots.parts.colors import COLORS, brightness, is_dark
 from qtab.plots.parts.labels import below_label, joined
-from qtab.plots.parts.panels import arranged, axes_for, cell_font_size, draw_cells, finish_panel, shade_unknown
+from qtab.plots.parts.panels import (
+    arranged,
+    axes_for,
+    cell_font_size,
+    draw_cells,
+    finish_panel,
+    shade_unknown,
+    write_numbers,
+)
 from qtab.plots.parts.subject import Drawable
 from qtab.results.words import checked_action_names
 
@@ -145,12 +153,13 @@ def draw_regions(ax: "Axes", raster: Raster, greedy: NDArray[np.int64], names: S
     ordered = any(character.isdigit() for character in names[-1]) or "no push" in names
     colors = action_colors(len(names), ordered and not names[0].startswith("action"))
     norm = BoundaryNorm(np.arange(len(names) + 1) - 0.5, len(names))
-    draw_cells(ax, raster, np.where(greedy < 0, np.nan, greedy), ListedColormap(colors), norm)
+    known = np.where(greedy < 0, np.nan, greedy)
+    image = draw_cells(ax, raster, known, ListedColormap(colors), norm)
     if raster.parts:
         _label_regions(ax, raster, greedy, names, colors)
         return []
     if raster.has_numbers:
-        _name_cells(ax, raster, greedy, names, colors)
+        write_numbers(ax, raster, known, image, lambda action: names[int(action)], "small")
         return []
     present = [index for index in range(len(names)) if (greedy == index).any() or len(names) <= 8]
     return [Patch(color=colors[index], label=names[index]) for index in present]
@@ -170,18 +179,6 @@ def _add_legend(ax: "Axes", handles: list[Any]) -> None:
         borderaxespad=0,
         borderpad=0,
     )
-
-
-def _name_cells(
-    ax: "Axes", raster: Raster, greedy: NDArray[np.int64], names: Sequence[str], colors: Sequence[Any]
-) -> None:
-    """Writes the action into each cell."""
-    xs, ys = (middles.tolist() for middles in raster.centers)
-    for row, line in enumerate(greedy.tolist()):
-        for column, action in enumerate(line):
-            if action >= 0:
-                color = "#ffffff" if brightness(colors[action]) < 0.5 else "#101010"
-                ax.text(xs[column], ys[row], names[action], color=color, ha="center", va="center", fontsize="small")
 
 
 def _label_regions(

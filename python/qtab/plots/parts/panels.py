@@ -103,11 +103,11 @@ def draw_cells(
 
 
 def write_numbers(
-    ax: "Axes", raster: Raster, values: NDArray[np.float64], image: Any, text: Callable[[float], str]
+    ax: "Axes", raster: Raster, values: NDArray[np.float64], image: Any, text: "Text", size: str | float | None = None
 ) -> None:
-    """Writes the number of each cell in a color that is readable on that of the cell."""
+    """Writes the text of each cell's number, which fits the cell, in a color that is readable on that of the cell."""
     xs, ys = (middles.tolist() for middles in raster.centers)
-    size = cell_font_size(ax, raster)
+    size = cell_font_size(ax, raster) if size is None else size
     for (row, column), value in np.ndenumerate(values):
         if np.isfinite(value):
             color = "#ffffff" if brightness(image.to_rgba(value)) < 0.5 else "#101010"
