@@ -44,24 +44,21 @@ class SweepProgress:
 SweepCallback = Callable[[SweepProgress], Any]
 
 
-class SweepReporter:
-    """Moves the progress bar and calls the callback with the progress since the reporter was created."""
+def _reporter(
+    total: int, finished: Callable[[], int], callback: SweepCallback | None, bar: ProgressBar
+) -> Callable[[], None]:
+    """Returns a function that moves the bar and calls the callback with the progress since now."""
+    started, before = time.perf_counter(), finished()
+    if before:
+        bar.move_to(before)
 
-    def __init__(
-        self, total: int, finished: Callable[[], int], callback: SweepCallback | None, bar: ProgressBar
-    ) -> None:
-        self._total, self._finished, self._callback, self._bar = total, finished, callback, bar
-        self._started = time.perf_counter()
-        self._already_finished = finished()
-        if self._already_finished:
-            bar.move_to(self._already_finished)
+    def report() -> None:
+        runs, seconds = finished(), time.perf_counter() - started
+        bar.move_to(runs)
+        if callback is not None:
+            callback(SweepProgress(runs, total, runs - before, seconds))
 
-    def __call__(self) -> None:
-        """Reports the progress so far."""
-        runs, seconds = self._finished(), time.perf_counter() - self._started
-        self._bar.move_to(runs)
-        if self._callback is not None:
-            self._callback(SweepProgress(runs, self._total, runs - self._already_finished, seconds))
+    return report
 
 
 def run_study(
@@ -105,7 +102,7 @@ def run_study(
             return build(finished)
     with closing(Store(path, stored)) as opened, ProgressBar(study.runs, "run", progress, "sweep") as bar:
         try:
-            report = SweepReporter(study.runs, opened.finished, callback, bar)
+            report = _reporter(study.runs, opened.finished, callback, bar)
             if executor is not None:
                 ExecutorTraining(study, opened, executor, report).run(MAX_PENDING_CHUNKS)
             elif all(resolved.is_native for resolved in study.resolved):
