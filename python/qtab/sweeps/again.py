@@ -8,7 +8,6 @@ import gymnasium as gym
 import numpy as np
 
 from qtab._utils import checks
-from qtab._utils.versions import versions
 from qtab.config import Config
 from qtab.config.merge import over
 from qtab.config.origin import Origin, copied
@@ -16,6 +15,7 @@ from qtab.envs.origin.description import differences
 from qtab.envs.origin.values import with_types
 from qtab.results.run import Run
 from qtab.results.summary import summarize
+from qtab.sweeps.run_versions import differing
 from qtab.sweeps.study import Study
 from qtab.training.setup.resolve import resolve
 from qtab.training.setup.resolved_run import ResolvedRun
@@ -46,21 +46,15 @@ def trained_again(sweep: "Sweep", setting: int, seed: int, env: Any) -> Run:
     with closing(resolve(made, {**study.overrides[0], "seed": seed}, owns_env=True)) as resolved:
         run = train_resolved(resolved)
     columns = summarize(run.episode_returns[np.newaxis], run.episode_lengths[np.newaxis], run.terminated[np.newaxis])
+    others = ", ".join(differing(sweep.run_versions[found[0]])) if sweep.run_versions else ""
     for name, values in columns.items():
         here, there = float(values[0]), float(sweep.columns[name][found[0]])
         if here != there:
             raise ValueError(
                 f"the run of setting {setting} with seed {seed} is different here: {name} is {here}, "
-                f"in the sweep {there}{_other_versions(sweep, found[0])}"
+                f"in the sweep {there}{f', which was trained with {others}' if others else ''}"
             )
     return run
-
-
-def _other_versions(sweep: "Sweep", row: int) -> str:
-    """Returns the end of a message: the versions that trained a run of a sweep, where they differ from those here."""
-    then, here = sweep.run_versions[row] if sweep.run_versions else None, versions()
-    others = [f"{name} {then.get(name)}" for name in here if then.get(name) != here[name]] if then else []
-    return f", which was trained with {', '.join(others)}" if others else ""
 
 
 def plan_again(sweep: "Sweep", chosen: Sequence[int], numbers: tuple[int, ...], env: Any) -> Study:

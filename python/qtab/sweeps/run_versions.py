@@ -54,20 +54,19 @@ def versions_of_runs(meta: Mapping[str, str], places: Sequence[int]) -> list[Ver
 
 def other_versions(meta: Mapping[str, str], places: Sequence[int]) -> list[str]:
     """Returns the versions that trained a store's runs and differ from those here; if unknown, all that it names."""
-    here, trained = versions(), []
+    trained: list[Any] = []
     if UNKNOWN not in places:
         trained = versions_of_runs(meta, sorted(set(places)))
     else:
         with suppress(ValueError):
             trained = named_versions(meta)
-    others = [
-        f"{name} {one.get(name)}"
-        for one in trained
-        if isinstance(one, dict) and one
-        for name in here
-        if one.get(name) != here[name]
-    ]
-    return list(dict.fromkeys(others))
+    return list(dict.fromkeys(other for one in trained if isinstance(one, dict) for other in differing(one)))
+
+
+def differing(trained: Versions) -> list[str]:
+    """Returns the names and versions that differ from those here; none if they are unknown."""
+    here = versions()
+    return [f"{name} {trained.get(name)}" for name in here if trained.get(name) != here[name]] if trained else []
 
 
 def runs_by_versions(of_runs: Sequence[Versions]) -> list[tuple[Versions, int]]:
