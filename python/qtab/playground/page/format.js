@@ -43,11 +43,12 @@ export function term(value, digits = 4) {
 
 const NUMBER = /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;
 
-/**
- * The largest value of a setting. A learning rate may be up to 2 with tile coding, which divides it among the tilings.
- */
+/** The largest learning rate with tile coding, which divides it among the tilings. */
+export const HIGHEST_RATE = 2;
+
+/** The largest value of a setting beside others. */
 export function highest(name, definition, settings) {
-  if (name === "learning_rate" && settings.discretizer === "tiles") return 2;
+  if (name === "learning_rate" && settings.discretizer === "tiles") return HIGHEST_RATE;
   if (name === "min_epsilon") return settings.epsilon;
   if (name === "min_learning_rate") return settings.learning_rate;
   if (name.endsWith("_warm_up")) return settings.episodes - 1;

@@ -1,7 +1,7 @@
 // The state in the fragment of the address. The parts of an address are used only as values of controls, all checked.
 
 import { EXAMPLES, exampleState } from "./controls/examples.js";
-import { readNumber } from "./format.js";
+import { HIGHEST_RATE, readNumber } from "./format.js";
 import { MANY_SEEDS, MAX_SIDE, PAINTED, REWARD_LIMITS, SEED_LIMITS } from "./store.js";
 
 const MAX_LENGTH = 8000;
@@ -86,7 +86,7 @@ function readSettings(store, given, state, left) {
 /** The value of a setting; undefined if it is invalid. */
 function readSetting(name, text, definition, components) {
   const integer = ["integer", "integers"].includes(definition.type);
-  const high = name === "learning_rate" ? 2 : definition.high;
+  const high = name === "learning_rate" ? HIGHEST_RATE : definition.high;
   const read = (part) => readNumber(name, part, { low: definition.low, high, integer }).value;
   if (definition.type === "choice") return definition.choices.find(({ value }) => value === text)?.value;
   if (["number", "integer"].includes(definition.type)) return read(text);
