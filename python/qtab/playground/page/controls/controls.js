@@ -28,11 +28,15 @@ function titleOf(name) {
   return words[0].toUpperCase() + words.slice(1);
 }
 
-/** The parts of every control: the label with its symbol, the sentence, and the place for an error message. */
-function frame(name, definition, label = {}) {
+/**
+ * The parts of every control: the label with its symbol, the sentence, and the place for an error message. `id` is that
+ * of the element that the label names; null for several.
+ */
+function frame(name, definition, id = null) {
   const symbol = definition.symbol ? [make("span", { className: "symbol", textContent: definition.symbol }), " "] : [];
-  const { tag = "label", ...target } = label;
-  const head = make("div", { className: "head" }, make(tag, { className: "name", id: `label-${name}`, ...target }, ...symbol, titleOf(name)));
+  const [tag, target] = id ? ["label", { htmlFor: id }] : ["span", {}];
+  const label = make(tag, { className: "name", id: `label-${name}`, ...target }, ...symbol, titleOf(name));
+  const head = make("div", { className: "head" }, label);
   const sentence = make("p", { id: `about-${name}`, textContent: definition.sentence });
   const refused = refusalPlace({ id: `refused-${name}` });
   return { head, sentence, refused, element: make("div", { className: "setting" }, head, sentence, refused) };
@@ -41,7 +45,7 @@ function frame(name, definition, label = {}) {
 /** A list of names to choose from. Choices that conflict with other settings are disabled, with the reason. */
 function choiceControl(store, name, definition) {
   const id = `set-${name}`;
-  const parts = frame(name, definition, { htmlFor: id });
+  const parts = frame(name, definition, id);
   const options = definition.choices.map(({ value }) => make("option", { value }));
   const onchange = () => store.set(name, select.value);
   const select = make("select", { id, "aria-describedby": parts.sentence.id, onchange }, ...options);
@@ -88,7 +92,7 @@ function shortest(value) {
 /** A number: a text field for exact values, and a slider. */
 function numberControl(store, name, definition) {
   const id = `set-${name}`;
-  const parts = frame(name, definition, { htmlFor: id });
+  const parts = frame(name, definition, id);
   const limits = () => ({
     low: definition.low,
     high: highest(name, definition, store.state.settings),
@@ -129,7 +133,7 @@ function stepped({ low, high, integer, log }, value, steps) {
  * index)` sets them after one was typed, or returns a reason to reject it.
  */
 function rowControl(name, definition, labels, values, change) {
-  const parts = frame(name, definition, { tag: "span" });
+  const parts = frame(name, definition);
   const limits = { low: definition.low, high: definition.high, integer: definition.type === "integers" };
   const fields = labels.map(([, named], index) => {
     const apply = (value) => change(values().map((each, place) => (place === index ? value : each)), index);
