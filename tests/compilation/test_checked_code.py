@@ -80,6 +80,7 @@ RAISES = [
     "1 >> (n - 61)",
     "rng.normal(0.0, -x)",
     "rng.normal(scale=-x)",
+    "rng.normal(0.0, 1.0 if n < 60 else -x)",
     "rng.exponential(-x)",
     "rng.gamma(-x, 1.0)",
     "rng.weibull(-x)",
@@ -118,6 +119,8 @@ LARGE = [
     "math.floor(n * 2**54)",
     "np.uint8(n + 250)",
     "1.0 if n * 2**54 > 1e18 else 0.0",
+    "-((n - 61) << 63)",
+    "abs((n - 61) << 63)",
 ]
 
 
@@ -144,6 +147,9 @@ SAME = [
     "1.0 if not np.int8(n) else 2.0",
     "1.0 if n > 59.5 else 2.0",
     "math.floor(n)",
+    "math.floor(x * 2.0**53)",
+    "abs(-n) + (1 >> (n + 10)) + ((n - 61) << 63)",
+    "1.0 if np.float32(x) < 60.5 and np.uint64(n) == 60 else 2.0",
 ]
 
 

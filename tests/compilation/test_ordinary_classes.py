@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 import qtab
+from qtab.compilation.cache.store import Store
 from qtab.compilation.interface.compiled_env import Stepper
 from qtab.compilation.ordinary import OrdinaryEnv
-from qtab.compilation.rewriting.helpers import helpers
 from qtab.compilation.twins.class_twin import ClassTwin
 from support.gym_classes import control, failing, games, grids, operations
 
@@ -96,8 +96,9 @@ def test_integers_that_leave_64_bits_are_found_before_training() -> None:
 
 
 def test_different_numbers_are_found_before_training(monkeypatch: pytest.MonkeyPatch) -> None:
-    for name, unchecked in (("h_add", lambda one, other: one + other), ("h_mul", lambda one, other: one * other)):
-        monkeypatch.setitem(helpers.HELPERS, name, unchecked)
+    monkeypatch.setattr("qtab.compilation.checks.code_checks.INTEGER_OPERATIONS", {})
+    monkeypatch.setattr("qtab.compilation.cache.code_files._folders", lambda _: iter([]))
+    monkeypatch.setattr("qtab.compilation.ordinary._store", Store())
     with pytest.raises(ValueError, match=r"failing\.py.*self\.cell is .* in compiled code and .* in Python"):
         qtab.train(failing.BigIntegers(), episodes=10, backend="numba")
 

@@ -8,7 +8,7 @@ import pytest
 
 from qtab.compilation.rewriting import rewrite
 from support.gym_classes import control, games, grids, operations
-from support.lockstep_rewriting import assert_equal_steps, transformed
+from support.lockstep_rewriting import assert_equal_steps, assert_nothing_refused, compiled_with_checks
 
 CLASSES: dict[str, Callable[[], gym.Env]] = {
     "grid world of the documentation": grids.GridWorldEnv,
@@ -53,7 +53,8 @@ QUICK = ("thermostat", "cliff with tuples and a set")
     "name", [pytest.param(name, marks=[] if name in QUICK else pytest.mark.slow) for name in CLASSES]
 )
 def test_compiled_functions_equal_the_class(name: str) -> None:
-    numba: Any = pytest.importorskip("numba")
+    pytest.importorskip("numba")
     env = CLASSES[name]()
-    compiled = transformed(rewrite(env), numba.njit(error_model="python", boundscheck=True))
+    compiled = compiled_with_checks(rewrite(env))
     assert_equal_steps(env, compiled, 3000, 11, MASKS.get(name))
+    assert_nothing_refused()

@@ -9,7 +9,7 @@ from gymnasium.utils import seeding
 
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting import rewrite
-from support.lockstep_rewriting import transformed
+from support.lockstep_rewriting import assert_nothing_refused, compiled_with_checks
 
 CALLS = {
     "normal": "normal(0.0, self.x)",
@@ -32,6 +32,8 @@ CALLS = {
     "uniform": "uniform(0.0, self.x)",
     "uniform to infinity": "uniform(0.0, 1.0 if self.x < 1.5 else math.inf)",
     "triangular": "triangular(0.0, self.x, 1.0)",
+    "f": "f(self.x, 2.0)",
+    "zipf": "zipf(self.x)",
 }
 SOURCE = """
 import math
@@ -73,10 +75,10 @@ def outcome(step: Any, seed: int) -> tuple[Any, str]:
 
 @pytest.mark.parametrize("name", CALLS)
 def test_an_invalid_argument_raises_an_error(name: str, tmp_path: Any) -> None:
-    numba: Any = pytest.importorskip("numba")
+    pytest.importorskip("numba")
     env: Any = made(tmp_path, CALLS[name])
     rewritten = rewrite(env)
-    compiled = transformed(rewritten, numba.njit(error_model="python", boundscheck=True))
+    compiled = compiled_with_checks(rewritten)
     errors = 0
     for action in range(7):
 
@@ -91,6 +93,7 @@ def test_an_invalid_argument_raises_an_error(name: str, tmp_path: Any) -> None:
             assert found == expected, (action, one)
         errors += expected[0] == "error"
     assert 0 < errors < 7
+    assert_nothing_refused()
 
 
 @pytest.mark.parametrize("call", ["normal(0.0, -1.0)", "geometric(2.0)", "uniform(0.0, -1.0)", "binomial(5, 1.5)"])

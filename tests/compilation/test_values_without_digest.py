@@ -14,7 +14,7 @@ import qtab
 from qtab.compilation import functional, ordinary
 from qtab.compilation.cache.store import Store
 from qtab.compilation.functional import compiled_env
-from qtab.compilation.rewriting.helpers import helpers
+from qtab.compilation.rewriting import helpers
 from support.gym_classes import grids
 
 pytest.importorskip("numba")
@@ -74,14 +74,14 @@ def test_the_value_is_kept_so_that_no_other_gets_its_address(monkeypatch: pytest
 
 
 def test_ordinary_classes(monkeypatch: pytest.MonkeyPatch, files: Path) -> None:
-    add = helpers.HELPERS["h_add"]
+    checked = helpers.HELPERS["h_key"]
 
-    def h_add(one: Any, other: Any) -> Any:
+    def h_key(key: Any, size: Any) -> Any:
         if DEBUG:
-            log.info("an addition")
-        return add(one, other)
+            log.info("a key")
+        return checked(key, size)
 
-    monkeypatch.setitem(helpers.HELPERS, "h_add", h_add)
+    monkeypatch.setitem(helpers.HELPERS, "h_key", h_key)
     shared: dict[str, Any] = {"episodes": 5, "max_episode_steps": 20, "seed": 2}
     compiled, python = (qtab.train(grids.CliffEnv(), backend=backend, **shared) for backend in ("numba", "gymnasium"))
     assert compiled.tables.tobytes() == python.tables.tobytes()

@@ -11,6 +11,7 @@ from gymnasium import spaces
 from gymnasium.utils import seeding
 
 from qtab.compilation.rewriting import Rewritten
+from qtab.compilation.rewriting.helpers import is_helper
 
 
 def assert_equal_observation(space: gym.Space[Any], expected: Any, found: Any) -> None:
@@ -36,6 +37,12 @@ def assert_equal_state(env: Any, record: Any) -> None:
         for one in index.split(".") if index else ():
             value = value[int(one)]
         assert np.asarray(value, record.dtype[name].base).tobytes() == np.asarray(record[name]).tobytes(), name
+
+
+def assert_nothing_refused() -> None:
+    from qtab.compilation.checks.typed_code import refusals
+
+    assert refusals == []
 
 
 def assert_equal_steps(
@@ -69,14 +76,24 @@ def assert_equal_steps(
     return ended
 
 
-def transformed(rewritten: Rewritten, decorator: Callable[[Any], Any]) -> Rewritten:
-    """Returns the same functions after a decorator, such as ``numba.njit``, was applied to all of them."""
+def compiled_with_checks(rewritten: Rewritten) -> Rewritten:
+    """Returns the same functions, compiled by Numba with the checks of qtab, so that Python can call them.
+
+    They are compiled when they are called; ``qtab.compilation.checks.typed_code.refusals`` lists what is refused.
+    """
+    import numba
+
+    from qtab.compilation.checks.numba_pass import CheckedCompiler
+    from qtab.compilation.checks.typed_code import refusals
+
+    refusals.clear()
     namespace = dict(rewritten.namespace)
     exec(compile(rewritten.source, "<rewritten>", "exec"), namespace)  # noqa: S102
     for name, value in list(namespace.items()):
         if name.startswith(("h_", "f_", "t_")) or name in ("reset", "step", "action_mask"):
             with_globals = type(value)(value.__code__, namespace, value.__name__, value.__defaults__)
-            namespace[name] = decorator(with_globals)
+            checks = {} if is_helper(value) else {"pipeline_class": CheckedCompiler}
+            namespace[name] = numba.njit(error_model="python", boundscheck=True, **checks)(with_globals)
     return dataclasses.replace(
         rewritten,
         reset=namespace["reset"],

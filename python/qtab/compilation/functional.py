@@ -1,18 +1,13 @@
 """The compilation of functional environments, with its proof and its file."""
 
-import logging
 import os
 import re
-import time
-import warnings
 from importlib.util import find_spec
-from itertools import count
 from typing import Any
 
 import numpy as np
 from gymnasium import spaces
 
-from qtab._utils.progress import ProgressBar
 from qtab.compilation.cache import machine_code
 from qtab.compilation.cache.digest import Digest, digest_of, numba_version
 from qtab.compilation.cache.store import Store
@@ -21,17 +16,14 @@ from qtab.compilation.checks.source_constructs import refuse_constructs
 from qtab.compilation.interface.compiled_env import FUNCTIONS, CompiledEnv
 from qtab.compilation.layouts.observation_layout import ObservationLayout
 from qtab.compilation.layouts.parameters import Parameters
-from qtab.compilation.layouts.value_layout import Array, Layout, Number, Tuple, decode, layout_of
+from qtab.compilation.layouts.value_layout import decode, from_json, layout_of, to_json
 from qtab.compilation.not_compilable import NotCompilable, NotNow
-from qtab.compilation.proof import FunctionalTwin, prove
-
-SLOW_SECONDS = 1.0
-"""The duration of a compilation above which it is reported."""
+from qtab.compilation.proof import prove
+from qtab.compilation.twins.functional_twin import FunctionalTwin
 
 LEAST_NUMBA = (0, 61)
 """The oldest version of Numba, as in the extra ``numba`` of pyproject.toml."""
 
-_logger = logging.getLogger("qtab")
 _store = Store()
 
 
@@ -61,12 +53,11 @@ def compiled_env(env: Any) -> tuple[CompiledEnv, Parameters]:
     memory = parameters.memory()
 
     def make() -> tuple[machine_code.MachineCode, dict[str, Any]]:
-        made, state = _compile(env, parameters, observation)
-        return made, {"state": _layout_to_json(state)}
+        return _compile(env, parameters, observation)
 
     def load(code: machine_code.MachineCode, description: dict[str, Any]) -> CompiledEnv:
         loaded = machine_code.load(code, FUNCTIONS)
-        state = _layout_from_json(description["state"])
+        state = from_json(description["state"])
         masked = "action_mask" in methods_of(env)
         return CompiledEnv(loaded, state, observation, int(env.action_space.n), masked)
 
@@ -142,51 +133,23 @@ def _bounds(space: Any) -> list[Any]:
 
 def _compile(
     env: Any, parameters: Parameters, observation: ObservationLayout
-) -> tuple[machine_code.MachineCode, Layout]:
+) -> tuple[machine_code.MachineCode, dict[str, Any]]:
+    """Returns the machine code of an environment, and the layout of its states as values of JSON."""
     functions = [one for one in reachable(env) if plain(one) is not None]
     refuse_constructs(functions)
-    started = time.perf_counter()
-    from numba.core.errors import NumbaError
-
-    from qtab.compilation.c_functions.functional_shims import ARGUMENTS, STAGES, compile_functional
-    from qtab.compilation.checks.numba_errors import not_compilable
-
     try:
         env.initial_state(np.random.default_rng(0))
     except Exception as error:  # it is raised again when Python resets the environment
         raise NotNow(f"initial_state raises {type(error).__name__}: {error}") from None
+    from qtab.compilation.c_functions import compiler
+    from qtab.compilation.c_functions.functional_shims import compile_functional
+
+    description: dict[str, Any] = {}
+
+    def compile_functions(report: compiler.Report) -> dict[str, Any]:
+        compiled, state = compile_functional(env, parameters, observation, report)
+        description["state"] = to_json(state)
+        return compiled
+
     files = {function.__code__.co_filename for function in functions}
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        try:
-            with ProgressBar(STAGES, "stage", None, f"compiling {type(env).__name__}") as bar:
-                done = count(1)
-                compiled = compile_functional(env, parameters, observation, lambda: bar.move_to(next(done)))
-        except NumbaError as error:
-            raise not_compilable(error, files) from None
-        except NotCompilable:
-            raise
-        except Exception as error:  # an internal error of Numba; Python can step the environment
-            raise NotNow(f"Numba failed with {type(error).__name__}: {error}") from None
-        made = machine_code.make(compiled.functions, ARGUMENTS)
-    seconds = time.perf_counter() - started
-    if seconds > SLOW_SECONDS:
-        _logger.info("compiled %s in %.1f s", type(env).__name__, seconds)
-    return made, compiled.state
-
-
-def _layout_to_json(layout: Layout) -> Any:
-    if isinstance(layout, Number):
-        return str(layout.dtype)
-    if isinstance(layout, Array):
-        return {"dtype": str(layout.dtype), "shape": list(layout.shape)}
-    return [_layout_to_json(item) for item in layout.items]
-
-
-def _layout_from_json(stored: Any) -> Layout:
-    """Returns a stored layout. Named tuples have become tuples; see :func:`state_from`."""
-    if isinstance(stored, str):
-        return Number(np.dtype(stored))
-    if isinstance(stored, dict):
-        return Array(np.dtype(stored["dtype"]), tuple(stored["shape"]))
-    return Tuple(tuple(map(_layout_from_json, stored)))
+    return compiler.compiled(type(env).__name__, files, compile_functions), description

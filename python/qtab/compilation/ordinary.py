@@ -1,21 +1,16 @@
 """The compilation of ordinary Gymnasium classes, with its proof and its file."""
 
-import logging
-import time
-import warnings
 from collections.abc import Callable
-from itertools import count
 from typing import Any
 
 import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab._utils.progress import ProgressBar
 from qtab.compilation.cache import machine_code
 from qtab.compilation.cache.digest import digest_of
 from qtab.compilation.cache.store import Store
-from qtab.compilation.functional import SLOW_SECONDS, require_numba
+from qtab.compilation.functional import require_numba
 from qtab.compilation.interface.compiled_env import FUNCTIONS, CompiledEnv
 from qtab.compilation.layouts.attribute_record import layout_of_record, with_observation
 from qtab.compilation.layouts.observation_layout import ObservationLayout
@@ -27,7 +22,6 @@ from qtab.compilation.twins.repetition import Repetition, Result
 from qtab.compilation.twins.side_effects import refuse_effects
 from qtab.envs.external.positions import Position
 
-_logger = logging.getLogger("qtab")
 _store = Store()
 
 
@@ -114,39 +108,21 @@ class OrdinaryEnv:
         return _store.compiled(digest, file, self.parameters, make, load, self._prove)
 
     def _make(self, observation: ObservationLayout) -> machine_code.MachineCode:
-        started = time.perf_counter()
-        from numba.core.errors import NumbaError
-
-        from qtab.compilation.c_functions.functional_shims import ARGUMENTS, STAGES
+        from qtab.compilation.c_functions import compiler
         from qtab.compilation.c_functions.record_shims import compile_record
-        from qtab.compilation.checks.numba_errors import not_compilable
 
         space: Any = self.env.action_space
         name = type(self.env).__name__
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            try:
-                with ProgressBar(STAGES, "stage", None, f"compiling {name}") as bar:
-                    done = count(1)
-                    functions = compile_record(
-                        self.rewritten,
-                        self.record,
-                        observation,
-                        int(space.n),
-                        int(space.start),
-                        lambda: bar.move_to(next(done)),
-                    )
-                made = machine_code.make(functions, ARGUMENTS)
-            except NumbaError as error:
-                raise self._of_users_line(not_compilable(error, {f"<{name}>"})) from None
-            except (NotCompilable, machine_code.CannotLoad):
-                raise
-            except Exception as error:  # an internal error of Numba; Python can step the environment
-                raise NotNow(f"Numba failed with {type(error).__name__}: {error}") from None
-        seconds = time.perf_counter() - started
-        if seconds > SLOW_SECONDS:
-            _logger.info("compiled %s in %.1f s", name, seconds)
-        return made
+
+        def compile_functions(report: compiler.Report) -> dict[str, Any]:
+            return compile_record(self.rewritten, self.record, observation, int(space.n), int(space.start), report)
+
+        try:
+            return compiler.compiled(name, {f"<{name}>"}, compile_functions)
+        except NotNow:
+            raise
+        except NotCompilable as refusal:
+            raise self._of_users_line(refusal) from None
 
     def _of_users_line(self, refusal: NotCompilable) -> NotCompilable:
         """Returns an error for the user's line, given one for a line of the rewritten functions."""

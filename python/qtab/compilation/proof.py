@@ -1,6 +1,5 @@
 """The comparison of an environment's compiled functions with the same functions in Python, before the first run."""
 
-import copy
 import warnings
 from dataclasses import dataclass
 from types import FunctionType
@@ -12,7 +11,7 @@ from numpy.typing import NDArray
 from qtab.compilation.checks.source_constructs import place_of, suspects
 from qtab.compilation.interface.compiled_env import CompiledEnv, Stepper
 from qtab.compilation.interface.qtab_env import FAILED, TERMINATED, TRUNCATED
-from qtab.compilation.layouts.value_layout import encode, leaves
+from qtab.compilation.layouts.value_layout import leaves
 from qtab.compilation.not_compilable import NotCompilable, NotNow
 
 SEEDS = (0, 1, 2, 3)
@@ -45,7 +44,7 @@ def prove(twin: Any, compiled: CompiledEnv, parameters: NDArray[np.uint8], funct
     """Plays episodes in Python and in compiled code with the same seeds and random actions, and compares all numbers.
 
     Args:
-        twin: Steps the environment in Python, as :class:`FunctionalTwin` does.
+        twin: Steps the environment in Python, as those of ``qtab.compilation.twins`` do.
         compiled: The compiled environment.
         parameters: The parameters.
         functions: The functions of the environment, for the message.
@@ -68,42 +67,6 @@ def prove(twin: Any, compiled: CompiledEnv, parameters: NDArray[np.uint8], funct
             if parameters.tobytes() != before:
                 reason, advice = "an array of self is changed", "copy the array first, and return the copy"
                 raise NotCompilable(reason, *_place_of_step(functions), advice)
-
-
-class FunctionalTwin:
-    """Steps a functional environment in Python, without changing the object.
-
-    Args:
-        env: The environment.
-        compiled: The compiled environment, whose layouts the numbers are given in.
-        values: The attributes that the functions read.
-    """
-
-    def __init__(self, env: Any, compiled: CompiledEnv, values: dict[str, Any]) -> None:
-        self._env, self._compiled = object.__new__(type(env)), compiled
-        vars(self._env).update({**vars(env), **copy.deepcopy(values)})
-        self._first = int(env.action_space.start)
-        self._state: Any = None
-
-    def reset(self, rng: np.random.Generator) -> dict[str, Any]:
-        """Draws the first state, and returns the numbers by their names."""
-        self._state = self._env.initial_state(rng)
-        return self._numbers(False)
-
-    def step(self, action: int, rng: np.random.Generator) -> dict[str, Any]:
-        """Takes an action, counted from 0, and returns the numbers by their names."""
-        state, reward, terminated = self._env.transition(self._state, self._first + action, rng)
-        self._state = state
-        return {"reward": float(reward), "terminated": bool(terminated), **self._numbers(bool(terminated))}
-
-    def _numbers(self, terminated: bool) -> dict[str, Any]:
-        numbers = {
-            "state": encode(self._compiled.state, self._state),
-            "observation": self._compiled.observation.numbers(self._env._observation(self._state)),
-        }
-        if self._compiled.has_action_mask:
-            numbers["action_mask"] = self._env._info(self._state, terminated)["action_mask"].astype(np.uint8)
-        return numbers
 
 
 def _compare(

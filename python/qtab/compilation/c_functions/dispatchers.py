@@ -1,13 +1,14 @@
 """Compilation of Python functions together with the plain Python functions that they call."""
 
 import contextlib
+from collections.abc import Callable
 from types import CellType, FunctionType, ModuleType
 from typing import Any
 
 import numba
 
 from qtab.compilation.called_functions import codes, plain
-from qtab.compilation.checks.checked_operations import OPTIONS as OPTIONS
+from qtab.compilation.checks.checked_operations import OPTIONS
 from qtab.compilation.checks.numba_pass import CheckedCompiler
 
 CHECKED_OPTIONS: dict[str, Any] = {**OPTIONS, "pipeline_class": CheckedCompiler}
@@ -18,11 +19,11 @@ class FunctionCompiler:
     """Gives Numba's dispatchers of functions. Plain functions that they use are replaced by dispatchers as well.
 
     Args:
-        options: Numba's options.
+        unchecked: Whether a function is compiled without checks, because it is not the user's.
     """
 
-    def __init__(self, options: dict[str, Any] = OPTIONS) -> None:
-        self._options = options
+    def __init__(self, unchecked: Callable[[FunctionType], bool] = lambda _: False) -> None:
+        self._unchecked = unchecked
         self._dispatchers: dict[FunctionType, Any] = {}
 
     def dispatcher(self, function: FunctionType) -> Any:
@@ -34,7 +35,8 @@ class FunctionCompiler:
             copied.__kwdefaults__ = function.__kwdefaults__
             copied.__qualname__, copied.__module__ = function.__qualname__, function.__module__
             # First, so that functions may call each other and themselves.
-            self._dispatchers[function] = numba.njit(**self._options)(copied)
+            options = OPTIONS if self._unchecked(function) else CHECKED_OPTIONS
+            self._dispatchers[function] = numba.njit(**options)(copied)
             names = {name for code in codes(function.__code__) for name in code.co_names}
             for name in names & function.__globals__.keys():
                 used[name] = self._replaced(function.__globals__[name])

@@ -1,61 +1,43 @@
-"""The functions of ``qtab_env.h`` around the compiled functions of an environment."""
+"""The functions of ``qtab_env.h`` around the functions of a functional environment."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
-import numba
 import numpy as np
 from numba.core import types
 
-from qtab.compilation.c_functions.dispatchers import CHECKED_OPTIONS, OPTIONS, FunctionCompiler
-from qtab.compilation.c_functions.generator_at import GENERATOR, generator_at
+from qtab.compilation.c_functions.addresses import GENERATOR, generator_at
+from qtab.compilation.c_functions.compiler import Report, c_functions, returned_type
+from qtab.compilation.c_functions.dispatchers import FunctionCompiler
 from qtab.compilation.c_functions.memory_access import layout_from, reader, type_of, united, writer
 from qtab.compilation.c_functions.observation_writers import mask_writer, observation_writer
 from qtab.compilation.c_functions.self_type import self_at, self_type
 from qtab.compilation.called_functions import helper_methods, methods_of, names_of, reachable
-from qtab.compilation.checks.typed_code import refusals
 from qtab.compilation.interface.qtab_env import FAILED, TERMINATED
 from qtab.compilation.layouts.observation_layout import ObservationLayout
 from qtab.compilation.layouts.parameters import Parameters
 from qtab.compilation.layouts.value_layout import Layout, Number
 from qtab.compilation.not_compilable import NotCompilable
 
-ARGUMENTS = {"qtab_reset": "ppppp", "qtab_step": "pppipppp", "qtab_observe": "pppp"}
-"""The C functions: ``p`` for an address, ``i`` for an int64."""
-
-STAGES = 2 + len(ARGUMENTS)
-"""The number of stages of a compilation."""
-
 MOST_STATE_TYPES = 8
 """The most times that the type of the state may grow."""
 
 
-@dataclass(frozen=True, eq=False)
-class Compiled:
-    """Numba's compile results, and the layout of the state."""
-
-    functions: dict[str, Any]
-    state: Layout
-
-
 def compile_functional(
-    env: Any, parameters: Parameters, observation: ObservationLayout, report: Callable[[], None]
-) -> Compiled:
-    """Compiles a functional environment.
+    env: Any, parameters: Parameters, observation: ObservationLayout, report: Report
+) -> tuple[dict[str, Any], Layout]:
+    """Compiles a functional environment; returns the compile results of the C functions, and the layout of the state.
 
     Args:
         env: The environment.
         parameters: The attributes that its functions read.
         observation: The layout of its observations.
-        report: Called after each of ``STAGES``.
+        report: Called after each stage.
 
     Raises:
         NotCompilable: if a value has a type that compiled code cannot pass on.
         numba.core.errors.NumbaError: if Numba does not compile a function.
     """
-    refusals.clear()
-    compiler = FunctionCompiler(CHECKED_OPTIONS)
+    compiler = FunctionCompiler()
     own = methods_of(env)
     helpers = helper_methods(type(env), names_of(reachable(env)))
     bound = {name: compiler.method(function, static) for name, (function, static) in helpers.items()}
@@ -81,13 +63,7 @@ def compile_functional(
         mask = returned_type(functions["action_mask"], (given, of_state))
         scope["write_mask"] = mask_writer(int(env.action_space.n), mask)
     report()
-    if refusals:
-        raise refusals[0]
-    exec(_source("action_mask" in functions), scope)  # noqa: S102 - code of this module
-    compiled = compiled_shims(scope, report)
-    if refusals:
-        raise refusals[0]
-    return Compiled(compiled, state)
+    return c_functions(_source("action_mask" in functions), scope, report), state
 
 
 def _state_layout(functions: dict[str, Any], given: Any, example: Any) -> Layout:
@@ -114,32 +90,6 @@ def _check_transition(returned: Any) -> None:
         raise NotCompilable(f"transition returns {reward} as the reward, not a number")
     if not isinstance(terminated, types.Boolean):
         raise NotCompilable(f"transition returns {terminated} as terminated, not a boolean")
-
-
-def returned_type(dispatcher: Any, arguments: tuple[Any, ...]) -> Any:
-    """Compiles a function for types of arguments, and returns the type of its result."""
-    dispatcher.compile(arguments)
-    return dispatcher.overloads[arguments].signature.return_type
-
-
-def compiled_shims(scope: dict[str, Any], report: Callable[[], None]) -> dict[str, Any]:
-    """Compiles the C functions.
-
-    Args:
-        scope: A namespace that contains them.
-        report: Called after each.
-
-    Returns:
-        Numba's compile results by the names of the C functions.
-    """
-    compiled = {}
-    for name, letters in ARGUMENTS.items():
-        shim = numba.njit(**OPTIONS)(scope[name])
-        signature = tuple(types.int64 if letter == "i" else types.uintp for letter in letters)
-        shim.compile(signature)
-        compiled[name] = shim.overloads[signature]
-        report()
-    return compiled
 
 
 def _source(masked: bool) -> str:

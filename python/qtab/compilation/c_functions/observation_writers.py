@@ -7,8 +7,8 @@ import numba
 import numpy as np
 from numba.core import types
 
-from qtab.compilation.c_functions.copy_bytes import pointer
-from qtab.compilation.c_functions.dispatchers import OPTIONS
+from qtab.compilation.c_functions.addresses import pointer
+from qtab.compilation.checks.checked_operations import OPTIONS
 from qtab.compilation.layouts.observation_layout import ObservationLayout, ObservationPart
 from qtab.compilation.not_compilable import NotCompilable
 

@@ -1,23 +1,23 @@
 """The functions of ``qtab_env.h`` around the functions of a rewritten class."""
 
-from collections.abc import Callable
 from typing import Any
 
 import numba
 import numpy as np
 from numba.core import types
 
-from qtab.compilation.c_functions.copy_bytes import copy_bytes, pointer
-from qtab.compilation.c_functions.dispatchers import OPTIONS, FunctionCompiler
-from qtab.compilation.c_functions.functional_shims import compiled_shims, returned_type
-from qtab.compilation.c_functions.generator_at import GENERATOR, generator_at
+from qtab.compilation.c_functions.addresses import GENERATOR, copy_bytes, generator_at, pointer
+from qtab.compilation.c_functions.compiler import Report, c_functions, returned_type
+from qtab.compilation.c_functions.dispatchers import FunctionCompiler
 from qtab.compilation.c_functions.memory_access import writer
 from qtab.compilation.c_functions.observation_writers import mask_writer, observation_writer
+from qtab.compilation.checks.checked_operations import OPTIONS
 from qtab.compilation.interface.qtab_env import FAILED, TERMINATED, TRUNCATED
 from qtab.compilation.layouts.attribute_record import OBSERVATION
 from qtab.compilation.layouts.observation_layout import ObservationLayout
 from qtab.compilation.layouts.value_layout import Number
 from qtab.compilation.rewriting import Rewritten
+from qtab.compilation.rewriting.helpers import is_helper
 
 
 def compile_record(
@@ -26,7 +26,7 @@ def compile_record(
     observation: ObservationLayout,
     num_actions: int,
     start: int,
-    report: Callable[[], None],
+    report: Report,
 ) -> dict[str, Any]:
     """Compiles a rewritten class, and returns Numba's compile results by the names of the C functions.
 
@@ -42,7 +42,7 @@ def compile_record(
         NotCompilable: if a value has a type that compiled code cannot pass on.
         numba.core.errors.NumbaError: if Numba does not compile a function.
     """
-    compiler = FunctionCompiler()
+    compiler = FunctionCompiler(unchecked=is_helper)
     of_record = numba.from_dtype(record)
     reset, step = compiler.dispatcher(rewritten.reset), compiler.dispatcher(rewritten.step)  # type: ignore[arg-type]
     seen = returned_type(reset, (of_record, GENERATOR))
@@ -74,8 +74,7 @@ def compile_record(
         "TERMINATED": TERMINATED,
         "TRUNCATED": TRUNCATED,
     }
-    exec(_source(rewritten.action_mask is not None, numbers), scope)  # noqa: S102 - code of this module
-    return compiled_shims(scope, report)
+    return c_functions(_source(rewritten.action_mask is not None, numbers), scope, report)
 
 
 def _record_at(record: np.dtype[Any]) -> Any:

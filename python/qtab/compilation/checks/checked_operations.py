@@ -1,4 +1,4 @@
-"""Functions for compiled code that raise an error where Python does, or where 64 bits are too few for Python's integer.
+"""Operations for compiled code that raise an error where Python does, or where Python's integer has more than 64 bits.
 
 A step in which one of them raises an error is repeated by Python.
 """
@@ -12,8 +12,14 @@ import numpy as np
 from numba.core import types
 from numba.extending import intrinsic
 
-from qtab.compilation.rewriting.helpers.helpers import h_checked
-from qtab.compilation.rewriting.library.math_functions import CHECKED, ROUNDED, TESTS, TWO
+from qtab.compilation.checks.known_functions import (
+    DRAWS,
+    MATH_CHECKED,
+    MATH_ROUNDED,
+    MATH_TWO,
+    draw_check,
+)
+from qtab.compilation.checks.known_functions import MATH as MATH_NAMES
 
 OPTIONS: dict[str, Any] = {
     "boundscheck": True,
@@ -57,13 +63,18 @@ def _compiled(function: Any) -> Any:
     return numba.njit(**OPTIONS)(function)
 
 
-_checked: Any = _compiled(h_checked)
+_add: Any = _exact("sadd")
+_subtract: Any = _exact("ssub")
 _multiply: Any = _exact("smul")
 
 
 def _shift_left(one: Any, other: Any) -> Any:
-    if other < 0 or other > 62:
+    if other < 0:
         raise ValueError
+    if one == 0:
+        return one
+    if other > 63:
+        raise OverflowError
     result = one << other
     if result >> other != one:
         raise OverflowError
@@ -71,9 +82,9 @@ def _shift_left(one: Any, other: Any) -> Any:
 
 
 def _shift_right(one: Any, other: Any) -> Any:
-    if other < 0 or other > 63:
+    if other < 0:
         raise ValueError
-    return one >> other
+    return one >> min(other, 63)
 
 
 def _divide(one: Any, other: Any) -> Any:
@@ -98,15 +109,17 @@ def _power(one: Any, other: Any) -> Any:
     if other < 0:
         raise ValueError
     result = 1
-    for _ in range(other):
-        result = _multiply(result, one)
+    while other > 0:
+        if other & 1:
+            result = _multiply(result, one)
+        other = other >> 1
+        if other > 0:
+            one = _multiply(one, one)
     return result
 
 
-_subtract: Any = _exact("ssub")
-
 INTEGER_OPERATIONS: dict[Any, Any] = {
-    operator.add: _exact("sadd"),
+    operator.add: _add,
     operator.sub: _subtract,
     operator.mul: _multiply,
     operator.lshift: _compiled(_shift_left),
@@ -117,6 +130,22 @@ INTEGER_OPERATIONS: dict[Any, Any] = {
     operator.pow: _compiled(_power),
 }
 """Operations of two int64 by their operators."""
+
+
+def _negative(value: Any) -> Any:
+    return _subtract(0, value)
+
+
+negative: Any = _compiled(_negative)
+"""``-value`` of an int64."""
+
+
+def _absolute(value: Any) -> Any:
+    return negative(value) if value < 0 else value
+
+
+absolute: Any = _compiled(_absolute)
+"""``abs`` of an int64."""
 
 
 def _range_check(low: int, high: int) -> Any:
@@ -145,13 +174,6 @@ to_int: Any = _compiled(_to_int)
 """``int`` of a float."""
 
 
-def _exact_int(value: Any) -> Any:
-    """Returns a float as an integer; an integer beyond 2**53 has been rounded before."""
-    if not (-9007199254740992.0 <= value <= 9007199254740992.0):
-        raise OverflowError
-    return np.int64(value)
-
-
 def _round(value: Any) -> Any:
     return to_int(np.rint(value))
 
@@ -160,61 +182,34 @@ rounded: Any = _compiled(_round)
 """``round`` of a float to an integer."""
 
 
+def _defined(argument: Any, result: Any) -> Any:
+    if result != result and argument == argument:
+        raise ValueError
+    if math.isinf(result) and not math.isinf(argument):
+        raise OverflowError
+    return result
+
+
 def _math_function(name: str) -> Any:
-    scope: dict[str, Any] = {"math": math, "np": np, "checked": _checked, "exact": _compiled(_exact_int)}
-    conditions = {"log": "x <= 0.0", "log10": "x <= 0.0", "log2": "x <= 0.0", "log1p": "x <= -1.0", "sqrt": "x < 0.0"}
-    if name in TWO:
+    scope: dict[str, Any] = {"math": math, "np": np, "defined": _compiled(_defined), "to_int": to_int}
+    smallest = {"log": "0.0", "log10": "0.0", "log2": "0.0", "log1p": "-1.0"}
+    if name in MATH_TWO:
         source = f"def f(x, y):\n    return math.{name}(np.float64(x), np.float64(y))\n"
     else:
+        condition = f"z <= {smallest[name]}" if name in smallest else "z < 0.0" if name == "sqrt" else ""
+        check = f"    if {condition}:\n        raise ValueError\n" if condition else ""
         result = f"math.{name}(z)"
-        if name in ROUNDED:
-            result = "exact(z)" if name == "trunc" else f"exact(np.{name}(z))"
-        elif name not in (*TESTS, "fabs", *conditions):
-            result = f"checked(z, {result})"
-        check = (
-            f"    if {conditions[name].replace('x', 'z')}:\n        raise ValueError\n" if name in conditions else ""
-        )
+        if name in MATH_ROUNDED:
+            result = "to_int(z)" if name == "trunc" else f"to_int(np.{name}(z))"
+        elif name in MATH_CHECKED and not condition:
+            result = f"defined(z, {result})"
         source = f"def f(x):\n    z = np.float64(x)\n{check}    return {result}\n"
     exec(source, scope)  # noqa: S102 - code of this module
     return _compiled(scope["f"])
 
 
-MATH: dict[Any, Any] = {
-    getattr(math, name): _math_function(name)
-    for name in (*CHECKED, *TESTS, *ROUNDED, *TWO, "fabs", "log1p", "expm1", "log2")
-}
+MATH: dict[Any, Any] = {getattr(math, name): _math_function(name) for name in MATH_NAMES}
 """Functions of ``math`` whose results have the same bits, with checks."""
-
-_POSITIVE = "{} > 0.0"
-_NOT_NEGATIVE = "({0} >= 0.0 and math.copysign(1.0, {0}) > 0.0)"
-_SHARE = "0.0 < {} <= 1.0"
-DRAWS: dict[str, tuple[str, str]] = {
-    "normal": ("loc=0.0, scale=1.0, size=None", _NOT_NEGATIVE.format("scale")),
-    "lognormal": ("mean=0.0, sigma=1.0, size=None", _NOT_NEGATIVE.format("sigma")),
-    "logistic": ("loc=0.0, scale=1.0, size=None", _NOT_NEGATIVE.format("scale")),
-    "laplace": ("loc=0.0, scale=1.0, size=None", _NOT_NEGATIVE.format("scale")),
-    "exponential": ("scale=1.0, size=None", _NOT_NEGATIVE.format("scale")),
-    "rayleigh": ("scale=1.0, size=None", _NOT_NEGATIVE.format("scale")),
-    "gamma": ("shape, scale=1.0, size=None", "shape >= 0.0 and scale >= 0.0"),
-    "standard_gamma": ("shape, size=None", _NOT_NEGATIVE.format("shape")),
-    "weibull": ("a, size=None", _NOT_NEGATIVE.format("a")),
-    "pareto": ("a, size=None", _POSITIVE.format("a")),
-    "standard_t": ("df, size=None", _POSITIVE.format("df")),
-    "chisquare": ("df, size=None", _POSITIVE.format("df")),
-    "f": ("dfnum, dfden, size=None", "dfnum > 0.0 and dfden > 0.0"),
-    "noncentral_chisquare": ("df, nonc, size=None", "df > 0.0 and nonc >= 0.0"),
-    "noncentral_f": ("dfnum, dfden, nonc, size=None", "dfnum > 0.0 and dfden > 0.0 and nonc >= 0.0"),
-    "beta": ("a, b, size=None", "a > 0.0 and b > 0.0"),
-    "triangular": ("left, mode, right, size=None", "left <= mode <= right and left < right"),
-    "uniform": ("low=0.0, high=1.0, size=None", "0.0 <= high - low < math.inf"),
-    "poisson": ("lam=1.0, size=None", "0.0 <= lam < 10.0"),  # beyond that, Numba's own algorithm differs
-    "geometric": ("p, size=None", "1e-9 <= p <= 1.0"),  # below, the numbers may not fit 64 bits
-    "binomial": ("n, p, size=None", "n >= 0 and 0.0 <= p <= 1.0"),
-    "logseries": ("p, size=None", "0.0 < p < 1.0"),
-    "zipf": ("a, size=None", "1.0 < a < 1e9"),
-}
-"""The parameters of methods of generators, and the condition for which NumPy draws."""
-
 
 INPLACE = {
     getattr(operator, f"i{name}"): getattr(operator, name)
@@ -223,11 +218,7 @@ INPLACE = {
 """The operators of augmented assignments, and those that they stand for."""
 
 
-def _draw_check(parameters: str, condition: str) -> Any:
-    scope: dict[str, Any] = {"math": math}
-    exec(f"def check({parameters}):\n    if not ({condition}):\n        raise ValueError\n", scope)  # noqa: S102
-    return _compiled(scope["check"])
-
-
-DRAW_CHECKS: dict[str, Any] = {name: _draw_check(*given) for name, given in DRAWS.items()}
+DRAW_CHECKS: dict[str, Any] = {
+    name: _compiled(draw_check(name)) for name, (_, condition) in DRAWS.items() if condition != "True"
+}
 """Functions of the arguments of a draw, which raise an error if NumPy may do so."""

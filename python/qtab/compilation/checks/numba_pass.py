@@ -6,7 +6,7 @@ from numba.core.compiler import CompilerBase, DefaultPassBuilder
 from numba.core.compiler_machinery import FunctionPass, register_pass
 from numba.core.typed_passes import NopythonTypeInference
 
-from qtab.compilation.checks.typed_code import Checks
+from qtab.compilation.checks.code_checks import Checks
 
 
 @register_pass(mutates_CFG=False, analysis_only=False)

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+import numpy as np
 from numba.core import types
 
 NUMBERS = (types.Integer, types.Float, types.Boolean)
@@ -34,3 +35,12 @@ def of_integers(of: Any) -> bool:
         return all(kind == types.int64 or isinstance(kind, types.Boolean) for kind in map(types.unliteral, of.types))
     kind = types.unliteral(getattr(of, "dtype", of))
     return kind == types.int64 or isinstance(kind, types.Boolean)
+
+
+def holds(of: Any, value: Any) -> bool:
+    """Returns whether a type of numbers holds a constant exactly, so that comparisons with it are exact."""
+    if not isinstance(value, int | float):
+        return False
+    if of == types.float32:
+        return float(np.float32(value)) == value
+    return bool(of == types.uint64) and isinstance(value, int) and 0 <= value < 2**63

@@ -7,39 +7,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from types import FunctionType
 
+from qtab.compilation.checks.known_functions import DRAWS_DIFFERENT, DRAWS_MISSING, NUMPY_DIFFERENT, NUMPY_SUMS
 from qtab.compilation.not_compilable import NotCompilable
-
-MISSING_DRAWS = {
-    "choice": "draw an index with rng.integers(0, n)",
-    "hypergeometric": "count the successes of single draws with rng.random()",
-    "multinomial": "compare rng.random() with cumulative probabilities",
-    "multivariate_normal": "combine draws of rng.normal(0.0, 1.0)",
-    "dirichlet": "divide draws of rng.gamma(shape, 1.0) by their sum",
-    "vonmises": "draw from another distribution, such as rng.uniform(-math.pi, math.pi)",
-    "gumbel": "write -math.log(rng.exponential(1.0))",
-}
-"""Methods of generators that Numba does not have, and what to write instead. The draws then differ."""
-
-DRAWS_REFUSED = ("wald", "power", "negative_binomial")
-"""Draws whose numbers can differ from NumPy's."""
-
-DIFFERENT = {
-    "np.exp": "math.exp",
-    "np.tanh": "math.tanh",
-    "np.log": "math.log",
-    "np.power": "products",
-    "np.sinh": "math.sinh",
-    "np.cosh": "math.cosh",
-    "np.exp2": "math.exp",
-    "np.expm1": "math.expm1",
-    "np.log1p": "math.log1p",
-    "np.log2": "math.log",
-    "np.log10": "math.log10",
-}
-"""Functions whose last bit can differ in compiled code, and those that do not."""
-
-SUMS = ("sum", "mean", "std", "var", "dot", "matmul", "prod", "cumsum")
-"""Functions that may add in another order."""
 
 
 @dataclass(frozen=True)
@@ -108,8 +77,8 @@ def _refused(node: ast.AST) -> tuple[str, str] | None:
         if name == "integers" and len(node.args) == 1 and not any(word.arg == "high" for word in node.keywords):
             low = ast.unparse(node.args[0])
             return "cannot be compiled with one argument", f"write {ast.unparse(node.func)}(0, {low})"
-        if name in MISSING_DRAWS and not _dotted(node.func).startswith(("np.", "numpy.", "math.")):
-            return "cannot be compiled", MISSING_DRAWS[name]
+        if name in DRAWS_MISSING and not _dotted(node.func).startswith(("np.", "numpy.", "math.")):
+            return "cannot be compiled", DRAWS_MISSING[name]
     return None
 
 
@@ -120,12 +89,12 @@ def _suspect(node: ast.AST) -> str | None:
         return "write products: x * x for x ** 2"
     if isinstance(node, ast.Call):
         name = _dotted(node.func)
-        if (instead := DIFFERENT.get(name.replace("numpy.", "np."))) is not None:
-            return f"write {instead}"
-        last = name.rpartition(".")[2]
-        if last in DRAWS_REFUSED and not name.startswith(("np.", "math.")):
+        module, _, last = name.rpartition(".")
+        if module in ("np", "numpy") and last in NUMPY_DIFFERENT:
+            return NUMPY_DIFFERENT[last]
+        if last in DRAWS_DIFFERENT and not name.startswith(("np.", "math.")):
             return "draw from another distribution"
-        if last in SUMS or name == "sum":
+        if last in NUMPY_SUMS:
             return "add in a loop"
         if name == "round":
             return "write math.floor(x + 0.5)"

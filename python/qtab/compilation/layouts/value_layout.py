@@ -121,3 +121,21 @@ def layout_of(value: Any) -> Layout:
         named = type(value) if hasattr(value, "_fields") else None
         return Tuple(tuple(map(layout_of, value)), named)
     raise TypeError(type(value).__name__)
+
+
+def to_json(layout: Layout) -> Any:
+    """Returns a layout as values of JSON, without the classes of named tuples."""
+    if isinstance(layout, Number):
+        return str(layout.dtype)
+    if isinstance(layout, Array):
+        return {"dtype": str(layout.dtype), "shape": list(layout.shape)}
+    return [to_json(item) for item in layout.items]
+
+
+def from_json(stored: Any) -> Layout:
+    """Returns a layout that ``to_json`` has returned; named tuples have become tuples."""
+    if isinstance(stored, str):
+        return Number(np.dtype(stored))
+    if isinstance(stored, dict):
+        return Array(np.dtype(stored["dtype"]), tuple(stored["shape"]))
+    return Tuple(tuple(map(from_json, stored)))

@@ -5,7 +5,6 @@ and evaluates what is constant: branches that cannot be taken disappear, and con
 consist of what compiled code computes to the same bits as Python and NumPy; anything else raises ``NotCompilable``.
 """
 
-from qtab.compilation.rewriting.rewrite import rewrite
-from qtab.compilation.rewriting.rewritten import Rewritten
+from qtab.compilation.rewriting.rewrite import Rewritten, rewrite
 
 __all__ = ["Rewritten", "rewrite"]

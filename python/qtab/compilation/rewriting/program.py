@@ -219,6 +219,5 @@ def tuple_value(parts: tuple[Value, ...]) -> Value:
         TupleKind(tuple(part.kind for part in parts)),
         f"({code},)" if code else "()",
         parts=parts,
-        effects=any(part.effects for part in parts),
         views=frozenset().union(*(part.views for part in parts)),
     )

@@ -1,21 +1,22 @@
-"""From an environment to functions over a record."""
+"""From an environment to functions over a record of its attributes."""
 
 import inspect
+from collections.abc import Callable
+from dataclasses import dataclass, field
 from types import FunctionType
 from typing import Any
 
 import gymnasium as gym
 import numpy as np
 from gymnasium import spaces
+from numpy.typing import NDArray
 
 from qtab.compilation.not_compilable import NotCompilable
-from qtab.compilation.rewriting import specials
+from qtab.compilation.rewriting import helpers, specials
 from qtab.compilation.rewriting.attributes import Attributes, Restart
-from qtab.compilation.rewriting.helpers import helpers
 from qtab.compilation.rewriting.masks import add_action_mask
 from qtab.compilation.rewriting.observations import observation_code
 from qtab.compilation.rewriting.program import Compiled, Program, as_float
-from qtab.compilation.rewriting.rewritten import Rewritten
 from qtab.compilation.rewriting.source.sources import Source, source_of
 from qtab.compilation.rewriting.user_functions import called, compiled_function
 from qtab.compilation.rewriting.values import INT, WIDE, Scalar, TupleKind, Value, constant, in_words
@@ -23,6 +24,42 @@ from qtab.compilation.twins.class_twin import reset_twin
 
 MAX_ATTEMPTS = 200
 SPECIAL_METHODS = ("__getattr__", "__getattribute__", "__setattr__", "__delattr__")
+
+
+@dataclass(frozen=True, eq=False)
+class Rewritten:
+    """A Gymnasium class as plain functions over a record of its numbers.
+
+    ``record`` is one element of a structured array of ``dtype``, and is changed in place; ``rng`` is a
+    ``numpy.random.Generator``. An exception means that the class would have raised one too, except that an integer may
+    have left its range, or an array may have changed its shape.
+    """
+
+    reset: Callable[..., Any]
+    """``reset(record, rng) -> observation``"""
+    step: Callable[..., Any]
+    """``step(record, action, rng) -> (observation, reward, terminated, truncated)``.
+
+    Actions count from ``action_space.start``, as in the class. Observations are numbers or arrays; those of Tuple and
+    Dict spaces are tuples in the order of the space."""
+    action_mask: Callable[..., Any] | None
+    """``action_mask(record) -> array of booleans or numbers``, from ``action_masks()`` or the info dict; None without
+    masks."""
+    mask_refusal: NotCompilable | None
+    """Why the action mask of the class cannot be compiled; None if it can, or if the class has none."""
+    dtype: np.dtype[Any]
+    """The record: the attributes that steps and resets use and change."""
+    initial: NDArray[Any]
+    """(1,): the record before the first reset."""
+    kept_between_episodes: tuple[str, ...]
+    """The attributes that change, and that ``reset`` does not assign before it reads them: the first state of an
+    episode depends on the episodes before."""
+    lines: dict[int, tuple[str, int]]
+    """For each line of ``source`` the file and the line of the class."""
+    source: str
+    """The functions as a module, without imports except of NumPy and ``math``."""
+    namespace: dict[str, Any] = field(repr=False)
+    """The globals of the functions."""
 
 
 def rewrite(env: gym.Env) -> Rewritten:

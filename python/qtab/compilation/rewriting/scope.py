@@ -84,11 +84,13 @@ class Scope:
         return NotCompilable(f"{reason} in `{shown}`", self.source.file, node.lineno, advice)
 
     def has_effects(self, value: Value) -> bool:
-        """Returns whether evaluating the code of a value may change the state or draw random numbers."""
-        if value.effects or "rng." in value.code:
-            return True
-        called = [self.program.named.get(name) for name in re.findall(r"\bf_\d+_\w+", value.code)]
-        return any(one is not None and (one.changes or one.draws) for one in called)
+        """Returns whether the code of a value must be evaluated: it may change the state or draw random numbers.
+
+        A function whose result is a constant is called as well, since it may raise an error.
+        """
+        found = [self.program.named.get(name) for name in re.findall(r"\bf_\d+_\w+", value.code)]
+        called = [one for one in found if one is not None]
+        return "rng." in value.code or any(one.changes or one.draws or one.result.is_fixed for one in called)
 
     def no_effects(self, value: Value, node: ast.AST, reason: str = "a call whose result is not used") -> None:
         """Refuses a value whose code is left out, evaluated under a condition, or moved, if it has effects."""
@@ -167,7 +169,7 @@ class Scope:
         if kind == INFO:
             return Value(INFO)
         position = index - sum(one == INFO for one in items[:index])
-        return Value(kind, f"{value.code}[{position}]", effects=value.effects)
+        return Value(kind, f"{value.code}[{position}]")
 
     def emit(self, text: str, node: ast.AST | None = None) -> None:
         """Adds a line to the function."""

@@ -40,14 +40,13 @@ def called(
     codes = [value.code for value in given.values() if not value.is_fixed and not isinstance(value.kind, InfoKind)]
     first = ["record", "rng"] if compiled.draws else ["record"]
     code = f"{compiled.name}({', '.join(first + codes)})"
-    effects = compiled.draws or compiled.changes
     if not result.is_fixed:
         fresh = isinstance(result.kind, Array) and not result.views
-        return Value(result.kind, code, fresh=fresh, effects=effects, views=result.views)
+        return Value(result.kind, code, fresh=fresh, views=result.views)
     if result.fixed is None:
-        return Value(None, code, fixed=None, effects=True)
+        return Value(None, code, fixed=None)
     lifted = scope.lift(constant(result.fixed), node)
-    return Value(lifted.kind, f"({code}, {lifted.code})[1]", fresh=True, effects=True)
+    return Value(lifted.kind, f"({code}, {lifted.code})[1]", fresh=True)
 
 
 def _argument(scope: "Expressions", node: ast.AST, value: Value) -> Value:

@@ -71,8 +71,6 @@ class Value:
     """Whether an array was made by this expression, so that no other name refers to its memory."""
     frozen: bool = False
     """Whether it is an array that nothing changes, a constant."""
-    effects: bool = False
-    """Whether evaluating the code may change the state."""
     action: bool = False
     """Whether it is the action that ``step`` was given."""
     views: frozenset[str] = frozenset()

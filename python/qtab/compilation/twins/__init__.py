@@ -1,1 +1,1 @@
-"""Copies of ordinary Gymnasium environments that are stepped in Python, to prove compiled code or where it fails."""
+"""Environments stepped in Python: compiled code is compared with them, and a step that fails in it is repeated."""

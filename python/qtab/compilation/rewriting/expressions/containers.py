@@ -70,7 +70,7 @@ def subscript(scope: "Expressions", node: ast.Subscript) -> Value:
                 scope.no_effects(one, node)
         return scope.element(base, position)
     if isinstance(base.kind, TupleKind) and key.kind == INT and len(set(base.kind.items)) == 1:
-        return Value(base.kind.items[0], f"{base.code}[{key.code}]", effects=base.effects or key.effects)
+        return Value(base.kind.items[0], f"{base.code}[{key.code}]")
     raise scope.refuse(node, f"an element of {in_words(base.kind)}", "use a NumPy array indexed by integers")
 
 
@@ -92,7 +92,7 @@ def element(scope: "Expressions", node: ast.Subscript, base: Value) -> Value:
     dtype = base.kind.dtype
     source = base.raw or base.code
     if left == 0:
-        return Value(scalar_of(dtype), converted(f"{source}[{code}]", scalar_of(dtype)), effects=base.effects)
+        return Value(scalar_of(dtype), converted(f"{source}[{code}]", scalar_of(dtype)))
     part = f"{source}[{code}]"
     kind = Array(dtype, left, shape)
     return Value(kind, f"({part} != 0)" if base.raw else part, views=base.views)
@@ -164,7 +164,7 @@ def as_tuple(scope: "Expressions", node: ast.AST, value: Value) -> Value:
     scalar = scalar_of(kind.dtype)
     name = scope.program.elements(kind.shape[0], scalar)
     scope.compiled.uses.add(name)
-    return Value(TupleKind((scalar,) * kind.shape[0]), f"{name}({value.code})", effects=value.effects)
+    return Value(TupleKind((scalar,) * kind.shape[0]), f"{name}({value.code})")
 
 
 def lookup(scope: "Expressions", node: ast.AST, container: Any, index: Value) -> Value:
@@ -212,7 +212,7 @@ def _table(scope: "Expressions", node: ast.AST, rows: list[Any], kind: Any, inde
     lines = [f"def {name}(key):", f"    i = {check}(key, {len(rows)})", f"    return {result}"]
     program.add(name, lines, uses={check})
     scope.compiled.uses.add(name)
-    return Value(kind, f"{name}({index.code})", frozen=isinstance(kind, Array), effects=index.effects)
+    return Value(kind, f"{name}({index.code})", frozen=isinstance(kind, Array))
 
 
 def _has_mixed(kind: Any) -> bool:
@@ -234,4 +234,4 @@ def _cases(scope: "Expressions", node: ast.AST, keys: list[Any], values: list[Va
         lines += [f"    if key == {code.code}:", f"        return {value.code}"]
     program.add(name, [*lines, "    raise KeyError"])
     scope.compiled.uses.add(name)
-    return Value(kind, f"{name}({index.code})", effects=index.effects)
+    return Value(kind, f"{name}({index.code})")

@@ -33,7 +33,7 @@ class Displays(Expressions):
         if parts and all(part.is_fixed for part in parts):
             return constant(dict(zip(names, (part.fixed for part in parts), strict=True)))
         lifted = tuple_value(tuple(self.lift(part, node) for part in parts))
-        return Value(DictKind(names, lifted.kind.items), lifted.code, parts=lifted.parts, effects=lifted.effects)
+        return Value(DictKind(names, lifted.kind.items), lifted.code, parts=lifted.parts)
 
     def _listcomp(self, node: ast.ListComp | ast.GeneratorExp) -> Value:
         return self.tuple_of(membership.comprehension(self, node), node, list)

@@ -8,14 +8,12 @@ from dataclasses import replace
 from typing import Any
 
 from qtab.compilation.rewriting import specials
-from qtab.compilation.rewriting.expressions import calls, containers, integers, members, membership, vectors
+from qtab.compilation.rewriting.expressions import calls, containers, members, membership, vectors
 from qtab.compilation.rewriting.expressions.operators import COMPARISONS, SYMBOLS, binary, comparison, unary
 from qtab.compilation.rewriting.program import converted, tuple_value
 from qtab.compilation.rewriting.scope import Scope
 from qtab.compilation.rewriting.values import (
     BOOL,
-    FLOAT,
-    INT,
     Array,
     Scalar,
     TupleKind,
@@ -44,8 +42,6 @@ class Expressions(Scope):
         value: Value = method(node)
         if value.is_fixed and node is not self.whole:  # its code would be left out
             self.no_effects(value, node)
-        if not value.effects and self.has_effects(value):
-            value = replace(value, effects=True)
         return value
 
     def lifted(self, node: ast.expr) -> Value:
@@ -126,15 +122,18 @@ class Expressions(Scope):
         if left.is_fixed and right.is_fixed:
             return self.folded(node, function, left.fixed, right.fixed)
         left, right = self.lift(left, node), self.lift(right, node)
-        kind = binary(symbol, left, right)
-        if isinstance(kind, tuple):
-            raise self.refuse(node, *kind)
+        kind = self.kind(node, binary(symbol, left, right))
         parts = left.parts + right.parts if left.parts and right.parts and isinstance(kind, TupleKind) else None
         if parts:
             return tuple_value(parts)
-        code = integers.arithmetic(self, symbol, left, right) or vectors.code(self, symbol, left, right, kind)
-        code = code or f"({left.code} {symbol} {right.code})"
-        return Value(kind, code, fresh=True, effects=left.effects or right.effects)
+        code = vectors.code(self, symbol, left, right, kind) or f"({left.code} {symbol} {right.code})"
+        return Value(kind, code, fresh=True)
+
+    def kind(self, node: ast.AST, result: Any) -> Any:
+        """Returns the kind of the result of an operator; raises the reason and the advice given instead of one."""
+        if isinstance(result, tuple):
+            raise self.refuse(node, *result)
+        return result
 
     def folded(self, node: ast.AST, function: Any, *values: Any) -> Value:
         """Returns the result of a function of constants."""
@@ -146,22 +145,14 @@ class Expressions(Scope):
     def _unaryop(self, node: ast.UnaryOp) -> Value:
         if isinstance(node.op, ast.Not):
             value = self.test(node.operand)
-            return (
-                constant(not value.fixed)
-                if value.is_fixed
-                else Value(BOOL, f"(not {value.code})", effects=value.effects)
-            )
+            return constant(not value.fixed) if value.is_fixed else Value(BOOL, f"(not {value.code})")
         symbol = {ast.USub: "-", ast.UAdd: "+", ast.Invert: "~"}[type(node.op)]
         value = self.expression(node.operand)
         if value.is_fixed:
             named = {"-": operator.neg, "+": operator.pos, "~": operator.invert}
             return self.folded(node, named[symbol], value.fixed)
-        kind = unary(symbol, value)
-        if isinstance(kind, tuple):
-            raise self.refuse(node, *kind)
-        if symbol == "-" and kind == INT:
-            return Value(kind, integers.called(self, "h_neg", value), effects=value.effects)
-        return Value(kind, f"({symbol}{value.code})", fresh=True, effects=value.effects)
+        kind = self.kind(node, unary(symbol, value))
+        return Value(kind, f"({symbol}{value.code})", fresh=True)
 
     def _boolop(self, node: ast.BoolOp, is_test: bool = False) -> Value:
         is_and = isinstance(node.op, ast.And)
@@ -192,8 +183,7 @@ class Expressions(Scope):
         if any(part.kind != BOOL for part in parts):
             raise self.refuse(node, "and/or with something other than booleans", "write comparisons, such as x != 0")
         symbol = " and " if is_and else " or "
-        effects = any(part.effects for part in parts)
-        return Value(BOOL, "(" + symbol.join(part.code for part in parts) + ")", effects=effects)
+        return Value(BOOL, "(" + symbol.join(part.code for part in parts) + ")")
 
     def _compare(self, node: ast.Compare) -> Value:
         operands = [self.expression(one) for one in (node.left, *node.comparators)]
@@ -215,27 +205,19 @@ class Expressions(Scope):
                 raise specials.refused_special(self, node, left if specials.is_special(left.fixed) else right)
             return self.folded(node, function, left.fixed, right.fixed)
         left, right = self.lift(left, node), self.lift(right, node)
-        kind = comparison(symbol, left, right)
-        if isinstance(kind, tuple):
-            raise self.refuse(node, *kind)
-        one, other = integers.compared(self, left, right), integers.compared(self, right, left)
-        code = vectors.code(self, symbol, left, right, kind) or f"({one} {symbol} {other})"
-        return Value(kind, code, fresh=True, effects=left.effects or right.effects)
+        kind = self.kind(node, comparison(symbol, left, right))
+        code = vectors.code(self, symbol, left, right, kind) or f"({left.code} {symbol} {right.code})"
+        return Value(kind, code, fresh=True)
 
     def _chain(self, node: ast.Compare, operands: list[Value]) -> Value:
         lifted = [self.lift(value, node) for value in operands]
-        number = next((value for value in lifted if value.kind == FLOAT), None)
-        codes = [value.code if number is None else integers.compared(self, value, number) for value in lifted]
-        text = codes[0]
-        for op, left, right, code in zip(node.ops, lifted, lifted[1:], codes[1:], strict=False):
+        text = lifted[0].code
+        for op, left, right in zip(node.ops, lifted, lifted[1:], strict=False):
             symbol = COMPARISONS[type(op)][0]
-            kind = comparison(symbol, left, right)
-            if isinstance(kind, tuple):
-                raise self.refuse(node, *kind)
-            if kind != BOOL:
+            if self.kind(node, comparison(symbol, left, right)) != BOOL:
                 raise self.refuse(node, "a chain of comparisons of arrays", "write two comparisons with &")
-            text += f" {symbol} {code}"
-        return Value(BOOL, f"({text})", effects=any(one.effects for one in lifted))
+            text += f" {symbol} {right.code}"
+        return Value(BOOL, f"({text})")
 
     def _identical(self, node: ast.Compare, left: Value, right: Value) -> bool:
         if left.is_fixed and right.is_fixed:
@@ -260,9 +242,8 @@ class Expressions(Scope):
         if kind is None:
             reason = f"{in_words(one.kind)} in one case, {in_words(other.kind)} in the other"
             raise self.refuse(node, reason, "use the same type in both")
-        effects = test.effects or one.effects or other.effects
         code = f"({one.code} if {test.code} else {other.code})"
-        return Value(kind, code, effects=effects, views=one.views | other.views)
+        return Value(kind, code, views=one.views | other.views)
 
     def _call(self, node: ast.Call) -> Value:
         return calls.call(self, node)

@@ -53,7 +53,7 @@ def _is_one_of(
     scope.compiled.uses.add(name)
     arguments = "".join(f", {one.code}" for one in choices) if not constants else ""
     code = f"{name}({item.code}{arguments})"
-    return Value(BOOL, f"(not {code})" if negated else code, effects=item.effects)
+    return Value(BOOL, f"(not {code})" if negated else code)
 
 
 def _same_form(item: Value, one: Value) -> bool:

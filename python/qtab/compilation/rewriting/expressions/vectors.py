@@ -27,7 +27,7 @@ def code(scope: "Expressions", symbol: str, left: Value, right: Value, kind: Any
         return None
     if forms == ("v", "v") and (left.kind.shape is None or left.kind.shape != right.kind.shape):
         return None
-    name = f"f_{NAMES[symbol]}_{kind.dtype}_{''.join(forms)}"
+    name = f"h_{NAMES[symbol]}_{kind.dtype}_{''.join(forms)}"
     if name not in scope.program.named:
         items = ["a[i]" if forms[0] == "v" else "a", "b[i]" if forms[1] == "v" else "b"]
         size = "a" if forms[0] == "v" else "b"

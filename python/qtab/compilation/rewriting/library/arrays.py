@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from qtab.compilation.rewriting.expressions import containers
 from qtab.compilation.rewriting.program import converted
 from qtab.compilation.rewriting.values import (
     BOOL,
@@ -40,8 +41,6 @@ def method(scope: "Expressions", node: ast.Call, name: str, base: Value) -> Valu
         size = None if kind.shape is None else (int(np.prod(kind.shape)),)
         return Value(Array(kind.dtype, 1, size), f"{base.code}.flatten()", fresh=True)
     if name == "tolist" and kind.ndim == 1 and not values:
-        from qtab.compilation.rewriting.expressions import containers
-
         return containers.as_tuple(scope, node, base)
     if name == "item" and not values and kind.shape is not None and np.prod(kind.shape) == 1:
         scalar = scalar_of(kind.dtype)
@@ -58,7 +57,7 @@ def method(scope: "Expressions", node: ast.Call, name: str, base: Value) -> Valu
 def copied(value: Value) -> Value:
     """Returns a new array with the same elements."""
     code = value.code if value.code.endswith(".copy()") or value.raw else f"{value.code}.copy()"
-    return Value(value.kind, code, fresh=True, effects=value.effects)
+    return Value(value.kind, code, fresh=True)
 
 
 def dtype_name(scope: "Expressions", node: ast.AST, value: Value) -> str:
@@ -144,7 +143,7 @@ def _vector(scope: "Expressions", node: ast.AST, value: Value, dtype: str | None
     _check_conversion(scope, node, kinds, name)
     function = _maker(scope, kinds, name)
     codes = [part.code for part in value.parts] if value.parts is not None else [f"*{value.code}"]
-    return Value(kind, f"{function}({', '.join(codes)})", fresh=True, effects=value.effects)
+    return Value(kind, f"{function}({', '.join(codes)})", fresh=True)
 
 
 def _check_conversion(scope: "Expressions", node: ast.AST, kinds: list[Any], name: str) -> None:
@@ -155,22 +154,14 @@ def _check_conversion(scope: "Expressions", node: ast.AST, kinds: list[Any], nam
 
 def _maker(scope: "Expressions", kinds: list[Any], dtype: str) -> str:
     """Returns the name of a function that makes a vector of its arguments."""
-    small = dtype.startswith(("int", "uint")) and dtype != "int64"
     name = f"f_vector_{dtype}_{len(kinds)}"
     if name not in scope.program.named:
         names = [f"a{i}" for i in range(len(kinds))]
         lines = [f"def {name}({', '.join(names)}):", f"    made = np.empty({len(kinds)}, {numpy_type(dtype)})"]
-        for i, one in enumerate(names):
-            lines.append(f"    made[{i}] = {in_range(one, dtype) if small else one}")
-        scope.program.add(name, [*lines, "    return made"], uses={"h_within"} if small else set())
+        lines += [f"    made[{i}] = {one}" for i, one in enumerate(names)]
+        scope.program.add(name, [*lines, "    return made"])
     scope.compiled.uses.add(name)
     return name
-
-
-def in_range(code: str, dtype: str) -> str:
-    """Returns code that raises an error if an integer does not fit into a small dtype."""
-    limits = np.iinfo(dtype)
-    return f"h_within({code}, {limits.min}, {limits.max})"
 
 
 def _matrix(scope: "Expressions", node: ast.AST, value: Value, dtype: str | None) -> Value:
@@ -186,4 +177,4 @@ def _matrix(scope: "Expressions", node: ast.AST, value: Value, dtype: str | None
             scope.no_effects(row, node, "a call whose result is used several times")
     flat = [scope.element(scope.element(value, i), j).code for i in range(len(rows)) for j in range(width)]
     code = f"{_maker(scope, kinds, name)}({', '.join(flat)}).reshape({len(rows)}, {width})"
-    return Value(Array(name, 2, (len(rows), width)), code, fresh=True, effects=value.effects)
+    return Value(Array(name, 2, (len(rows), width)), code, fresh=True)

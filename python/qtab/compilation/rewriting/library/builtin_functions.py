@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from qtab.compilation.rewriting.expressions import integers
+from qtab.compilation.rewriting.expressions import containers
 from qtab.compilation.rewriting.library import Handler
 from qtab.compilation.rewriting.program import as_float, tuple_value
 from qtab.compilation.rewriting.values import (
@@ -44,16 +44,12 @@ def _convert(scope: "Expressions", node: ast.Call, values: list[Value], named: d
     if not isinstance(value.kind, Scalar):
         raise scope.refuse(node, f"{name} of {in_words(value.kind)}", "use an element of it")
     kind = {int: INT, float: FLOAT, bool: BOOL}[made]
-    if made is int and value.kind in (FLOAT, MIXED):
-        scope.compiled.uses.add("h_int")
-        return Value(kind, f"h_int({value.code})", effects=value.effects)
     if made is int and value.kind == INT:
         return value
     code = as_float(value) if made is float else f"{name}({value.code})"
-    if made is int and value.kind.name.startswith("uint"):  # Numba subtracts unsigned integers without a sign
-        scope.compiled.uses.add("h_within")
-        code = f"int(np.int64(h_within({value.code}, 0, {2**63 - 1})))"
-    return Value(kind, code, effects=value.effects)
+    if made is int and value.kind.name.startswith(("int", "uint")):  # they stay of their type in Numba
+        code = f"int(np.int64({value.code}))"
+    return Value(kind, code)
 
 
 def _conversion(made: Any) -> Handler:
@@ -64,19 +60,15 @@ def _abs(scope: "Expressions", node: ast.Call, values: list[Value], named: dict[
     value = _one(scope, node, values, named)
     if value.is_fixed:
         return scope.folded(node, abs, value.fixed)
-    if value.kind == INT:
-        return Value(INT, integers.called(scope, "h_abs", value), effects=value.effects)
-    if value.kind in (FLOAT, MIXED, Scalar("float32")):
-        return Value(value.kind, f"abs({value.code})", effects=value.effects)
+    if value.kind in (INT, FLOAT, MIXED, Scalar("float32")):
+        return Value(value.kind, f"abs({value.code})")
     if isinstance(value.kind, Array) and value.kind.dtype in ("int64", "float64", "float32"):
-        return Value(value.kind, f"np.abs({value.code})", fresh=True, effects=value.effects)
+        return Value(value.kind, f"np.abs({value.code})", fresh=True)
     raise scope.refuse(node, f"abs of {in_words(value.kind)}", "use integers or floats")
 
 
 def _extreme(function: Any) -> Handler:
     def handler(scope: "Expressions", node: ast.Call, values: list[Value], named: dict[str, Value]) -> Value:
-        from qtab.compilation.rewriting.expressions import containers
-
         if named:
             raise scope.refuse(node, "min or max with named arguments", "compare the numbers in a loop")
         if len(values) == 1:
@@ -91,8 +83,7 @@ def _extreme(function: Any) -> Handler:
                 advice = "convert them to int or float"
                 raise scope.refuse(node, f"{function.__name__} with {in_words(value.kind)}", advice)
         codes = [f"float({one.code})" if kind in (FLOAT, MIXED) and one.kind == INT else one.code for one in lifted]
-        effects = any(value.effects for value in lifted)
-        return Value(kind, f"{function.__name__}({', '.join(codes)})", effects=effects)
+        return Value(kind, f"{function.__name__}({', '.join(codes)})")
 
     return handler
 
@@ -114,8 +105,6 @@ def _len(scope: "Expressions", node: ast.Call, values: list[Value], named: dict[
 
 
 def _sum(scope: "Expressions", node: ast.Call, values: list[Value], named: dict[str, Value]) -> Value:
-    from qtab.compilation.rewriting.expressions import containers
-
     value = _one(scope, node, values, named)
     parts = containers.elements(scope, node, value)
     if all(part.is_fixed for part in parts):
@@ -126,16 +115,12 @@ def _sum(scope: "Expressions", node: ast.Call, values: list[Value], named: dict[
         floats = wrong.kind in (FLOAT, MIXED)
         advice = "add them with + or in a loop" if floats else "convert each: int(...)"
         raise scope.refuse(node, f"the sum of numbers, one of which is {in_words(wrong.kind)}", advice)
-    total = Value(INT, f"int({lifted[0].code})")
-    for part in lifted[1:]:
-        total = Value(INT, integers.called(scope, "h_add", total, part))
-    return Value(INT, total.code, effects=any(part.effects for part in lifted))
+    total = " + ".join(f"int({part.code})" for part in lifted)
+    return Value(INT, f"({total})")
 
 
 def _any_or_all(symbol: str, empty: bool) -> Handler:
     def handler(scope: "Expressions", node: ast.Call, values: list[Value], named: dict[str, Value]) -> Value:
-        from qtab.compilation.rewriting.expressions import containers
-
         value = _one(scope, node, values, named)
         codes = []
         parts = containers.elements(scope, node, value)
@@ -153,15 +138,13 @@ def _any_or_all(symbol: str, empty: bool) -> Handler:
             codes.append(f"bool({part.code})")
         if not codes:
             return constant(empty)
-        return Value(BOOL, "(" + f" {symbol} ".join(codes) + ")", effects=any(part.effects for part in parts))
+        return Value(BOOL, "(" + f" {symbol} ".join(codes) + ")")
 
     return handler
 
 
 def _sequence(made: Any) -> Handler:
     def handler(scope: "Expressions", node: ast.Call, values: list[Value], named: dict[str, Value]) -> Value:
-        from qtab.compilation.rewriting.expressions import containers
-
         if not values:
             return constant(made())
         value = _one(scope, node, values, named)
@@ -185,7 +168,7 @@ def _dict(scope: "Expressions", node: ast.Call, values: list[Value], named: dict
         return scope.folded(node, lambda *given: dict(*given, **plain), *[one.fixed for one in values])
     parts = tuple(scope.lift(one, node) for one in named.values())
     made = tuple_value(parts)
-    return Value(DictKind(tuple(named), made.kind.items), made.code, parts=parts, effects=made.effects)
+    return Value(DictKind(tuple(named), made.kind.items), made.code, parts=parts)
 
 
 def _folded(function: Any) -> Handler:
@@ -208,8 +191,6 @@ def _folded(function: Any) -> Handler:
 
 
 def _lazy(scope: "Expressions", node: ast.Call, function: Any, values: list[Value]) -> Value:
-    from qtab.compilation.rewriting.expressions import containers
-
     many = [containers.elements(scope, node, value) for value in values[:1] + (values[1:] if function is zip else [])]
     if function is not enumerate:  # the elements change their order, or are left out
         for one in (one for row in many for one in row):
@@ -229,8 +210,7 @@ def _round(scope: "Expressions", node: ast.Call, values: list[Value], named: dic
     if len(values) == 1 and not named and values[0].kind == INT:
         return values[0]
     if len(values) == 1 and not named and values[0].kind == FLOAT:
-        scope.compiled.uses.add("h_round")
-        return Value(INT, f"h_round({values[0].code})", effects=values[0].effects)
+        return Value(INT, f"round({values[0].code})")
     raise scope.refuse(
         node, "round to digits may round differently", "leave out round, or round in units: round(x * 100)"
     )

@@ -1,62 +1,30 @@
 """Draws from ``self.np_random``: the methods that draw the same numbers in compiled code as in NumPy."""
 
 import ast
-from collections.abc import Sequence
+import inspect
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from qtab.compilation.rewriting.helpers.draw_checks import HELPERS
-from qtab.compilation.rewriting.program import as_float
-from qtab.compilation.rewriting.values import FLOAT, INT, WIDE, Array, Scalar, TupleKind, Value, constant, in_words
+from qtab.compilation.checks.known_functions import DRAWS, DRAWS_OF_INTEGERS, draw_check
+from qtab.compilation.rewriting.expressions import containers
+from qtab.compilation.rewriting.library import bound
+from qtab.compilation.rewriting.program import as_float, converted
+from qtab.compilation.rewriting.values import (
+    FLOAT,
+    INT,
+    WIDE,
+    Array,
+    Scalar,
+    TupleKind,
+    Value,
+    constant,
+    in_words,
+    scalar_of,
+)
 
 if TYPE_CHECKING:
     from qtab.compilation.rewriting.expressions.expressions import Expressions
-
-PARAMETERS: dict[str, tuple[tuple[str, float | None], ...]] = {
-    "random": (),
-    "uniform": (("low", 0.0), ("high", 1.0)),
-    "normal": (("loc", 0.0), ("scale", 1.0)),
-    "standard_normal": (),
-    "exponential": (("scale", 1.0),),
-    "standard_exponential": (),
-    "gamma": (("shape", None), ("scale", 1.0)),
-    "beta": (("a", None), ("b", None)),
-    "chisquare": (("df", None),),
-    "standard_t": (("df", None),),
-    "standard_cauchy": (),
-    "poisson": (("lam", 1.0),),
-    "binomial": (("n", None), ("p", None)),
-    "geometric": (("p", None),),
-    "triangular": (("left", None), ("mode", None), ("right", None)),
-    "laplace": (("loc", 0.0), ("scale", 1.0)),
-    "logistic": (("loc", 0.0), ("scale", 1.0)),
-    "lognormal": (("mean", 0.0), ("sigma", 1.0)),
-    "weibull": (("a", None),),
-    "pareto": (("a", None),),
-    "rayleigh": (("scale", 1.0),),
-}
-"""The methods, with the names and defaults of their parameters before ``size``."""
-NOT_NEGATIVE, POSITIVE, PROBABILITY = "h_not_negative", "h_positive", "h_probability"
-CONSTRAINTS: dict[tuple[str, str], str] = {
-    **{(name, "scale"): NOT_NEGATIVE for name in ("normal", "exponential", "gamma", "laplace", "logistic", "rayleigh")},
-    ("lognormal", "sigma"): NOT_NEGATIVE,
-    ("gamma", "shape"): NOT_NEGATIVE,
-    ("weibull", "a"): NOT_NEGATIVE,
-    ("pareto", "a"): POSITIVE,
-    ("beta", "a"): POSITIVE,
-    ("beta", "b"): POSITIVE,
-    ("chisquare", "df"): POSITIVE,
-    ("standard_t", "df"): POSITIVE,
-    ("poisson", "lam"): "h_poisson",
-    ("binomial", "n"): NOT_NEGATIVE,
-    ("binomial", "p"): PROBABILITY,
-    ("geometric", "p"): "h_positive_probability",
-}
-"""What NumPy demands of an argument, by method and parameter: the helper that raises an error for other values."""
-TOGETHER = {"uniform": "h_uniform", "triangular": "h_triangular"}
-"""The methods whose arguments NumPy checks together, with helpers that return the last of them."""
-INTEGERS = ("poisson", "binomial", "geometric")
 
 
 def draw(scope: "Expressions", node: ast.Call, name: str) -> Value:
@@ -72,78 +40,34 @@ def draw(scope: "Expressions", node: ast.Call, name: str) -> Value:
         return _integers(scope, node, values, named)
     if name == "choice":
         return _choice(scope, node, values, named)
-    if name == "permutation" and len(values) == 1 and not named and _kind(scope, node, values[0]) == INT:
-        size = values[0].fixed if isinstance(values[0].fixed, int) else None
-        shape = None if size is None else (size,)
-        return Value(
-            Array("int64", 1, shape), f"rng.permutation({scope.lift(values[0], node).code})", fresh=True, effects=True
-        )
-    if name not in PARAMETERS:
+    if name == "permutation" and len(values) == 1 and not named:
+        size = scope.lift(values[0], node)
+        if size.kind == INT:
+            shape = (size.fixed,) if isinstance(size.fixed, int) else None
+            return Value(Array("int64", 1, shape), f"rng.permutation({size.code})", fresh=True)
+    if name not in DRAWS:
         advice = "use random, uniform, normal, integers, choice, permutation, exponential, poisson or binomial"
         raise scope.refuse(node, f"Generator.{name} cannot be compiled with the same draws", advice)
-    parameters = (*PARAMETERS[name], ("size", None))
-    chosen = bound(scope, node, [one for one, _ in parameters], values, named)
-    codes = []
-    for parameter, default in PARAMETERS[name]:
-        value = chosen.get(parameter, constant(default))
+    check = draw_check(name)
+    parameters = inspect.signature(check).parameters
+    chosen = bound(scope, node, list(parameters), values, named)
+    numbers = []
+    for parameter in list(parameters)[:-1]:
+        default = parameters[parameter].default
+        value = chosen.get(parameter, constant(None if default is inspect.Parameter.empty else default))
         if value.is_fixed and value.fixed is None:
             raise scope.refuse(node, f"Generator.{name} without {parameter}", "give all arguments")
-        number = _number(scope, node, value, parameter)
-        if name == "binomial" and parameter == "n" and number.kind != INT:
-            raise scope.refuse(node, f"Generator.{name} with n as {in_words(number.kind)}", "write int(...)")
-        codes.append(_allowed(scope, node, name, parameter, number))
-    if name in TOGETHER:
-        codes[-1] = _together(
-            scope, node, name, [chosen.get(one, constant(default)) for one, default in PARAMETERS[name]]
-        )
-    kind = INT if name in INTEGERS else FLOAT
+        numbers.append(_number(scope, node, value, parameter))
+        if name == "binomial" and parameter == "n" and numbers[0].kind != INT:
+            raise scope.refuse(node, f"Generator.{name} with n as {in_words(numbers[0].kind)}", "write int(...)")
+    if all(number.is_fixed for number in numbers):
+        try:
+            check(*(number.fixed for number in numbers))
+        except ValueError:
+            raise scope.refuse(node, "arguments that NumPy does not allow", "correct them") from None
+    codes = [number.code if number.kind == INT else as_float(number) for number in numbers]
+    kind = INT if name in DRAWS_OF_INTEGERS else FLOAT
     return _sized(scope, node, f"rng.{name}", codes, chosen.get("size"), kind)
-
-
-def _allowed(scope: "Expressions", node: ast.AST, name: str, parameter: str, number: Value) -> str:
-    """Returns the code of an argument, which raises an error where NumPy does; a constant is checked now."""
-    helper = CONSTRAINTS.get((name, parameter))
-    if helper is None:
-        return number.code
-    if number.is_fixed:
-        _check_constants(scope, node, helper, [number.fixed])
-        return number.code
-    scope.compiled.uses.add(helper)
-    return f"{helper}({number.code if number.kind == INT else as_float(number)})"
-
-
-def _together(scope: "Expressions", node: ast.AST, name: str, given: list[Value]) -> str:
-    """Returns the code of the last argument of a method whose arguments NumPy checks together."""
-    helper = TOGETHER[name]
-    if all(value.is_fixed for value in given):
-        _check_constants(scope, node, helper, [value.fixed for value in given])
-        return scope.lift(given[-1], node).code
-    for value in given[:-1]:
-        scope.no_effects(value, node, "a call whose result is used several times")
-    scope.compiled.uses.add(helper)
-    return f"{helper}({', '.join(scope.lift(value, node).code for value in given)})"
-
-
-def _check_constants(scope: "Expressions", node: ast.AST, helper: str, values: list[Any]) -> None:
-    try:
-        HELPERS[helper](*values)
-    except (ValueError, OverflowError):
-        raise scope.refuse(node, "arguments that NumPy does not allow", "correct them") from None
-
-
-def bound(
-    scope: "Expressions", node: ast.AST, names: Sequence[str], values: list[Value], named: dict[str, Value]
-) -> dict[str, Value]:
-    """Returns the arguments of a known function by name."""
-    if len(values) > len(names) or not set(named) <= set(names):
-        unknown = sorted(set(named) - set(names))
-        what = f"the argument {unknown[0]}" if unknown else "so many arguments"
-        raise scope.refuse(node, f"{what} of this function cannot be compiled", "leave it out")
-    return {**dict(zip(names, values, strict=False)), **named}
-
-
-def _kind(scope: "Expressions", node: ast.AST, value: Value) -> Any:
-    return scope.lift(value, node).kind
 
 
 def _number(scope: "Expressions", node: ast.AST, value: Value, name: str) -> Value:
@@ -157,7 +81,7 @@ def _sized(
     scope: "Expressions", node: ast.AST, function: str, codes: list[str], size: Value | None, kind: Scalar
 ) -> Value:
     if size is None or (size.is_fixed and size.fixed is None):
-        return Value(kind, f"{function}({', '.join(codes)})", effects=True)
+        return Value(kind, f"{function}({', '.join(codes)})")
     dtype = "int64" if kind == INT else "float64"
     if isinstance(size.fixed, int | np.integer):
         shape: tuple[int, ...] | None = (int(size.fixed),)
@@ -169,9 +93,9 @@ def _sized(
             raise scope.refuse(node, f"{in_words(lifted.kind)} as the size", "use an integer")
         ndim = 1 if lifted.kind == INT else len(lifted.kind.items)
         code = f"{function}({', '.join([*codes, f'size={lifted.code}'])})"
-        return Value(Array(dtype, ndim), code, fresh=True, effects=True)
+        return Value(Array(dtype, ndim), code, fresh=True)
     code = f"{function}({', '.join([*codes, f'size={shape}'])})"
-    return Value(Array(dtype, len(shape or ()), shape), code, fresh=True, effects=True)
+    return Value(Array(dtype, len(shape or ()), shape), code, fresh=True)
 
 
 def _integers(scope: "Expressions", node: ast.AST, values: list[Value], named: dict[str, Value]) -> Value:
@@ -193,8 +117,6 @@ def _integers(scope: "Expressions", node: ast.AST, values: list[Value], named: d
 
 
 def _choice(scope: "Expressions", node: ast.AST, values: list[Value], named: dict[str, Value]) -> Value:
-    from qtab.compilation.rewriting.expressions import containers
-
     chosen = bound(scope, node, ["a", "size", "replace", "p"], values, named)
     size, replace = chosen.get("size", constant(None)), chosen.get("replace", constant(True))
     if "a" not in chosen or size.fixed is not None or replace.fixed is not True:
@@ -210,9 +132,9 @@ def _choice(scope: "Expressions", node: ast.AST, values: list[Value], named: dic
         if count is None:
             lifted = scope.lift(pool, node)
             code = lifted.code if pool.kind == INT else f"{lifted.code}.shape[0]"
-            index = Value(INT, f"rng.integers(0, {code})", effects=True)
+            index = Value(INT, f"rng.integers(0, {code})")
         else:
-            index = Value(INT, f"rng.integers(0, {count})", effects=True)
+            index = Value(INT, f"rng.integers(0, {count})")
     else:
         index = _weighted(scope, node, p, count)
     if isinstance(pool.fixed, int | np.integer) or pool.kind == INT:
@@ -226,11 +148,8 @@ def _choice(scope: "Expressions", node: ast.AST, values: list[Value], named: dic
     lifted = scope.lift(pool, node)
     if lifted.kind.ndim != 1:
         raise scope.refuse(node, "choice from a matrix", "draw an index with integers(0, n)")
-    from qtab.compilation.rewriting.program import converted
-    from qtab.compilation.rewriting.values import scalar_of
-
     scalar = scalar_of(lifted.kind.dtype)
-    return Value(scalar, converted(f"{lifted.code}[{index.code}]", scalar), effects=True)
+    return Value(scalar, converted(f"{lifted.code}[{index.code}]", scalar))
 
 
 def _weighted(scope: "Expressions", node: ast.AST, p: Value, count: int | None) -> Value:
@@ -247,4 +166,4 @@ def _weighted(scope: "Expressions", node: ast.AST, p: Value, count: int | None) 
     cumulative = weights.cumsum()
     cumulative /= cumulative[-1]
     scope.compiled.uses.add("h_choice")
-    return Value(INT, f"h_choice({scope.program.array(cumulative)}, rng.random())", effects=True)
+    return Value(INT, f"h_choice({scope.program.array(cumulative)}, rng.random())")

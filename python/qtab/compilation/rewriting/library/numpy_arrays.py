@@ -5,20 +5,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from qtab.compilation.rewriting.library import Handler, arrays
-from qtab.compilation.rewriting.library.draws import bound
-from qtab.compilation.rewriting.values import BOOL, WIDE, Array, TupleKind, Value, constant, in_words, numpy_type
+from qtab.compilation.rewriting.library import Handler, arguments, arrays
+from qtab.compilation.rewriting.values import BOOL, WIDE, Array, TupleKind, Value, in_words, numpy_type
 
 if TYPE_CHECKING:
     from qtab.compilation.rewriting.expressions.expressions import Expressions
-
-
-def arguments(
-    scope: "Expressions", node: ast.AST, names: tuple[str, ...], values: list[Value], named: dict[str, Value]
-) -> list[Value]:
-    """Returns the values of the named parameters in order; those that are missing are None."""
-    chosen = bound(scope, node, names, values, named)
-    return [chosen.get(name, constant(None)) for name in names]
 
 
 def array(scope: "Expressions", node: ast.Call, values: list[Value], named: dict[str, Value]) -> Value:
@@ -99,4 +90,4 @@ def array_equal(scope: "Expressions", node: ast.Call, values: list[Value], named
         raise scope.refuse(node, "np.array_equal of arrays of two dtypes or dimensions", "convert with .astype first")
     helper = "h_equal_vectors" if one.kind.ndim == 1 else "h_equal"
     scope.compiled.uses.add(helper)
-    return Value(BOOL, f"bool({helper}({one.code}, {other.code}))", effects=one.effects or other.effects)
+    return Value(BOOL, f"bool({helper}({one.code}, {other.code}))")

@@ -5,9 +5,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from qtab.compilation.checks.known_functions import NUMPY_DIFFERENT
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting.expressions.operators import broadcast
-from qtab.compilation.rewriting.library import Handler, arrays, numpy_arrays
+from qtab.compilation.rewriting.library import Handler, arguments, arrays, numpy_arrays
 from qtab.compilation.rewriting.values import (
     BOOL,
     FLOAT,
@@ -21,15 +22,22 @@ from qtab.compilation.rewriting.values import (
     Value,
     dtype_of,
     in_words,
-    join,
 )
 
 if TYPE_CHECKING:
     from qtab.compilation.rewriting.expressions.expressions import Expressions
 
-SAME_AS_MATH = {"exp": "exp", "log": "log", "log10": "log10", "tan": "tan", "tanh": "tanh", "sinh": "sinh",
-                "cosh": "cosh", "arctan": "atan", "arcsin": "asin", "arccos": "acos", "arctan2": "atan2"}  # fmt: skip
-"""Functions that NumPy rounds in another way than compiled code, and those of ``math`` that are the same."""
+ADVICE = {
+    **NUMPY_DIFFERENT,
+    "norm": "write math.sqrt of the sum of products",
+    "mean": "add the elements in a loop, and divide",
+    **dict.fromkeys(("dot", "matmul"), "write the sums as a loop"),
+    "append": "use an array of fixed size, with a counter",
+    "where": "write an if, or a loop over the elements",
+    "ravel_multi_index": "write row * columns + column",
+    "unravel_index": "write index // columns and index % columns",
+}
+"""What to write instead of functions that are not in ``TABLE``."""
 
 
 def refused(scope: "Expressions", node: ast.AST, function: Any, module: str) -> NotCompilable:
@@ -37,39 +45,24 @@ def refused(scope: "Expressions", node: ast.AST, function: Any, module: str) -> 
     name = str(getattr(function, "__name__", function))
     if "random" in module:
         return scope.refuse(node, "random numbers outside self.np_random", "draw from self.np_random")
-    if name in SAME_AS_MATH:
-        reason = f"np.{name} rounds differently in compiled code"
-        return scope.refuse(node, reason, f"write math.{SAME_AS_MATH[name]} for np.{name}")
-    advice = {
-        "power": "write x * x",
-        "float_power": "write x * x",
-        "square": "write x * x",
-        "hypot": "write math.sqrt(x * x + y * y)",
-        "norm": "write math.sqrt of the sum of products",
-        "mean": "add the elements in a loop, and divide",
-        "dot": "write the sums as a loop",
-        "matmul": "write the sums as a loop",
-        "append": "use an array of fixed size, with a counter",
-        "where": "write an if, or a loop over the elements",
-        "ravel_multi_index": "write row * columns + column",
-        "unravel_index": "write index // columns and index % columns",
-        "round": "leave out rounding",
-    }.get(name, "write it with a loop over the elements")
-    return scope.refuse(node, f"np.{name} cannot be compiled with the same result", advice)
+    differs = name in NUMPY_DIFFERENT
+    reason = (
+        f"np.{name} {'rounds differently in compiled code' if differs else 'cannot be compiled with the same result'}"
+    )
+    return scope.refuse(node, reason, ADVICE.get(name, "write it with a loop over the elements"))
 
 
 def _clip(scope: "Expressions", node: ast.Call, values: list[Value], named: dict[str, Value]) -> Value:
-    given = numpy_arrays.arguments(scope, node, ("a", "a_min", "a_max"), values, named)
+    given = arguments(scope, node, ("a", "a_min", "a_max"), values, named)
     if any(value.is_fixed and value.fixed is None for value in given):
         raise scope.refuse(node, "np.clip without both bounds", "write min(...) or max(...)")
     value, low, high = (scope.lift(one, node) for one in given)
     kinds = [one.kind for one in (value, low, high)]
-    effects = any(one.effects for one in (value, low, high))
     if all(kind in REAL for kind in kinds):
         joined = INT if set(kinds) == {INT} else FLOAT
         codes = [one.code if joined == INT else f"float({one.code})" for one in (value, low, high)]
         scope.compiled.uses.add("h_clip")
-        return Value(joined, f"h_clip({', '.join(codes)})", effects=effects)
+        return Value(joined, f"h_clip({', '.join(codes)})")
     if isinstance(kinds[0], Array):
         return _clip_array(scope, node, value, low, high)
     shown = ", ".join(in_words(kind) for kind in kinds)
@@ -119,10 +112,10 @@ def _elementwise(name: str, kinds: tuple[Kind, ...], dtypes: tuple[str, ...], sc
             return scope.folded(node, getattr(np, name), values[0].fixed)
         value = scope.lift(values[0], node)
         if isinstance(value.kind, Array) and value.kind.dtype in dtypes:
-            return Value(value.kind, f"np.{name}({value.code})", fresh=True, effects=value.effects)
+            return Value(value.kind, f"np.{name}({value.code})", fresh=True)
         if value.kind in kinds:
             kind = value.kind if "float" not in scalar else FLOAT
-            return Value(kind, scalar.format(value.code), effects=value.effects)
+            return Value(kind, scalar.format(value.code))
         raise scope.refuse(node, f"np.{name} of {in_words(value.kind)}", "use integers or floats of 64 bits")
 
     return handler
@@ -133,10 +126,9 @@ def _extreme(name: str) -> Handler:
         if len(values) != 2 or named:
             raise scope.refuse(node, f"np.{name} with these arguments", "give two arguments")
         one, other = (scope.lift(value, node) for value in values)
-        effects = one.effects or other.effects
         if one.kind == other.kind == INT:
             function = name.removesuffix("imum")
-            return Value(INT, f"{function}({one.code}, {other.code})", effects=effects)
+            return Value(INT, f"{function}({one.code}, {other.code})")
         kinds = [kind.dtype if isinstance(kind, Array) else dtype_of(kind) for kind in (one.kind, other.kind)
                  if isinstance(kind, Array | Scalar)]  # fmt: skip
         if set(kinds) == {"int64"} and len(kinds) == 2:
@@ -174,11 +166,7 @@ def _cast(name: str) -> Handler:
         if not isinstance(value.kind, Scalar) or (not name.startswith("float") and value.kind not in (INT, BOOL)):
             raise scope.refuse(node, f"np.{name} of {in_words(value.kind)}", "write int(...) first")
         kind = {"int64": INT, "float64": FLOAT, "bool_": BOOL}.get(name, Scalar(name))
-        small = kind.name.startswith(("int", "uint")) and kind != INT
-        code = arrays.in_range(value.code, name) if small else value.code
-        if small:
-            scope.compiled.uses.add("h_within")
-        return Value(kind, f"np.{name}({code})", effects=value.effects)
+        return Value(kind, f"np.{name}({value.code})")
 
     return handler
 
@@ -211,5 +199,3 @@ TABLE: dict[Any, Handler] = {
        ("int64", "float64", "float32", "int32", "int16", "int8", "uint8", "bool_")},
 }  # fmt: skip
 """The functions by object."""
-
-__all__ = ["REFUSED", "TABLE", "join", "refused"]

@@ -37,10 +37,6 @@ class Names:
         """Returns whether a name is a parameter or assigned in the function."""
         return name in self.counts
 
-    def is_changed_in_place(self, name: str) -> bool:
-        """Returns whether the elements of a local array are assigned."""
-        return name in self._mutations
-
     @cached_property
     def _mutations(self) -> dict[str, list[int]]:
         found: dict[str, list[int]] = {}

@@ -41,7 +41,7 @@ def assign(scope: "Statements", node: ast.stmt, targets: list[ast.expr], value_n
     scope.is_shared = any(map(_is_reference, sources))
     scope.whole = value_node
     value = scope.expression(value_node)
-    if value.is_fixed and value.code and value.effects:
+    if value.is_fixed and scope.has_effects(value):
         scope.emit(value.code, node)
         value = constant(value.fixed)
     if specials.is_special(value.fixed) and not all(isinstance(target, ast.Name) for target in targets):

@@ -81,7 +81,7 @@ class Statements(Displays):
             return False
         self.whole = node.value
         value = self.expression(node.value)
-        if value.code and (value.effects or not value.is_fixed):
+        if value.code and (not value.is_fixed or self.has_effects(value)):
             self.emit(value.code, node)
         return False
 
@@ -211,7 +211,7 @@ class Statements(Displays):
     def _do_return(self, node: ast.Return) -> bool:
         self.whole = node.value
         value = constant(None) if node.value is None else self._returned(node.value)
-        if value.is_fixed and value.code and value.effects:
+        if value.is_fixed and self.has_effects(value):
             self.emit(value.code, node)
         if specials.is_special(value.fixed):
             raise specials.refused_special(self, node, value)

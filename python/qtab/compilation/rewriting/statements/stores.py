@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING, Any
 
 from qtab.compilation.rewriting import specials
 from qtab.compilation.rewriting.expressions import containers
-from qtab.compilation.rewriting.library.arrays import in_range
 from qtab.compilation.rewriting.statements.variables import in_variables, is_simple
 from qtab.compilation.rewriting.values import (
     BOOL,
@@ -34,7 +33,7 @@ def store(scope: "Statements", node: ast.stmt, name: str, value: Value) -> None:
         raise scope.refuse(node, f"self.{name} is assigned", "assign it in __init__ only, or use another attribute")
     known.note_assigned(name)
     if name not in known.read:
-        if value.effects:
+        if scope.has_effects(value):
             scope.emit(value.code, node)
         return
 
@@ -99,8 +98,7 @@ def element_value(scope: "Statements", node: ast.stmt, scalar: Scalar, value: Va
     if scalar.name == "float32" and kind in (FLOAT, INT, MIXED):
         return value
     if scalar.name.startswith(("int", "uint")) and kind in (INT, BOOL):
-        scope.compiled.uses.add("h_within")
-        return Value(scalar, in_range(f"int({value.code})", scalar.name))
+        return Value(scalar, f"int({value.code})")
     raise scope.refuse(
         node, f"{in_words(kind)} assigned to an element of an array of {scalar.name}", "convert it first"
     )

@@ -34,7 +34,7 @@ def in_variables(scope: "Statements", node: ast.stmt, value: Value) -> Value:
 def kept(value: Value) -> Value:
     """Returns a value for a name: arrays of the record and parts of arrays are copied."""
     if isinstance(value.kind, Array) and not (value.fresh or value.frozen or value.code.isidentifier()):
-        return Value(value.kind, copied(value).code, effects=value.effects, views=value.views)
+        return Value(value.kind, copied(value).code, views=value.views)
     if value.parts is not None and any(part.kind != INFO for part in value.parts):
         made = tuple_value(tuple(kept(part) for part in value.parts))
         return _like(value, replace(made, views=made.views | value.views))

@@ -1,4 +1,4 @@
-"""Numba's generator around a ``bitgen_t`` that is given by its address: no Python object, no reference count."""
+"""What compiled code does with the addresses that C functions receive: generators, pointers and copies of bytes."""
 
 from typing import Any
 
@@ -29,4 +29,28 @@ def _generator_at(_typing: Any, address: Any) -> Any:
 
 
 generator_at: Any = intrinsic(_generator_at)
-"""``generator_at(address)``, for compiled code: the generator whose ``bitgen_t`` is at the address."""
+"""``generator_at(address)``: the generator whose ``bitgen_t`` is there; no Python object, no reference count."""
+
+
+def _copy(_typing: Any, target: Any, source: Any, size: Any) -> Any:
+    def codegen(context: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
+        target_pointer, source_pointer = (builder.inttoptr(one, cgutils.voidptr_t) for one in arguments[:2])
+        cgutils.raw_memcpy(builder, target_pointer, source_pointer, arguments[2], 1)
+        return context.get_dummy_value()
+
+    return types.void(types.uintp, types.uintp, types.intp), codegen
+
+
+copy_bytes: Any = intrinsic(_copy)
+"""``copy_bytes(target, source, size)``: copies bytes between two addresses that do not overlap."""
+
+
+def _pointer(_typing: Any, address: Any) -> Any:
+    def codegen(_context: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
+        return builder.inttoptr(arguments[0], cgutils.voidptr_t)
+
+    return types.voidptr(types.uintp), codegen
+
+
+pointer: Any = intrinsic(_pointer)
+"""``pointer(address)``: the address as the pointer that ``numba.carray`` takes."""

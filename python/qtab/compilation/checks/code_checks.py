@@ -1,0 +1,244 @@
+"""Checks where Python raises errors, and refusals where bits can differ, in the code of users' functions."""
+
+import math
+import operator
+import random
+from typing import Any
+
+import numpy as np
+from numba.core import ir, types
+
+from qtab.compilation.checks.checked_operations import (
+    DRAW_CHECKS,
+    INPLACE,
+    INTEGER_OPERATIONS,
+    MATH,
+    RANGE_CHECKS,
+    absolute,
+    exact_integer,
+    negative,
+    rounded,
+    to_int,
+)
+from qtab.compilation.checks.known_functions import (
+    DRAWS_DIFFERENT,
+    MATH_ADVICE,
+    MATH_ROUNDED,
+    NUMPY_DIFFERENT,
+    NUMPY_SUMS,
+    NUMPY_WRITES,
+    OTHER_MATH,
+)
+from qtab.compilation.checks.number_types import NUMBERS, holds, is_narrow, leaf, mixed, of_integers
+from qtab.compilation.checks.typed_code import TypedCode
+
+CONVERT = "convert the numbers with np.int64(...) or np.float64(...)"
+COMPARISONS = (operator.lt, operator.le, operator.gt, operator.ge, operator.eq, operator.ne)
+
+
+class Checks(TypedCode):
+    """The checks of the code of one function."""
+
+    def run(self) -> bool:
+        """Changes the code; returns whether there were changes."""
+        for block in self.state.func_ir.blocks.values():
+            body: list[Any] = []
+            for statement in block.body:
+                if isinstance(statement, ir.Assign) and isinstance(statement.value, ir.Expr):
+                    body += self._expression(statement, block.scope)
+                elif isinstance(statement, ir.Assign) and isinstance(statement.value, ir.Var):
+                    self._widening(statement, [statement.value])
+                elif isinstance(statement, ir.SetItem | ir.StaticSetItem):
+                    body += self._store(statement, block.scope)
+                body.append(statement)
+            block.body = body
+        return self.made > 0
+
+    def _store(self, statement: Any, scope: Any) -> list[Any]:
+        of, value = self.type_of(statement.target), types.unliteral(self.type_of(statement.value))
+        if isinstance(of, types.NumpyFlatType) and not of.array_type.mutable:
+            self.refuse(statement, "array.flat changes an array of self", "copy the array first")
+        elif isinstance(of, types.Array) and is_narrow(of.dtype) and isinstance(value, types.Integer):
+            return self.check(RANGE_CHECKS[of.dtype], scope, [statement.value], statement.loc)
+        return []
+
+    def _widening(self, statement: Any, sources: list[Any]) -> None:
+        """Refuses a number whose type is another one in Python, where it comes from another branch."""
+        kinds = [leaf(self.type_of(source)) for source in sources]
+        target = leaf(self.type_of(statement.target))
+        if any((is_narrow(kind) or kind == types.float32) and kind != target for kind in kinds):
+            self.refuse(statement, "numbers of several types", CONVERT)
+
+    def _expression(self, statement: Any, scope: Any) -> list[Any]:
+        expression = statement.value
+        if expression.op in ("binop", "inplace_binop"):
+            return self._operation(statement, scope)
+        if expression.op == "call":
+            return self._call(statement, scope)
+        if expression.op == "phi":
+            self._widening(statement, [one for one in expression.incoming_values if isinstance(one, ir.Var)])
+        if expression.op == "cast":
+            self._widening(statement, [expression.value])
+        if expression.op == "unary" and expression.fn is not operator.not_:
+            of = types.unliteral(self.type_of(expression.value))
+            if isinstance(of, types.Boolean):
+                self.refuse(expression, "arithmetic of booleans", "write not x, or convert it with int(...)")
+            elif is_narrow(leaf(of)):
+                self.refuse(expression, mixed([leaf(of)]), "convert it with np.int64(...)")
+            elif expression.fn is operator.neg and isinstance(of, types.Integer):
+                return self.replace(statement, scope, negative, [expression.value], [types.int64])
+        return []
+
+    def _operation(self, statement: Any, scope: Any) -> list[Any]:
+        expression = statement.value
+        function = INPLACE.get(expression.fn, expression.fn)
+        given = [self.type_of(expression.lhs), self.type_of(expression.rhs)]
+        kinds = [leaf(one) for one in given]
+        if not all(isinstance(kind, NUMBERS) for kind in kinds):
+            return []
+        if function is operator.matmul:
+            return self.refuse(expression, "a matrix product may add in another order", "add in a loop")
+        if function not in INTEGER_OPERATIONS and function not in COMPARISONS:
+            return []
+        if function in COMPARISONS:
+            kinds = self._kinds_that_differ(expression, kinds)
+        if reason := mixed(kinds):
+            return self.refuse(expression, reason, CONVERT)
+        scalars = not any(isinstance(one, types.Array) for one in given)
+        integers = scalars and all(isinstance(kind, types.Integer | types.Boolean) for kind in kinds)
+        if function in COMPARISONS:
+            return self._comparison(expression, scope, given) if scalars else []
+        if function is operator.pow:
+            exponent = getattr(given[1], "literal_value", None)
+            if not integers or not isinstance(exponent, int) or exponent < 0:
+                return self.refuse(expression, "a power can differ in the last bit", "write products: x * x for x ** 2")
+        sides = [expression.lhs, expression.rhs]
+        booleans = all(isinstance(kind, types.Boolean) for kind in kinds)
+        if booleans and not (scalars and all(map(self._compares_action, sides))):
+            # Those of NumPy are not added as those of Python are, and have the same type here.
+            return self.refuse(expression, "arithmetic of booleans", "convert them with int(...)")
+        return (
+            self.replace(statement, scope, INTEGER_OPERATIONS[function], sides, [types.int64] * 2) if integers else []
+        )
+
+    def _kinds_that_differ(self, expression: Any, kinds: list[Any]) -> list[Any]:
+        """Returns the types of the operands of a comparison, without those that are compared exactly."""
+        constants = [self.constant(side) for side in (expression.lhs, expression.rhs)]
+        if kinds[0] == kinds[1] or holds(kinds[0], constants[1]) or holds(kinds[1], constants[0]):
+            return []
+        if all(is_narrow(kind) <= (kind != types.uint64) for kind in kinds):
+            return [kind for kind in kinds if not is_narrow(kind)]
+        return kinds
+
+    def _comparison(self, expression: Any, scope: Any, given: list[Any]) -> list[Any]:
+        """Returns the check of an integer that is compared with a float, which compiled code rounds."""
+        kinds = [types.unliteral(one) for one in given]
+        for kind, other, side in zip(kinds, reversed(kinds), (expression.lhs, expression.rhs), strict=True):
+            if kind == types.int64 and isinstance(other, types.Float):
+                return self.check(exact_integer, scope, [side], expression.loc)
+        return []
+
+    def _compares_action(self, variable: Any) -> bool:
+        """Returns whether a variable is a comparison of the action with a constant, which is a boolean of Python."""
+        found = self.definition(variable)
+        if not isinstance(found, ir.Expr) or found.op != "binop" or found.fn not in COMPARISONS:
+            return False
+        sides = [self.definition(side) for side in (found.lhs, found.rhs)]
+        return all(isinstance(one, ir.Const) or (isinstance(one, ir.Arg) and one.name == "action") for one in sides)
+
+    def _call(self, statement: Any, scope: Any) -> list[Any]:
+        expression = statement.value
+        function = self.typemap[expression.func.name]
+        given = [self.type_of(one) for one in expression.args]
+        if isinstance(function, types.BoundFunction):
+            return self._method_call(statement, scope, given)
+        if isinstance(function, types.NumberClass):
+            if function.instance_type == types.int64 and given and isinstance(types.unliteral(given[0]), types.Float):
+                return self.replace(statement, scope, to_int, expression.args, [types.float64])
+            if is_narrow(function.instance_type) and given and isinstance(types.unliteral(given[0]), types.Integer):
+                return self.check_arguments(expression, scope, RANGE_CHECKS[function.instance_type])
+            if function.instance_type == types.int64 and given and given[0] == types.uint64:
+                return self.check_arguments(expression, scope, RANGE_CHECKS[types.uint64])
+            return []
+        if not isinstance(function, types.Function):
+            return []
+        key = function.typing_key
+        called = self.constant(expression.func)
+        name = str(getattr(key, "__name__", key)).rpartition(".")[2]
+        if any(map(_draws_elsewhere, (key, called))):
+            self.refuse(expression, f"{name} does not draw from the generator of the environment", "draw from rng")
+        elif key in (int, float, round, sum, pow, divmod, min, max, abs):
+            return self._builtin_call(statement, scope, key, given)
+        elif getattr(key, "__module__", None) == "math" or getattr(math, name, None) is key:
+            return self._math_call(statement, scope, key, name)
+        elif isinstance(key, np.ufunc) or str(getattr(key, "__module__", "")).partition(".")[0] == "numpy":
+            self._numpy_call(expression, key, name, given)
+        return []
+
+    def _builtin_call(self, statement: Any, scope: Any, key: Any, given: list[Any]) -> list[Any]:
+        expression = statement.value
+        kinds = [types.unliteral(one) for one in given]
+        if key is round and len(given) > 1:
+            self.refuse(expression, "round with digits can differ", "write math.floor(x + 0.5)")
+        elif key in (pow, divmod):
+            self.refuse(expression, f"{key.__name__} can differ", "write products, or a // b and a % b")
+        elif key in (min, max, abs) and (reason := mixed([leaf(kind) for kind in kinds])):
+            self.refuse(expression, reason, CONVERT)
+        elif key is abs and isinstance(kinds[0], types.Integer):
+            return self.replace(statement, scope, absolute, expression.args, [types.int64])
+        elif key is sum and not of_integers(kinds[0]):
+            self.refuse(expression, "a sum of floats may be added in another order", "add in a loop")
+        elif key in (int, round) and len(kinds) == 1 and isinstance(kinds[0], types.Float):
+            return self.replace(statement, scope, to_int if key is int else rounded, expression.args, [types.float64])
+        return []
+
+    def _math_call(self, statement: Any, scope: Any, key: Any, name: str) -> list[Any]:
+        expression = statement.value
+        if key is math.gcd:
+            return []
+        if key not in MATH:
+            advice = MATH_ADVICE.get(name, OTHER_MATH)
+            return self.refuse(expression, f"math.{name} may round differently in compiled code", advice)
+        integer = name in MATH_ROUNDED and isinstance(types.unliteral(self.type_of(expression.args[0])), types.Integer)
+        check = self.check(exact_integer, scope, expression.args, expression.loc) if integer else []
+        return [*check, *self.replace(statement, scope, MATH[key], expression.args, None)]
+
+    def _numpy_call(self, expression: Any, key: Any, name: str, given: list[Any]) -> None:
+        kinds = [kind for kind in map(leaf, given) if isinstance(kind, NUMBERS)]
+        if name in NUMPY_DIFFERENT:
+            self.refuse(expression, f"np.{name} rounds differently in compiled code", NUMPY_DIFFERENT[name])
+        elif name in NUMPY_WRITES:
+            self.refuse(expression, f"np.{name} can change an array of self", "assign to the elements in a loop")
+        elif name in NUMPY_SUMS and not (given and of_integers(given[0])):
+            self.refuse(expression, f"np.{name} may add in another order", "add in a loop")
+        elif isinstance(key, np.ufunc):
+            if len(given) > key.nin:
+                self.refuse(expression, f"np.{name} with an array for the result", "assign the result")
+            elif reason := mixed(kinds):
+                self.refuse(expression, f"np.{name}: {reason}", CONVERT)
+
+    def _method_call(self, statement: Any, scope: Any, given: list[Any]) -> list[Any]:
+        expression = statement.value
+        of, key = self.type_of(expression.func).this, self.type_of(expression.func).typing_key
+        name = key[1] if isinstance(key, tuple) else str(key).rpartition(".")[2]
+        if isinstance(of, types.NumPyRandomGeneratorType):
+            if name in DRAWS_DIFFERENT:
+                self.refuse(expression, f"{name} can draw other numbers", "draw from another distribution")
+            elif name == "shuffle" and not getattr(given[0], "mutable", True):
+                self.refuse(expression, "shuffle changes an array of self", "copy the array first")
+            elif name in DRAW_CHECKS:
+                return self.check_arguments(expression, scope, DRAW_CHECKS[name])
+        elif isinstance(of, types.Array):
+            if name in NUMPY_SUMS and not of_integers(of):
+                self.refuse(expression, f"array.{name}() may add in another order", "add in a loop")
+            elif name in ("sort", "fill", "partition", "put", "itemset") and not of.mutable:
+                self.refuse(expression, f"array.{name}() changes an array of self", "copy the array first")
+        return []
+
+
+def _draws_elsewhere(function: Any) -> bool:
+    if isinstance(function, str):
+        return function.startswith(("np.random", "numpy.random", "random."))
+    owner = getattr(function, "__self__", None)
+    module = str(getattr(function, "__module__", "") or "")
+    return isinstance(owner, np.random.RandomState | random.Random) or module.startswith(("numpy.random", "random"))

@@ -1,0 +1,118 @@
+"""Which functions give the same bits in compiled code as in Python, and what to write instead of the others.
+
+Both kinds of environments use these tables: the checks of a ``FunctionalEnv``, and the rewriting of ordinary classes.
+"""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+MATH_CHECKED = ("sin", "cos", "tan", "asin", "acos", "atan", "exp", "log", "log10", "sqrt", "sinh", "cosh", "tanh",
+                "log1p", "expm1", "log2")  # fmt: skip
+"""Functions of ``math`` with the same bits that raise an error for some numbers."""
+MATH_TESTS = ("isnan", "isinf", "isfinite")
+MATH_ROUNDED = ("floor", "ceil", "trunc")
+"""Functions whose results are integers."""
+MATH_TWO = ("atan2", "copysign")
+"""Functions of two arguments."""
+MATH = (*MATH_CHECKED, *MATH_TESTS, *MATH_ROUNDED, *MATH_TWO, "fabs")
+"""The functions of ``math`` with the same bits."""
+
+MATH_ADVICE = {
+    "pow": "write products, or math.exp(y * math.log(x))",
+    "hypot": "write math.sqrt(x * x + y * y)",
+    "dist": "write math.sqrt(x * x + y * y)",
+    "radians": "write x * (math.pi / 180.0)",
+    "degrees": "write x * (180.0 / math.pi)",
+}
+"""What to write instead of other functions of ``math``."""
+OTHER_MATH = "use sin, cos, tan, exp, log, sqrt, floor, ceil or their like"
+"""What to write instead of the functions that are not in ``MATH_ADVICE``."""
+
+_SAME_AS_MATH = {
+    **{name: name for name in ("exp", "expm1", "log", "log10", "log1p", "log2", "tan", "tanh", "sinh", "cosh")},
+    **{"arctan": "atan", "arcsin": "asin", "arccos": "acos", "arctan2": "atan2"},
+}
+NUMPY_DIFFERENT = {
+    **{name: f"write math.{other} for np.{name}" for name, other in _SAME_AS_MATH.items()},
+    **dict.fromkeys(("power", "float_power"), "write products: x * x for x ** 2"),
+    "hypot": "write math.sqrt(x * x + y * y)",
+    **dict.fromkeys(("radians", "deg2rad"), "write x * (math.pi / 180.0)"),
+    **dict.fromkeys(("degrees", "rad2deg"), "write x * (180.0 / math.pi)"),
+    **dict.fromkeys(
+        ("cbrt", "exp2", "logaddexp", "logaddexp2", "arcsinh", "arccosh", "arctanh", "sinc", "interp"),
+        "write it with functions of math, or a loop",
+    ),
+    **dict.fromkeys(("round", "around", "round_"), "leave out rounding, or write math.floor(x + 0.5)"),
+}
+"""Functions of NumPy that round differently in compiled code, and what to write instead."""
+
+NUMPY_SUMS = {"sum", "mean", "std", "var", "dot", "matmul", "prod", "cumsum", "cumprod", "vdot", "inner", "average",
+              "median", "percentile", "quantile", "nansum", "nanmean", "nanstd", "nanvar", "nanprod", "nancumsum",
+              "nancumprod", "nanmedian", "trapz", "trapezoid", "norm", "convolve", "correlate", "cov",
+              "corrcoef"}  # fmt: skip
+"""Functions that may add or multiply floats in another order."""
+
+NUMPY_WRITES = {"nan_to_num", "fill_diagonal", "nditer", "ndenumerate", "copyto", "put", "place", "putmask"}
+"""Functions that may change an array of ``self`` without an error."""
+
+_POSITIVE = "{} > 0.0"
+_NOT_NEGATIVE = "({0} >= 0.0 and math.copysign(1.0, {0}) > 0.0)"  # NumPy refuses -0.0
+_ANY = "True"
+DRAWS: dict[str, tuple[str, str]] = {
+    "random": ("", _ANY),
+    "standard_normal": ("", _ANY),
+    "standard_exponential": ("", _ANY),
+    "standard_cauchy": ("", _ANY),
+    "uniform": ("low=0.0, high=1.0", "0.0 <= high - low < math.inf"),
+    "normal": ("loc=0.0, scale=1.0", _NOT_NEGATIVE.format("scale")),
+    "lognormal": ("mean=0.0, sigma=1.0", _NOT_NEGATIVE.format("sigma")),
+    "logistic": ("loc=0.0, scale=1.0", _NOT_NEGATIVE.format("scale")),
+    "laplace": ("loc=0.0, scale=1.0", _NOT_NEGATIVE.format("scale")),
+    "exponential": ("scale=1.0", _NOT_NEGATIVE.format("scale")),
+    "rayleigh": ("scale=1.0", _NOT_NEGATIVE.format("scale")),
+    "gamma": ("shape, scale=1.0", f"{_NOT_NEGATIVE.format('shape')} and {_NOT_NEGATIVE.format('scale')}"),
+    "standard_gamma": ("shape", _NOT_NEGATIVE.format("shape")),
+    "weibull": ("a", _NOT_NEGATIVE.format("a")),
+    "pareto": ("a", _POSITIVE.format("a")),
+    "standard_t": ("df", _POSITIVE.format("df")),
+    "chisquare": ("df", _POSITIVE.format("df")),
+    "f": ("dfnum, dfden", "dfnum > 0.0 and dfden > 0.0"),
+    "noncentral_chisquare": ("df, nonc", "df > 0.0 and nonc >= 0.0"),
+    "noncentral_f": ("dfnum, dfden, nonc", "dfnum > 0.0 and dfden > 0.0 and nonc >= 0.0"),
+    "beta": ("a, b", "a > 0.0 and b > 0.0"),
+    "triangular": ("left, mode, right", "left <= mode <= right and left < right"),
+    "poisson": ("lam=1.0", "0.0 <= lam < 10.0"),  # beyond that, Numba's own algorithm differs
+    "geometric": ("p", "1e-9 <= p <= 1.0"),  # below, the numbers may not fit 64 bits
+    "binomial": ("n, p", "n >= 0 and 0.0 <= p <= 1.0"),
+    "logseries": ("p", "0.0 < p < 1.0"),
+    "zipf": ("a", "1.0 < a < 1e9"),
+}
+"""The methods of generators that draw the same numbers: the parameters before ``size``, and the condition for which
+they do. NumPy raises errors for other arguments; Numba draws with any."""
+
+DRAWS_OF_INTEGERS = ("poisson", "geometric", "binomial", "logseries", "zipf")
+
+DRAWS_DIFFERENT = ("wald", "power", "negative_binomial")
+"""Draws whose numbers can differ from NumPy's."""
+
+DRAWS_MISSING = {
+    "choice": "draw an index with rng.integers(0, n)",
+    "hypergeometric": "count the successes of single draws with rng.random()",
+    "multinomial": "compare rng.random() with cumulative probabilities",
+    "multivariate_normal": "combine draws of rng.normal(0.0, 1.0)",
+    "dirichlet": "divide draws of rng.gamma(shape, 1.0) by their sum",
+    "vonmises": "draw from another distribution, such as rng.uniform(-math.pi, math.pi)",
+    "gumbel": "write -math.log(rng.exponential(1.0))",
+}
+"""Methods of generators that Numba does not have, and what to write instead. The draws then differ."""
+
+
+def draw_check(name: str) -> Callable[..., None]:
+    """Returns a function of the arguments of a draw, which raises ``ValueError`` where the draw would differ."""
+    parameters, condition = DRAWS[name]
+    scope: dict[str, Any] = {"math": math}
+    parameters += ", size=None" if parameters else "size=None"
+    exec(f"def check({parameters}):\n    if not ({condition}):\n        raise ValueError\n", scope)  # noqa: S102
+    check: Callable[..., None] = scope["check"]
+    return check

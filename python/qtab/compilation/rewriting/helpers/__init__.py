@@ -1,1 +1,0 @@
-"""The functions that rewritten code calls."""
