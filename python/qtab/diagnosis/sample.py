@@ -1,5 +1,6 @@
 """Episodes played for a diagnosis: the last steps of a run, repeated, and the shortest episode of the best policy."""
 
+from contextlib import closing
 from dataclasses import dataclass
 from typing import Any
 
@@ -62,9 +63,8 @@ def repeat(run: Run) -> Run:
 
 def sample_steps(run: Run) -> Sample:
     """Replays the recordings of a run."""
-    env = make_run_env(run.config)
     visited, taken, following, rewards, steps = [], [], [], [], []
-    try:
+    with closing(make_run_env(run.config)) as env:
         plain: Any = env.unwrapped
         for recording in run.recordings:
             plain.np_random = restored_generator(recording.start)
@@ -76,8 +76,6 @@ def sample_steps(run: Run) -> Sample:
                 observation, reward, *_ = plain.step(action)
                 following.append(observation)
                 rewards.append(float(reward))
-    finally:
-        env.close()
     observations = np.array(visited)
     before = np.array(steps, np.int64)
     known = np.array([flat(run.actions[column]) for column in range(len(run.actions))])
@@ -105,8 +103,8 @@ def shortest_best_episode(config: Config, optimum: Optimum) -> int | None:
     Returns:
         The number of steps; None if none of 20 episodes ends like this, as in a continuing task.
     """
-    env, lengths, steps = make_run_env(config), [], 0
-    try:
+    lengths, steps = [], 0
+    with closing(make_run_env(config)) as env:
         for seed in range(EPISODES):
             observation, _ = env.reset(seed=seed)
             state, total, length, over = None, 0.0, 0, False
@@ -117,6 +115,4 @@ def shortest_best_episode(config: Config, optimum: Optimum) -> int | None:
                 over = terminated or truncated
                 if terminated and total >= optimum.expected_return - 1e-9:
                     lengths.append(length)
-    finally:
-        env.close()
     return min(lengths, default=None)

@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager, closing, nullcontext
 from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
@@ -147,18 +148,15 @@ def _repeat(run: Run, episode: int, env: gym.Env | None, start: Start | None, pr
     """Repeats a run with the reference up to the end of an episode, from the first episode or from that one."""
     watcher = Watcher(run.config, lambda row: _cell(run, row), start)
     if env is None:
-        stepped = make_run_env(run.config)
+        made: AbstractContextManager[gym.Env] = closing(make_run_env(run.config))
     else:
-        stepped = gym.wrappers.TimeLimit(env, checks.required("max_episode_steps", run.config.max_episode_steps))
+        limit = checks.required("max_episode_steps", run.config.max_episode_steps)
+        made = nullcontext(gym.wrappers.TimeLimit(env, limit))
     episodes = episode + 1 if start is None else 1
-    try:
-        with ProgressBar(episodes, "episode", progress, "repeating") as bar, observed_by(watcher):
-            watched = _Watched(stepped, run, watcher, episodes, bar.move_to)
-            table, returns, lengths = LEARNERS[run.config.algorithm](watched, run.config, stop_after=episodes)
-        return _Repeated(watcher, table, returns, lengths, stepped)
-    finally:
-        if env is None:
-            stepped.close()
+    with made as stepped, ProgressBar(episodes, "episode", progress, "repeating") as bar, observed_by(watcher):
+        watched = _Watched(stepped, run, watcher, episodes, bar.move_to)
+        table, returns, lengths = LEARNERS[run.config.algorithm](watched, run.config, stop_after=episodes)
+    return _Repeated(watcher, table, returns, lengths, stepped)
 
 
 def _cell(run: Run, row: int) -> tuple[int, ...] | None:

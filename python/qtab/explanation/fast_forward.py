@@ -4,6 +4,7 @@ Rust trains up to the episode, which gives the tables and the environment's gene
 numbers that the policy drew, without taking steps, if their count depends neither on values nor on a model.
 """
 
+from contextlib import closing
 from dataclasses import dataclass
 from typing import Any
 
@@ -54,15 +55,13 @@ def start_of(run: Run, episode: int) -> Start | None:
     if episode == 0 or config.learning_rate_schedule == "visits":
         return None
     resolved = resolve_run(config, {name: value for name, value in vars(config).items() if name != "env"})
-    try:
+    with closing(resolved):
         trainer = _core.Trainer(resolved.spec(), resolved.seed, record=1)
         trainer.advance(episode)
         before = trainer.tables()
         trainer.advance(episode + 1)
         start, columns = trainer.take_recordings()[-1]
         env_generator = generator_before(resolved.config.seed, start)
-    finally:
-        resolved.close()
     shape = run.tables.shape
     return Start(
         episode,

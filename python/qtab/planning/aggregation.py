@@ -5,6 +5,7 @@ and J. Tsitsiklis, "Neuro-Dynamic Programming", 1996, section 3.1.2).
 """
 
 import dataclasses
+from contextlib import closing
 from typing import Any
 
 import numpy as np
@@ -61,8 +62,7 @@ def _action_values(run: Run, known: GridEnvironment, axes: tuple[NDArray[np.floa
 
 def _steps(run: Run, states: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.bool_]]:
     """Steps each state with each action. Returns (states * actions,) rows, rewards, and whether the episode ends."""
-    env = make_run_env(run.config)
-    try:
+    with closing(make_run_env(run.config)) as env:
         env.reset(seed=0)
         plain: Any = env.unwrapped
         observations, rewards, terminated = [], [], []
@@ -75,7 +75,5 @@ def _steps(run: Run, states: NDArray[np.float64]) -> tuple[NDArray[np.int64], ND
                 observations.append(observation)
                 rewards.append(float(reward))
                 terminated.append(bool(ended))
-    finally:
-        env.close()
     rows = run.discretizer.active_rows(np.array(observations))[:, 0].astype(np.int64)
     return rows, np.array(rewards), np.array(terminated)

@@ -3,7 +3,7 @@
 import os
 import sys
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, closing, contextmanager, nullcontext
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -59,14 +59,9 @@ class Film:
 
                 return play_episodes(self.agent, env, self.episodes, self.seed, see), frames
 
-    @contextmanager
-    def _environment(self, render_mode: str) -> Iterator[gym.Env]:
+    def _environment(self, render_mode: str) -> AbstractContextManager[gym.Env]:
         env = rendered_environment(self.agent, self.env, self.env_kwargs, self.max_episode_steps, render_mode)
-        try:
-            yield env
-        finally:
-            if not isinstance(self.env, gym.Env):
-                env.close()
+        return nullcontext(env) if isinstance(self.env, gym.Env) else closing(env)
 
 
 @contextmanager
