@@ -114,9 +114,7 @@ def same_cells(one: Discretizer, other: Discretizer) -> bool:
     )
 
 
-def observation_policy(
-    name: str, policy: GivenPolicy, cells: Discretizer, actions: Actions
-) -> TablePolicy | GreedyPolicy | FunctionPolicy:
+def observation_policy(name: str, policy: GivenPolicy, cells: Discretizer, actions: Actions) -> ObservationPolicy:
     """Returns a policy in a form that reads observations.
 
     Args:

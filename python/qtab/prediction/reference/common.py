@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import gymnasium as gym
 import numpy as np
-from numpy.typing import NDArray
 
+from qtab._utils.checks import required
 from qtab.config import Config
 from qtab.config.config import replace_checked
 from qtab.prediction.learning_rates import rate_settings
@@ -62,8 +62,8 @@ class Prediction:
         self.rate = LearningRate(replace_checked(config, **rate_settings(vars(self.settings))), (count, 1), n_active)
         policies = estimates.policies
         if policies is None:
-            both = TablePolicy(_by_row(estimates.probabilities)), TablePolicy(_by_row(estimates.behavior))
-            policies = ObservationPolicies(*both)
+            tables = [required("policies", table) for table in (estimates.probabilities, estimates.behavior)]
+            policies = ObservationPolicies(*(TablePolicy(table.reshape(-1, table.shape[-1])) for table in tables))
         self.target, self.behavior = policy_of(policies.target, env), policy_of(policies.behavior, env)
         self.is_off_policy = self.settings.method == "importance_sampling"
 
@@ -131,10 +131,3 @@ class Prediction:
     def next_value(self, visit: Visit) -> float:
         """Returns v(S'), which is 0 in a terminal state."""
         return 0.0 if visit.terminal else self.value(visit.next_state)
-
-
-def _by_row(table: NDArray[np.float64] | None) -> NDArray[np.float64]:
-    """Returns (rows, actions) probabilities of (*cells, actions)."""
-    if table is None:
-        raise ValueError("there are policies for the observations or for the states")
-    return table.reshape(-1, table.shape[-1])
