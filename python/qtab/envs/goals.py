@@ -68,10 +68,7 @@ def why_no_threshold(config: Config) -> str:
 
 def is_usual_mountain_car(config: Config) -> bool:
     """Returns whether a run is on MountainCar-v0 with the default constants and time limit."""
-    spec = _registered(config.env)
-    if spec is None or gymnasium_id(config.env) != "MountainCar-v0":
-        return False
-    return _why_not_as_registered(spec, config.env_kwargs, config.max_episode_steps, trained_on(config)) is None
+    return gymnasium_id(config.env) == "MountainCar-v0" and threshold_of(config) is not None
 
 
 def has_quick_optimum(config: Config, n_rows: int, n_actions: int) -> bool:
