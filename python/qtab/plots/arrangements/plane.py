@@ -89,9 +89,8 @@ def plane(subject: Subject, at: Mapping[str, float] | None, sampled: bool = Fals
     chosen, fixed = _choose(subject, known, at)
     discretizer = subject.discretizer
     as_cells = discretizer.has_cells and not sampled and all(one.edges is not None for one in known)
-    sampled_at = RESOLUTION + 1
     edges = [
-        one.edges if as_cells and one.edges is not None else np.linspace(one.low, one.high, sampled_at)
+        one.edges if as_cells and one.edges is not None else np.linspace(one.low, one.high, RESOLUTION + 1)
         for one in chosen
     ]
     if len(edges) == 1:
@@ -181,8 +180,7 @@ def _observations(
     grid = np.meshgrid(*middles)
     found = np.empty((grid[0].size, len(subject.axes)))
     for one in known:
-        axis = next((index for index, other in enumerate(chosen) if other is one), None)
-        value = np.full(grid[0].size, fixed[one.name]) if axis is None else grid[axis].ravel()
+        value = grid[chosen.index(one)].ravel() if one in chosen else np.full(grid[0].size, fixed[one.name])
         if len(one.components) == 2:
             found[:, one.components[0]], found[:, one.components[1]] = np.cos(value), np.sin(value)
         else:
@@ -200,9 +198,8 @@ def _cell_rows(
     index: list[Any] = [0] * len(shape)
     for one in known:
         component = one.components[0]
-        axis = next((number for number, other in enumerate(chosen) if other is one), None)
-        if axis is not None:
-            index[component] = grid[axis]
+        if one in chosen:
+            index[component] = grid[chosen.index(one)]
         elif one.edges is not None:
             index[component] = int(np.searchsorted(one.edges[1:-1], fixed[one.name], side="right"))
     return np.ravel_multi_index(np.broadcast_arrays(*index), shape)[..., np.newaxis]
