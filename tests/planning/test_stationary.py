@@ -92,7 +92,7 @@ def tables(draw: st.DrawFn) -> Any:
 def test_it_returns_what_it_claims_and_no_single_change_helps(table: Any, limit: int) -> None:
     env = qtab.TabularEnv(table, [0.5, 0.5, 0.0])
     best = qtab.optimum(env, max_episode_steps=limit)
-    known, planner = best.stationary, best.solver._planner  # type: ignore[attr-defined]
+    known, planner = best.stationary, best.solver._planner  # type: ignore[union-attr]
     assert known is not None
     policies = [np.array(actions) for actions in itertools.product(range(2), repeat=3)]
     returns = [planner.policy_return(policy, limit) for policy in policies]
