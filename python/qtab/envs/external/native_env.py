@@ -48,7 +48,7 @@ class NativeEnv(gym.Env[Any, Any]):
         self.render_mode = None
         self._library = load(path)
         external = self._library.external
-        self.observation_space = _observation_space(external)
+        self.observation_space = space_of(external)
         self.action_space = spaces.Discrete(external.num_actions)
         self.max_episode_steps: int | None = external.max_episode_steps
         """The time limit in steps; None if there is none."""
@@ -164,7 +164,8 @@ class NativeEnv(gym.Env[Any, Any]):
         return {"action_mask": episode.action_mask()} if self._library.external.has_action_mask else {}
 
 
-def _observation_space(external: _core.ExternalEnv) -> "spaces.Space[Any]":
+def space_of(external: _core.ExternalEnv) -> "spaces.Space[Any]":
+    """Returns the observation space of the environment in a library."""
     low, high = (np.array(bounds, np.float64) for bounds in zip(*external.bounds, strict=True))
     if external.dtype != "int64":
         dtype = np.dtype(external.dtype)

@@ -1,7 +1,7 @@
 """``qtab.FunctionalEnv``: a Gymnasium environment written as functions of its state."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import wraps
 from inspect import signature
 from typing import Any
@@ -204,19 +204,24 @@ class FunctionalEnv(gym.Env[Any, Any], ABC):
         Raises:
             RuntimeError: if the call does not fail in Python.
         """
-        from qtab.compilation.functional import compiled_env, state_from
-
         if state is None or action is None:
             first = self.initial_state(rng)
             self._observation(first)
             self._info(first, terminated=False)
         else:
-            before = state_from(self, compiled_env(self)[0], state)
+            (before,) = self._states_in([state])
             first_action = int(self.action_space.start)  # type: ignore[attr-defined]
             following, _, terminated = self._checked(self.transition(before, first_action + action, rng))
             self._observation(following)
             self._info(following, terminated)
         raise RuntimeError(f"{type(self).__name__} failed in compiled code, but not in Python")
+
+    def _states_in(self, memories: Sequence[bytes]) -> list[Any]:
+        """Returns the states whose bytes compiled code has written."""
+        from qtab.compilation.functional import compiled_env, state_from
+
+        compiled, _ = compiled_env(self)
+        return [state_from(self, compiled, memory) for memory in memories]
 
     def _checked(self, returned: Any) -> tuple[Any, float, bool]:
         name = f"transition of {type(self).__name__}"

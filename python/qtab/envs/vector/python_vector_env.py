@@ -5,7 +5,7 @@ from typing import Any
 
 import gymnasium as gym
 import numpy as np
-from gymnasium.spaces import Discrete
+from gymnasium.spaces import Box, Dict, Tuple
 from gymnasium.vector import AutoresetMode, SyncVectorEnv
 from gymnasium.vector.utils import iterate
 from numpy.typing import NDArray
@@ -26,7 +26,7 @@ class PythonVectorEnv(SyncVectorEnv[Any, Any]):
         """Steps every sub-environment after checking all actions.
 
         Raises:
-            AssertionError: for an action outside a discrete space, or a step after the end of an episode without a
+            AssertionError: for an action outside the space, or a step after the end of an episode without a
                 reset.
             ValueError: for the wrong number of actions, or a continuous action that is not one finite number.
         """
@@ -47,12 +47,12 @@ class PythonVectorEnv(SyncVectorEnv[Any, Any]):
             raise AssertionError(
                 f"the episode of sub-environment {index} is over: reset it first, with options={{'reset_mask': ...}}"
             )
-        if len(actions) != self.num_envs:
+        if not isinstance(self.action_space, Dict | Tuple) and len(actions) != self.num_envs:
             raise ValueError(f"actions must have shape {self.action_space.shape}, got {len(actions)} of them")
         for index, action in enumerate(iterate(self.action_space, actions)):
             if self.autoreset_mode is AutoresetMode.NEXT_STEP and awaits_reset[index]:
                 continue  # this step resets it and ignores the action
-            if not isinstance(self.single_action_space, Discrete):
+            if isinstance(self.single_action_space, Box) and self.single_action_space.shape == (1,):
                 if np.shape(action) != (1,) or not np.isfinite(action).all():
                     raise ValueError(f"actions[{index}] must be a finite number, got {action}")
             elif not self.single_action_space.contains(action):

@@ -1,5 +1,6 @@
 """``gymnasium.make_vec("qtab/…")``: a vector environment that steps all sub-environments in one call of Rust."""
 
+import logging
 from collections.abc import Sequence
 from functools import partial
 from typing import Any
@@ -13,10 +14,15 @@ from gymnasium.vector.utils import batch_space
 
 from qtab import _core
 from qtab._utils import checks
+from qtab.envs.external.capsule import has_capsule
+from qtab.envs.functional import FunctionalEnv
+from qtab.envs.matching import NotInRustError
 from qtab.envs.native import native_env
 from qtab.envs.vector.arguments import check_reset_mask, entry_to_step, seeds_of, spec_to_step
-from qtab.envs.vector.python_vector_env import PythonVectorEnv, restore
+from qtab.envs.vector.own_env import in_python, own_env
+from qtab.envs.vector.python_vector_env import PythonVectorEnv, Snapshot, restore
 
+_LOGGER = logging.getLogger("qtab")
 _MAX_RESET_BOUND = 1e6
 """First states beyond this may overflow. Gymnasium's code then decides what happens."""
 
@@ -38,11 +44,17 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
 
     - with a window (``render_mode="human"``), with lists of frames, and with frames of Taxi;
     - with a constructor argument that Rust does not compute with;
-    - for CartPole, Acrobot and Pendulum on machines where NumPy does not take sine and cosine from the C library.
+    - for CartPole, Acrobot and Pendulum on machines where NumPy does not take sine and cosine from the C library;
+    - for a :class:`qtab.FunctionalEnv` with a render mode, without Numba, or that cannot be compiled. The logger
+      ``qtab`` reports the reason.
+
+    An environment of your own, a :class:`qtab.FunctionalEnv` or a :class:`qtab.NativeEnv`, also switches to Python
+    stepping when ``np_random`` is accessed, and at a reset with ``options={"state": ...}``. An exception of a step or a
+    reset is raised as it is in Python.
 
     Args:
         name: The id of an environment that Rust steps: Gymnasium's, one with the prefix ``qtab/``, or one that you
-            registered for a :class:`qtab.TabularEnv`.
+            registered for a :class:`qtab.TabularEnv`, a :class:`qtab.FunctionalEnv` or a :class:`qtab.NativeEnv`.
         num_envs: The number of sub-environments.
         max_episode_steps: A time limit other than the spec's, as in ``gymnasium.make`` (-1: no limit).
         copy: Whether each step returns new arrays of observations. If False, it returns the same arrays each time.
@@ -76,7 +88,8 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
         self._make = partial(gym.make, spec, max_episode_steps=max_episode_steps, **kwargs)
         self.example = self._make()
         """An environment like the sub-environments, which is never stepped."""
-        self._entry_name = entry_to_step(spec, self.example).name
+        self._is_own = has_capsule(self.example)
+        self._entry_name = spec.id if self._is_own else entry_to_step(spec, self.example).name
         self.metadata = {**self.example.metadata, "autoreset_mode": self.autoreset_mode}
         self.render_mode = self.example.render_mode
         self.single_observation_space = self.example.observation_space
@@ -89,6 +102,9 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
         if not self._start_in_rust():
             self._fall_back_to_python()
 
+    _is_own = False
+    """Whether it is an environment of one's own: a ``FunctionalEnv``, a ``NativeEnv`` or another with a capsule."""
+
     def _start_in_rust(self) -> bool:
         """Creates the sub-environments in Rust; returns False if Rust does not support them."""
         env = self.example.unwrapped
@@ -96,9 +112,8 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
         can_render = self.render_mode in ("rgb_array", "ansi") and _draws_its_state(env)
         if self.render_mode is not None and not can_render:
             return False
-        try:
-            native = native_env(self._entry_name, env)
-        except (TypeError, ValueError):  # parameters or a table that Gymnasium accepts and Rust does not
+        native = self._own_env() if self._is_own else self._known_env()
+        if native is None:
             return False
         limited = self.example.has_wrapper_attr("_max_episode_steps")
         limit = self.example.get_wrapper_attr("_max_episode_steps") if limited else None
@@ -111,6 +126,20 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
             self.copy,
             self._threads,
         )
+
+    def _known_env(self) -> _core.NativeEnv | None:
+        try:
+            return native_env(self._entry_name, self.example.unwrapped)
+        except (TypeError, ValueError):  # parameters or a table that Gymnasium accepts and Rust does not
+            return None
+
+    def _own_env(self) -> _core.NativeEnv | None:
+        try:
+            return own_env(self.example, self.num_envs, self.copy)
+        except NotInRustError as error:
+            message = "%s is stepped in Python, which is much slower than Rust: %s"
+            _LOGGER.warning(message, self._entry_name, f"{error}; {error.remedy}" if error.remedy else error)
+            return None
 
     def reset(
         self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
@@ -136,6 +165,8 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
         mask = None
         if options is not None and "reset_mask" in options:
             mask = check_reset_mask(options.pop("reset_mask"), self.num_envs, self.not_reset())
+        if options and "state" in options and isinstance(self.example.unwrapped, FunctionalEnv):
+            self._fall_back_to_python()
         bounds = self._reset_bounds(options) if self.is_native else None
         if self._python is not None:
             masked = options if mask is None else {**(options or {}), "reset_mask": mask}
@@ -172,10 +203,12 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
 
     @property  # type: ignore[misc]
     def np_random(self) -> tuple[np.random.Generator, ...]:  # type: ignore[override]
-        """The random generators of the sub-environments."""
+        """The random generators of the sub-environments. Python steps an environment of one's own from then on."""
+        if self._is_own:
+            self._fall_back_to_python()
         if self._python is not None:
             return self._python.np_random
-        return tuple(self._generator(index) for index in range(self.num_envs))
+        return self._generators()
 
     @property
     def np_random_seed(self) -> tuple[int, ...]:  # type: ignore[override]
@@ -183,6 +216,9 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
         if self._python is not None:
             return self._python.np_random_seed
         return tuple(self.seed_of(index) for index in range(self.num_envs))
+
+    def _generators(self) -> tuple[np.random.Generator, ...]:
+        return tuple(self._generator(index) for index in range(self.num_envs))
 
     def _generator(self, index: int) -> np.random.Generator:
         """Returns a sub-environment's generator, which Rust uses from now on."""
@@ -199,6 +235,11 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
             source = np.random.Generator(bit_generator)
             self.set_rng(index, source)
         return source
+
+    def snapshots(self) -> list[Snapshot]:
+        """Returns the state of each sub-environment that Rust steps, as Python can continue from it."""
+        snapshots = super().snapshots()
+        return in_python(self.example, snapshots, self.not_reset()) if self._is_own else snapshots
 
     def render(self) -> tuple[Any, ...]:
         """Returns the result of each sub-environment's ``render``.
@@ -251,7 +292,7 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
             return self._python
         python = PythonVectorEnv([self._make] * self.num_envs, copy=self.copy, autoreset_mode=self.autoreset_mode)
         if self.is_native:
-            python.resume_from(self.snapshots(), self.not_reset(), self.np_random, self.np_random_seed)
+            python.resume_from(self.snapshots(), self.not_reset(), self._generators(), self.np_random_seed)
             self.release()
         self._python = python
         return python

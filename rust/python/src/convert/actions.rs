@@ -11,12 +11,19 @@ pub(crate) const LARGEST_FORCE: f64 = 1e150;
 
 /// A discrete action: a Python or `NumPy` integer from 0 to `count` - 1; None for anything else.
 pub(crate) fn discrete_action(action: &Bound<'_, PyAny>, count: usize) -> Option<usize> {
+    numbered_action(action, 0, count)
+}
+
+/// The number, from 0, of a discrete action: a Python or `NumPy` integer from `first` to `first + count - 1`; None for
+/// anything else.
+pub(crate) fn numbered_action(action: &Bound<'_, PyAny>, first: i64, count: usize) -> Option<usize> {
     static INTEGER: PyOnceLock<Py<PyType>> = PyOnceLock::new();
     let py = action.py();
     if !action.is_instance_of::<PyInt>() && !action.is_instance(INTEGER.import(py, "numpy", "integer").ok()?).ok()? {
         return None;
     }
-    action.extract::<usize>().ok().filter(|&action| action < count)
+    let number = action.extract::<i64>().ok()?.checked_sub(first)?;
+    usize::try_from(number).ok().filter(|&number| number < count)
 }
 
 /// The first number of a continuous action, in the dtype of its array; None if it is too large or not in a float array.

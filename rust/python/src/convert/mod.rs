@@ -7,7 +7,7 @@ mod observation;
 mod seed;
 mod state_array;
 
-pub(crate) use actions::{LARGEST_FORCE, box_action, discrete_action, first_item};
+pub(crate) use actions::{LARGEST_FORCE, box_action, discrete_action, first_item, numbered_action};
 pub(crate) use arrays::{FromNumber, array_from, array_of, floats, in_c_order, integers, rows_array, small_array};
 pub(crate) use numbers::{constant, double, numpy_scalar};
 pub(crate) use observation::{BoxReader, DiscreteReader, ObservationReader};

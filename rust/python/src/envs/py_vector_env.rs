@@ -1,12 +1,14 @@
 //! `VectorEnv`: the base of the Gymnasium-facing vector environments. One call steps all sub-environments.
 
+use std::mem;
+
 use pyo3::exceptions::{PyIndexError, PyRuntimeError, PyValueError};
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList, PyTuple};
 use qtab_core::StopFlag;
 use qtab_core::checkpoint::{Checkpoint, CheckpointError, Persist};
-use qtab_core::memory::{collect, filled};
+use qtab_core::memory::{collect, filled, with_capacity};
 use qtab_core::vector::Autoreset;
 
 use super::PyNativeEnv;
@@ -76,7 +78,7 @@ impl PyVectorEnv {
     fn step<'py>(slf: &Bound<'py, Self>, actions: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let py = slf.py();
         let mut this = borrow_mut(slf)?;
-        let Self { envs: Some(envs), rngs, not_reset, .. } = &mut *this else {
+        let Self { envs: Some(envs), rngs, seeds, not_reset } = &mut *this else {
             drop(this);
             return slf.call_method1(intern!(py, "step_in_python"), (actions,));
         };
@@ -84,7 +86,7 @@ impl PyVectorEnv {
             let message = format!("Cannot call env.step() before calling env.reset(): sub-environment {index}");
             return Err(reset_needed(py, message));
         }
-        Ok(envs.step(actions, rngs)?.into_pyobject(py)?.into_any())
+        Ok(envs.step(actions, rngs, seeds)?.into_pyobject(py)?.into_any())
     }
 
     /// Starts an episode in each sub-environment of `indices`, with a seed for each; None leaves its generator
@@ -102,13 +104,19 @@ impl PyVectorEnv {
         if let Some(&index) = indices.iter().find(|&&index| index >= rngs.len()) {
             return Err(no_such_env(index));
         }
+        let mut replaced = with_capacity(indices.len()).map_err(allocation)?;
         for (&index, seed) in indices.iter().zip(seeds) {
             if let Some(seed) = seed {
-                rngs[index] = SubEnvRng::new(&seed);
-                known_seeds[index] = seed;
+                let rng = mem::replace(&mut rngs[index], SubEnvRng::new(&seed));
+                replaced.push((index, rng, mem::replace(&mut known_seeds[index], seed)));
             }
         }
-        envs.reset(&indices, bounds, rngs);
+        if let Err(error) = envs.reset(slf.py(), &indices, bounds, rngs, known_seeds) {
+            for (index, rng, seed) in replaced {
+                (rngs[index], known_seeds[index]) = (rng, seed);
+            }
+            return Err(error);
+        }
         if !not_reset.is_empty() {
             for &index in &indices {
                 not_reset[index] = false;

@@ -7,7 +7,7 @@ use pyo3::types::PyString;
 use qtab_core::checkpoint::{Checkpoint, CheckpointError, Persist};
 use qtab_core::numeric::Scalar;
 
-use crate::convert::{LARGEST_FORCE, discrete_action, double, first_item, numpy_scalar, small_array};
+use crate::convert::{LARGEST_FORCE, double, first_item, numbered_action, numpy_scalar, small_array};
 use crate::error::invalid;
 
 /// Up to this many items, reading one by one is faster than borrowing the array.
@@ -53,31 +53,7 @@ impl BatchAction for usize {
         inactive: &dyn Fn(usize) -> bool,
         into: &mut [Self],
     ) -> PyResult<()> {
-        if let Ok(array) = actions.cast::<PyArray1<i64>>()
-            && read_integers(array, num_actions, into)?
-        {
-            return Ok(());
-        }
-        if let Ok(array) = actions.cast::<PyUntypedArray>() {
-            if array.shape() != [into.len()] {
-                return Err(wrong_shape(array, &format!("({},)", into.len())));
-            }
-            if matches!(array.dtype().kind(), b'i' | b'u')
-                && read_integers(actions.call_method1("astype", ("int64",))?.cast()?, num_actions, into)?
-            {
-                return Ok(());
-            }
-        }
-        check_length(actions, &format!("({},)", into.len()), into.len())?;
-        for (index, item) in into.iter_mut().enumerate() {
-            let action = actions.get_item(index)?;
-            *item = if inactive(index) {
-                Self::NONE
-            } else {
-                discrete_action(&action, num_actions).ok_or_else(|| invalid_action(index, &action))?
-            };
-        }
-        Ok(())
+        read_numbered(actions, 0, num_actions, inactive, into)
     }
 
     fn to_python(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
@@ -89,21 +65,62 @@ impl BatchAction for usize {
     }
 }
 
+/// Reads the number, from 0, of each discrete action. The actions begin at `first`.
+pub(crate) fn read_numbered(
+    actions: &Bound<'_, PyAny>,
+    first: i64,
+    num_actions: usize,
+    inactive: &dyn Fn(usize) -> bool,
+    into: &mut [usize],
+) -> PyResult<()> {
+    if let Ok(array) = actions.cast::<PyArray1<i64>>()
+        && read_integers(array, first, num_actions, into)?
+    {
+        return Ok(());
+    }
+    if let Ok(array) = actions.cast::<PyUntypedArray>() {
+        if array.shape() != [into.len()] {
+            return Err(wrong_shape(array, &format!("({},)", into.len())));
+        }
+        if matches!(array.dtype().kind(), b'i' | b'u')
+            && read_integers(actions.call_method1("astype", ("int64",))?.cast()?, first, num_actions, into)?
+        {
+            return Ok(());
+        }
+    }
+    check_length(actions, &format!("({},)", into.len()), into.len())?;
+    for (index, item) in into.iter_mut().enumerate() {
+        let action = actions.get_item(index)?;
+        *item = if inactive(index) {
+            usize::NONE
+        } else {
+            numbered_action(&action, first, num_actions).ok_or_else(|| invalid_action(index, &action))?
+        };
+    }
+    Ok(())
+}
+
 /// Reads the array, and returns whether its length fits and all its items are valid actions.
-fn read_integers(actions: &Bound<'_, PyArray1<i64>>, num_actions: usize, into: &mut [usize]) -> PyResult<bool> {
+fn read_integers(
+    actions: &Bound<'_, PyArray1<i64>>,
+    first: i64,
+    num_actions: usize,
+    into: &mut [usize],
+) -> PyResult<bool> {
     if actions.len() != into.len() {
         return Ok(false);
     }
     let last = num_actions.cast_signed() as i64 - 1;
-    // Becomes negative if any action is below 0 or above the last one.
+    // Becomes negative if any number is below 0 or above the last one.
     let mut signs = 0;
     let mut put = |item: &mut usize, action: i64| {
-        *item = action as usize;
-        signs |= action | last.wrapping_sub(action);
+        let number = action.wrapping_sub(first);
+        *item = number as usize;
+        signs |= number | last.wrapping_sub(number);
     };
     if into.len() <= READ_ONE_BY_ONE {
         for (index, item) in into.iter_mut().enumerate() {
-            put(item, actions.get_owned(index).unwrap_or(-1));
+            put(item, actions.get_owned(index).unwrap_or(i64::MIN));
         }
     } else {
         let view = actions.try_readonly()?;

@@ -9,8 +9,7 @@ use qtab_core::memory::{collect, filled};
 use qtab_core::vector::States;
 use qtab_core::{Env, StopFlag, VectorEnv};
 
-use super::BatchObservation;
-use crate::convert::{array_of, rows_array};
+use crate::convert::{array_from, array_of, rows_array};
 use crate::error::allocation;
 
 /// The properties of an environment type, besides its dynamics, that a vector environment needs.
@@ -45,21 +44,15 @@ pub(crate) struct ActionMasks<S> {
 }
 
 /// The infos of one call, under construction.
-pub(super) struct Infos<'py> {
+pub(crate) struct Infos<'py> {
     py: Python<'py>,
     num_envs: usize,
-    pub(super) dict: Bound<'py, PyDict>,
+    pub(crate) dict: Bound<'py, PyDict>,
 }
 
 impl<'py> Infos<'py> {
-    pub(super) fn new(py: Python<'py>, num_envs: usize) -> Self {
+    pub(crate) fn new(py: Python<'py>, num_envs: usize) -> Self {
         Self { py, num_envs, dict: PyDict::new(py) }
-    }
-
-    /// Adds the infos of all sub-environments after a step.
-    pub(super) fn add_step<E: Env, S: States<E>>(&self, envs: &VectorEnv<E, S>, info: &EnvInfo<E>) -> PyResult<()> {
-        let Some(transition) = &info.transition else { return Ok(()) };
-        self.add_transition(&self.dict, transition, envs.states().enumerate(), false)
     }
 
     /// Adds the infos of the sub-environments with these indices after a reset.
@@ -75,28 +68,33 @@ impl<'py> Infos<'py> {
     }
 
     /// Adds the final observations and infos of the episodes that ended and were reset in the same step.
-    pub(super) fn add_final<E, S>(&self, envs: &VectorEnv<E, S>, info: &EnvInfo<E>) -> PyResult<()>
-    where
-        E: Env<Observation: BatchObservation>,
-        S: States<E>,
-    {
-        if envs.final_states().next().is_none() {
-            return Ok(());
+    pub(crate) fn add_final(
+        &self,
+        observations: impl Iterator<Item = PyResult<(usize, Bound<'py, PyAny>)>>,
+        infos: &Bound<'py, PyDict>,
+    ) -> PyResult<()> {
+        let (py, mut mask) = (self.py, repeated(false, self.num_envs)?);
+        let array = PyArray1::from_vec(py, collect((0..self.num_envs).map(|_| py.None())).map_err(allocation)?);
+        for observation in observations {
+            let (index, observation) = observation?;
+            array.try_readwrite()?.as_slice_mut()?[index] = observation.unbind();
+            mask[index] = true;
         }
-        let py = self.py;
-        let observations = PyArray1::from_vec(py, collect((0..self.num_envs).map(|_| py.None())).map_err(allocation)?);
-        for (index, state) in envs.final_states() {
-            observations.try_readwrite()?.as_slice_mut()?[index] = envs.env().observe(state).single(py)?.unbind();
-        }
-        let infos = PyDict::new(py);
-        if let Some(transition) = &info.transition {
-            let states = envs.final_states().map(|(index, &state)| (index, state));
-            self.add_transition(&infos, transition, states, false)?;
-        }
-        self.dict.set_item(intern!(py, "final_obs"), observations)?;
-        self.dict.set_item(intern!(py, "_final_obs"), self.mask(envs.final_states().map(|(index, _)| index))?)?;
+        self.dict.set_item(intern!(py, "final_obs"), array)?;
+        self.dict.set_item(intern!(py, "_final_obs"), array_from(py, &mask)?)?;
         self.dict.set_item(intern!(py, "final_info"), infos)?;
-        self.dict.set_item(intern!(py, "_final_info"), self.mask(envs.final_states().map(|(index, _)| index))?)
+        self.dict.set_item(intern!(py, "_final_info"), PyArray1::from_vec(py, mask))
+    }
+
+    /// Adds the infos of these sub-environments after a step: their indices and states.
+    pub(super) fn add_step<E: Env>(
+        &self,
+        dict: &Bound<'py, PyDict>,
+        info: &EnvInfo<E>,
+        states: impl Iterator<Item = (usize, E::State)> + Clone,
+    ) -> PyResult<()> {
+        let Some(transition) = &info.transition else { return Ok(()) };
+        self.add_transition(dict, transition, states, false)
     }
 
     fn add_transition<S>(
@@ -126,7 +124,8 @@ impl<'py> Infos<'py> {
         Ok(())
     }
 
-    fn mask(&self, indices: impl Iterator<Item = usize>) -> PyResult<Bound<'py, PyArray1<bool>>> {
+    /// The mask of the sub-environments with these indices.
+    pub(crate) fn mask(&self, indices: impl Iterator<Item = usize>) -> PyResult<Bound<'py, PyArray1<bool>>> {
         let mut mask = repeated(false, self.num_envs)?;
         indices.for_each(|index| mask[index] = true);
         Ok(PyArray1::from_vec(self.py, mask))
@@ -134,6 +133,6 @@ impl<'py> Infos<'py> {
 }
 
 /// This many copies of a value.
-pub(super) fn repeated<T: Clone>(value: T, count: usize) -> PyResult<Vec<T>> {
+pub(crate) fn repeated<T: Clone>(value: T, count: usize) -> PyResult<Vec<T>> {
     filled(&value, count, &StopFlag::new()).map_err(allocation)
 }

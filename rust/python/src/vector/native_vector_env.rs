@@ -10,7 +10,7 @@ use qtab_core::{Env, VectorEnv};
 
 use super::infos::{EnvInfo, Infos, repeated};
 use super::{BatchAction, BatchObservation, SubEnvRng};
-use crate::convert::array_from;
+use crate::convert::{Seed, array_from};
 use crate::error::allocation;
 
 /// Options for stepping sub-environments.
@@ -25,6 +25,26 @@ pub(crate) struct VectorOptions {
     pub(crate) threads: Option<usize>,
 }
 
+impl VectorOptions {
+    /// The number of threads. They start at each step: with fewer sub-environments than `envs_per_thread` on each, every
+    /// thread would make the step slower.
+    pub(crate) fn threads(&self, envs_per_thread: usize) -> usize {
+        let cores = || std::thread::available_parallelism().map_or(1, usize::from);
+        self.threads.unwrap_or_else(cores).min(self.num_envs / envs_per_thread).max(1)
+    }
+}
+
+/// Refuses a step after the end of an episode without a reset, if nothing else resets the sub-environments.
+pub(crate) fn check_not_over(autoreset: Autoreset, mut done: impl Iterator<Item = bool>) -> PyResult<()> {
+    if autoreset == Autoreset::Disabled
+        && let Some(index) = done.position(|done| done)
+    {
+        let text = "is over: reset it first, with options={'reset_mask': ...}";
+        return Err(PyAssertionError::new_err(format!("the episode of sub-environment {index} {text}")));
+    }
+    Ok(())
+}
+
 /// Observations, rewards, terminations, truncations, infos.
 pub(crate) type VectorStep<'py> =
     (Bound<'py, PyAny>, Bound<'py, PyAny>, Bound<'py, PyAny>, Bound<'py, PyAny>, Bound<'py, PyDict>);
@@ -35,10 +55,24 @@ pub(crate) type EnvSnapshot<'py> = (Bound<'py, PyDict>, u64, bool, Bound<'py, Py
 
 /// Sub-environments of any type.
 pub(crate) trait DynVectorEnv: Send + Sync {
-    fn step<'py>(&mut self, actions: &Bound<'py, PyAny>, rngs: &mut [SubEnvRng]) -> PyResult<VectorStep<'py>>;
+    /// One step of all sub-environments, whose generators were seeded with `seeds`. An error changes nothing.
+    fn step<'py>(
+        &mut self,
+        actions: &Bound<'py, PyAny>,
+        rngs: &mut [SubEnvRng],
+        seeds: &[Seed],
+    ) -> PyResult<VectorStep<'py>>;
 
-    /// Starts an episode in each of these sub-environments. `bounds` limits their initial states.
-    fn reset(&mut self, indices: &[usize], bounds: Option<[f64; 2]>, rngs: &mut [SubEnvRng]);
+    /// Starts an episode in each of these sub-environments. `bounds` limits their initial states. An error changes
+    /// nothing.
+    fn reset(
+        &mut self,
+        py: Python<'_>,
+        indices: &[usize],
+        bounds: Option<[f64; 2]>,
+        rngs: &mut [SubEnvRng],
+        seeds: &[Seed],
+    ) -> PyResult<()>;
 
     /// All observations, and the infos of a reset of these sub-environments.
     fn observe<'py>(&self, py: Python<'py>, indices: &[usize]) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyDict>)>;
@@ -63,10 +97,8 @@ where
     E: Env<State: Send + Sync, Action: BatchAction, Observation: BatchObservation + Sync> + Send + Sync + 'static,
     S: States<E> + Send + Sync + 'static,
 {
-    let VectorOptions { num_envs, max_episode_steps, autoreset, copy, threads } = options;
-    // Threads start at each step: with fewer sub-environments, every thread would make the step slower.
-    let cores = || std::thread::available_parallelism().map_or(1, usize::from);
-    let threads = threads.unwrap_or_else(cores).min(num_envs / info.envs_per_thread);
+    let VectorOptions { num_envs, max_episode_steps, autoreset, copy, .. } = options;
+    let threads = options.threads(info.envs_per_thread);
     let envs = VectorEnv::<E, S>::new(env, num_envs, max_episode_steps, autoreset, threads).map_err(allocation)?;
     let mut observations = with_capacity(num_envs).map_err(allocation)?;
     observations.extend(envs.states().map(|state| envs.env().observe(&state)));
@@ -116,15 +148,15 @@ where
     E: Env<State: Send + Sync, Action: BatchAction, Observation: BatchObservation + Sync> + Send + Sync,
     S: States<E> + Send + Sync,
 {
-    fn step<'py>(&mut self, actions: &Bound<'py, PyAny>, rngs: &mut [SubEnvRng]) -> PyResult<VectorStep<'py>> {
+    fn step<'py>(
+        &mut self,
+        actions: &Bound<'py, PyAny>,
+        rngs: &mut [SubEnvRng],
+        _seeds: &[Seed],
+    ) -> PyResult<VectorStep<'py>> {
         let py = actions.py();
         let Self { envs, info, autoreset, .. } = self;
-        if *autoreset == Autoreset::Disabled
-            && let Some(index) = envs.done().position(|done| done)
-        {
-            let text = "is over: reset it first, with options={'reset_mask': ...}";
-            return Err(PyAssertionError::new_err(format!("the episode of sub-environment {index} {text}")));
-        }
+        check_not_over(*autoreset, envs.done())?;
         let inactive = |index| *autoreset == Autoreset::NextStep && envs.is_done(index);
         E::Action::read(actions, envs.env().num_actions(), &inactive, &mut self.actions[1])?;
         self.actions.swap(0, 1);
@@ -144,8 +176,13 @@ where
         }
 
         let infos = Infos::new(py, self.rewards.len());
-        infos.add_final(envs, info)?;
-        infos.add_step(envs, info)?;
+        if envs.final_states().next().is_some() {
+            let last = PyDict::new(py);
+            infos.add_step(&last, info, envs.final_states().map(|(index, &state)| (index, state)))?;
+            let observed = |(index, state)| Ok((index, envs.env().observe(state).single(py)?));
+            infos.add_final(envs.final_states().map(observed), &last)?;
+        }
+        infos.add_step(&infos.dict, info, envs.states().enumerate())?;
         Ok((
             self.batched_observations(py)?,
             array_from(py, &self.rewards)?.into_any(),
@@ -155,11 +192,19 @@ where
         ))
     }
 
-    fn reset(&mut self, indices: &[usize], bounds: Option<[f64; 2]>, rngs: &mut [SubEnvRng]) {
+    fn reset(
+        &mut self,
+        _py: Python<'_>,
+        indices: &[usize],
+        bounds: Option<[f64; 2]>,
+        rngs: &mut [SubEnvRng],
+        _seeds: &[Seed],
+    ) -> PyResult<()> {
         for &index in indices {
             self.envs.reset(index, bounds, &mut rngs[index]);
         }
         self.envs.observe(&mut self.observations);
+        Ok(())
     }
 
     fn observe<'py>(&self, py: Python<'py>, indices: &[usize]) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyDict>)> {

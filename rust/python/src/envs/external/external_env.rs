@@ -12,12 +12,15 @@ use qtab_env::host::{CallError, Environment};
 use qtab_env::{FLOAT32, FLOAT64, Number};
 
 use super::super::native_env::NativeEnv;
-use super::external_task::{ExternalTask, TaskOptions};
+use super::external_task::{ExternalTask, SharedEnv, TaskOptions};
+use super::external_vector_env::{ExternalVectorEnv, PySpaces};
 use super::observations::{ConvertTo, Converted};
 use crate::convert::Seed;
 use crate::error::invalid;
 use crate::runs::{AnyRecordings, BoxedFactory, RunFactory, boxed_run, check_actions, observed_run, one_step_runs};
+
 use crate::spec::{ActionMasksSpec, BoxFeatures, DiscretizerSpec, FloatType, PredictionSpec, ReadRows, RunSpec};
+use crate::vector::{DynVectorEnv, VectorOptions};
 
 /// An environment of another library, shared by all runs.
 pub(crate) struct ExternalEnv {
@@ -215,10 +218,18 @@ impl ExternalEnv {
 pub(super) struct SharedExternalEnv {
     pub(super) env: Arc<ExternalEnv>,
     pub(super) first: Vec<i64>,
+    /// The spaces, for a vector environment.
+    pub(super) spaces: Option<PySpaces>,
 }
 
 impl NativeEnv for SharedExternalEnv {
     fn runs(&self, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>> {
         self.env.build_runs(&self.first, spec)
+    }
+
+    fn vector_env(&self, py: Python<'_>, options: VectorOptions) -> PyResult<Option<Box<dyn DynVectorEnv>>> {
+        let Some(spaces) = &self.spaces else { return Ok(None) };
+        let envs = ExternalVectorEnv::new(py, SharedEnv(Arc::clone(&self.env)), spaces, options)?;
+        Ok(Some(Box::new(envs)))
     }
 }

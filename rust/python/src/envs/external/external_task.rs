@@ -1,5 +1,6 @@
 //! An environment of another library as a learner's task.
 
+use std::borrow::BorrowMut;
 use std::marker::PhantomData;
 use std::ops::Deref;
 use std::sync::Arc;
@@ -33,19 +34,19 @@ impl Deref for SharedEnv {
     }
 }
 
-/// The environment's generator, from which its functions draw bits.
+/// The environment's generator, or a reference to it, from which its functions draw bits.
 #[derive(Clone)]
-pub(super) struct EnvironmentBits(pub(super) Pcg64);
+pub(super) struct EnvironmentBits<R>(pub(super) R);
 
-impl BitGenerator for EnvironmentBits {
+impl<R: BorrowMut<Pcg64>> BitGenerator for EnvironmentBits<R> {
     #[inline]
     fn next_u64(&mut self) -> u64 {
-        self.0.next_u64()
+        self.0.borrow_mut().next_u64()
     }
 
     #[inline]
     fn next_u32(&mut self) -> u32 {
-        self.0.next_u32()
+        self.0.borrow_mut().next_u32()
     }
 }
 
@@ -69,7 +70,7 @@ pub(super) struct ExternalTask<T, F> {
     episode: Episode<SharedEnv>,
     features: F,
     max_episode_steps: u64,
-    bits: EnvironmentBits,
+    bits: EnvironmentBits<Pcg64>,
     seed: Seed,
     /// The actions available in the last state that is not terminal; `None` if the learner does not use action masks.
     mask: Option<Vec<bool>>,
@@ -204,6 +205,21 @@ impl<T: Number, F: Features<[T]>> ExternalTask<T, F> {
     }
 }
 
+/// Saves the bytes of the state, or reads the saved ones, and returns them.
+pub(super) fn saved_state(
+    episode: &Episode<SharedEnv>,
+    checkpoint: &mut Checkpoint<'_>,
+) -> Result<Vec<u8>, CheckpointError> {
+    let state = episode.state();
+    let mut size = state.len() as u64;
+    size.persist(checkpoint)?;
+    checkpoint.check(size == state.len() as u64, "size of the environment's state")?;
+    let mut bytes = with_capacity(state.len()).map_err(|_| CheckpointError::OutOfMemory)?;
+    bytes.extend_from_slice(state);
+    bytes.as_mut_slice().persist(checkpoint)?;
+    Ok(bytes)
+}
+
 #[cold]
 fn invalid_mask(mask: &[u8]) -> RunError {
     let expected = "the environment must write an action mask of 0 and 1 with at least one 1";
@@ -278,12 +294,7 @@ impl<T: Number, F: Features<[T]>> Task for ExternalTask<T, F> {
         if self.in_python.is_some() && !checkpoint.is_restoring() {
             return Err(CheckpointError::Invalid("state of the environment, which is stepped in Python"));
         }
-        let mut size = self.episode.state().len() as u64;
-        size.persist(checkpoint)?;
-        checkpoint.check(size == self.episode.state().len() as u64, "size of the environment's state")?;
-        let mut bytes = with_capacity(self.episode.state().len()).map_err(|_| CheckpointError::OutOfMemory)?;
-        bytes.extend_from_slice(self.episode.state());
-        bytes.as_mut_slice().persist(checkpoint)?;
+        let bytes = saved_state(&self.episode, checkpoint)?;
         // A failed step may have written an observation. Without `observe` a run is saved, too.
         let _ = if checkpoint.is_restoring() { Ok(()) } else { self.episode.observe() };
         let mut saved = self.numbers().map_err(|_| CheckpointError::OutOfMemory)?;

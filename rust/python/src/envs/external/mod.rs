@@ -4,9 +4,11 @@
 mod capsule;
 mod external_env;
 mod external_task;
+mod external_vector_env;
 mod observations;
 mod py_external_env;
 mod py_external_episode;
+mod sub_env;
 
 pub(crate) use py_external_env::PyExternalEnv;
 pub(crate) use py_external_episode::PyExternalEpisode;

@@ -1,10 +1,13 @@
 //! Features of the observations that an environment writes into a buffer.
 
+use pyo3::prelude::*;
 use qtab_core::Features;
 use qtab_core::features::OutOfBounds;
-use qtab_env::Number;
+use qtab_env::host::Episode;
+use qtab_env::{FLOAT32, FLOAT64, Number};
 
-use crate::convert::DiscreteReader;
+use super::external_task::SharedEnv;
+use crate::convert::{DiscreteReader, array_from};
 
 /// A number of an observation that can be converted to the dtype of a discretizer, as `NumPy`'s `astype` does.
 pub(super) trait ConvertTo<T>: Number {
@@ -37,6 +40,15 @@ impl ConvertTo<i64> for i64 {
     fn convert(self, first: i64) -> i64 {
         self.wrapping_sub(first)
     }
+}
+
+/// The last observation of an episode, as an array of its dtype.
+pub(super) fn observation_array<'py>(py: Python<'py>, episode: &Episode<SharedEnv>) -> PyResult<Bound<'py, PyAny>> {
+    Ok(match episode.environment().observation_type() {
+        FLOAT32 => array_from(py, episode.observation::<f32>())?.into_any(),
+        FLOAT64 => array_from(py, episode.observation::<f64>())?.into_any(),
+        _ => array_from(py, episode.observation::<i64>())?.into_any(),
+    })
 }
 
 /// Observations of at most this many numbers are converted without an allocation.

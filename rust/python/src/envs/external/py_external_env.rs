@@ -12,6 +12,7 @@ use super::super::native_env::{NativeEnv, PyNativeEnv};
 use super::capsule::environment_of;
 use super::external_env::{ExternalEnv, SharedExternalEnv};
 use super::external_task::EnvironmentBits;
+use super::external_vector_env::PySpaces;
 use crate::convert::Seed;
 use crate::rng::environment_rng;
 
@@ -51,10 +52,14 @@ impl PyExternalEnv {
     }
 
     /// The environment as training takes it. `first` are the numbers to subtract from those of an observation, so that
-    /// indices begin at 0; empty for zeros.
-    #[pyo3(signature = (first = Vec::new()))]
-    pub(crate) fn native_env(&self, first: Vec<i64>) -> PyNativeEnv {
-        PyNativeEnv::from(Arc::new(SharedExternalEnv { env: Arc::clone(&self.0), first }) as Arc<dyn NativeEnv>)
+    /// indices begin at 0; empty for zeros. A vector environment needs `spaces`, an object with the attribute
+    /// `first_action`, the action that is number 0, and two methods: `batch(rows)` makes the observations of a vector
+    /// environment, and `single(row)` one observation, from the numbers that the functions of the library write.
+    #[pyo3(signature = (first = Vec::new(), spaces = None))]
+    pub(crate) fn native_env(&self, first: Vec<i64>, spaces: Option<&Bound<'_, PyAny>>) -> PyResult<PyNativeEnv> {
+        let spaces = spaces.map(PySpaces::new).transpose()?;
+        let shared = SharedExternalEnv { env: Arc::clone(&self.0), first, spaces };
+        Ok(PyNativeEnv::from(Arc::new(shared) as Arc<dyn NativeEnv>))
     }
 
     /// The number of bytes of a state.

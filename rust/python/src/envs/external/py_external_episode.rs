@@ -7,10 +7,10 @@ use pyo3::exceptions::{PyIndexError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use qtab_env::host::{CallError, Ending, Episode};
-use qtab_env::{FLOAT32, FLOAT64};
 
 use super::capsule::with_bits_of;
 use super::external_task::SharedEnv;
+use super::observations::observation_array;
 use super::py_external_env::PyExternalEnv;
 use crate::convert::array_of;
 use crate::error::{invalid, out_of_memory};
@@ -49,12 +49,7 @@ impl PyExternalEpisode {
 
     /// The last observation, as an array of its dtype.
     fn observation<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let episode = self.lock()?;
-        Ok(match episode.environment().observation_type() {
-            FLOAT32 => array_of(py, episode.observation::<f32>().iter().copied())?.into_any(),
-            FLOAT64 => array_of(py, episode.observation::<f64>().iter().copied())?.into_any(),
-            _ => array_of(py, episode.observation::<i64>().iter().copied())?.into_any(),
-        })
+        observation_array(py, &*self.lock()?)
     }
 
     /// The last action mask, as int8.

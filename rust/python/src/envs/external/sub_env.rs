@@ -1,0 +1,129 @@
+//! One of several sub-environments of another library.
+
+use pyo3::prelude::*;
+use qtab_core::checkpoint::{Checkpoint, CheckpointError, Persist};
+use qtab_core::memory::{AllocationError, out_of_memory, with_capacity};
+use qtab_core::random::Pcg64;
+use qtab_env::host::{CallError, Ending, Episode, RandomBits};
+
+use super::external_env::FailedCall;
+use super::external_task::{EnvironmentBits, SharedEnv, saved_state};
+use crate::convert::Seed;
+
+/// The episode of a sub-environment, and the results of its last step.
+pub(super) struct SubEnv {
+    pub(super) episode: Episode<SharedEnv>,
+    pub(super) progress: Progress,
+    pub(super) reward: f64,
+    pub(super) terminated: bool,
+    pub(super) truncated: bool,
+    /// The state, the progress and the generator before the present call.
+    before: (Vec<u8>, Progress, Option<Pcg64>),
+    failure: Option<Failure>,
+}
+
+/// How far an episode is.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Progress {
+    /// Whether there is a state: a reset has succeeded.
+    has_state: bool,
+    /// The steps since the reset.
+    pub(super) elapsed: u64,
+    /// Whether the episode has ended and was not reset yet.
+    pub(super) done: bool,
+}
+
+/// A function that failed: the position of the generator before the call, and the action of a step.
+struct Failure {
+    error: CallError,
+    position: (u64, Option<u32>),
+    action: Option<usize>,
+}
+
+impl SubEnv {
+    pub(super) fn new(env: &SharedEnv) -> Result<Self, AllocationError> {
+        let state_size = env.state_size();
+        Ok(Self {
+            episode: Episode::new(env.clone()).map_err(out_of_memory::<u8>(state_size))?,
+            progress: Progress::default(),
+            reward: 0.0,
+            terminated: false,
+            truncated: false,
+            before: (with_capacity(state_size)?, Progress::default(), None),
+            failure: None,
+        })
+    }
+
+    /// Keeps what `undo` restores.
+    pub(super) fn begin_call(&mut self, rng: &Pcg64) {
+        let (state, progress, generator) = &mut self.before;
+        state.clear();
+        state.extend_from_slice(self.episode.state());
+        (*progress, *generator) = (self.progress, Some(rng.clone()));
+    }
+
+    /// Returns to the state, the observation and the generator before the call.
+    pub(super) fn undo(&mut self, rng: &mut Pcg64) {
+        let (state, progress, Some(generator)) = &mut self.before else { return };
+        rng.clone_from(generator);
+        self.progress = *progress;
+        self.failure = None;
+        if progress.has_state {
+            self.episode.set_state(state);
+            // It has written the observation of this state before, and does so again.
+            let _ = self.episode.observe();
+        }
+    }
+
+    /// Begins an episode. The results of the last step stay.
+    pub(super) fn reset(&mut self, rng: &mut Pcg64) {
+        let position = (rng.words_drawn(), rng.buffered_u32());
+        match self.episode.reset(&mut RandomBits::new(&mut EnvironmentBits(rng))) {
+            Ok(()) => self.progress = Progress { has_state: true, elapsed: 0, done: false },
+            Err(error) => self.failure = Some(Failure { error, position, action: None }),
+        }
+    }
+
+    /// Takes a step. The time limit of the library ends no episode whose next state is terminal, `limit` any.
+    pub(super) fn step(&mut self, action: usize, limit: u64, rng: &mut Pcg64) {
+        let position = (rng.words_drawn(), rng.buffered_u32());
+        let library_limit = self.episode.environment().max_episode_steps().unwrap_or(u64::MAX);
+        match self.episode.step(action, &mut RandomBits::new(&mut EnvironmentBits(rng))) {
+            Ok((reward, ending)) => {
+                let elapsed = self.progress.elapsed + 1;
+                let is_cut = ending == Ending::Truncated || ending == Ending::Continues && elapsed >= library_limit;
+                self.reward = reward;
+                self.terminated = ending == Ending::Terminated;
+                self.truncated = is_cut || elapsed >= limit;
+                self.progress.elapsed = elapsed;
+                self.progress.done = self.terminated || self.truncated;
+            }
+            Err(error) => self.failure = Some(Failure { error, position, action: Some(action) }),
+        }
+    }
+
+    /// The error of the call if it failed, for a generator that was seeded with `seed`.
+    pub(super) fn error(&self, py: Python<'_>, seed: &Seed) -> Option<PyErr> {
+        let Failure { error, position: (words_drawn, buffered_u32), action } = self.failure.as_ref()?;
+        let failed = FailedCall {
+            state: action.map(|_| self.episode.state()),
+            words_drawn: *words_drawn,
+            buffered_u32: *buffered_u32,
+            action: *action,
+            seed,
+        };
+        Some(self.episode.shared().0.error(py, *error, &failed))
+    }
+
+    /// Saves the episode, or restores the saved one with its observation.
+    pub(super) fn persist(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        let Progress { has_state, elapsed, done } = &mut self.progress;
+        (has_state, elapsed, done).persist(checkpoint)?;
+        let state = saved_state(&self.episode, checkpoint)?;
+        if checkpoint.is_restoring() && self.progress.has_state {
+            self.episode.set_state(&state);
+            self.episode.observe().map_err(|_| CheckpointError::Invalid("state of the environment"))?;
+        }
+        Ok(())
+    }
+}

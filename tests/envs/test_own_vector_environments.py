@@ -1,0 +1,379 @@
+"""Environments of one's own in a vector environment: stepped in Rust, equal to SyncVectorEnv over the same classes."""
+
+import copy
+import logging
+import pickle
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import pytest
+from gymnasium import spaces
+from gymnasium.vector import AutoresetMode, SyncVectorEnv
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import qtab
+from support import own_environments
+from support.board import Board, board_library
+from support.libraries import needs_compiler
+from support.vector import MODES, assert_equal, position
+
+pytest.importorskip("numba")
+
+NAMES = ["Elevator", "Gambler", "Inventory", "MineField", "NoisyPendulum", "Queue", "Thermostat", "TicTacToe"]
+"""Observations of every kind of space, action masks, and actions that begin at other numbers than 0."""
+
+
+@pytest.fixture(scope="module", autouse=True)
+def numba_compiles() -> Iterator[None]:
+    import numba
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("NUMBA_DISABLE_JIT", "0")
+        patch.setattr(numba.config, "DISABLE_JIT", 0)
+        yield
+
+
+@pytest.fixture(scope="module", autouse=True)
+def registered() -> Iterator[None]:
+    ids = {**{name: getattr(own_environments, name) for name in NAMES}, "Countdown": Countdown, "Wide": Wide}
+    for name, cls in ids.items():
+        gym.register(f"QtabOwn/{name}-v0", cls, vector_entry_point=f"qtab.envs.make_vector:QtabOwn/{name}-v0")
+    yield
+    for name in ids:
+        del gym.registry[f"QtabOwn/{name}-v0"]
+
+
+class Countdown(qtab.FunctionalEnv):
+    """Counts down from a random number to 0. The action is subtracted; 3 fails, and so do resets that draw a number."""
+
+    observation_space = spaces.Box(-10.0, 10.0, (1,))
+    action_space = spaces.Discrete(4)
+
+    def __init__(self, unlucky: float = -1.0, render_mode: str | None = None) -> None:
+        self.unlucky = unlucky
+
+    def initial_state(self, rng: np.random.Generator) -> Any:
+        chance = rng.random()
+        if chance == self.unlucky:
+            raise ValueError("no first state")
+        return 3 + int(6 * chance)
+
+    def transition(self, state: Any, action: int, rng: np.random.Generator) -> Any:
+        if action == 3:
+            raise KeyError("the third action")
+        following = state - action - (1 if rng.random() < 0.5 else 0)
+        return following, float(state), following <= 0
+
+    def observe(self, state: Any) -> Any:
+        return float(state)
+
+
+class Wide(qtab.FunctionalEnv):
+    """Its actions are vectors, which cannot be compiled."""
+
+    observation_space = spaces.Discrete(4)
+    action_space = spaces.MultiDiscrete([2, 3])
+
+    def initial_state(self, rng: np.random.Generator) -> Any:
+        return 0
+
+    def transition(self, state: Any, action: Any, rng: np.random.Generator) -> Any:
+        following = (state + int(action[0]) + int(rng.integers(0, 2))) % 4
+        return following, float(action[1]), following == 3
+
+    def observe(self, state: Any) -> Any:
+        return state
+
+
+def make(name: str, num_envs: int, mode: AutoresetMode = AutoresetMode.NEXT_STEP, **kwargs: Any) -> tuple[Any, Any]:
+    """Returns ours, and Gymnasium's SyncVectorEnv of the same environments."""
+    own = {key: kwargs.pop(key) for key in ("threads", "copy") if key in kwargs}
+    ours = qtab.RustVectorEnv(name, num_envs, autoreset_mode=mode, **own, **kwargs)
+    return ours, SyncVectorEnv([lambda: gym.make(name, **kwargs)] * num_envs, autoreset_mode=mode)
+
+
+def available(space: Any, infos: dict[str, Any], rng: np.random.Generator, num_envs: int) -> Any:
+    """Returns a random available action for each sub-environment."""
+    masks = infos.get("action_mask", np.ones((num_envs, space.n), np.int8))
+    return np.array([int(space.start) + int(rng.choice(np.flatnonzero(row if row.any() else [1]))) for row in masks])
+
+
+def in_lockstep(ours: Any, theirs: Any, steps: int, seed: int) -> None:
+    rng, num_envs = np.random.default_rng(seed), ours.num_envs
+    result = theirs.reset(seed=seed)
+    assert_equal(ours.reset(seed=seed), result)
+    for _ in range(steps):
+        actions = available(theirs.single_action_space, result[-1], rng, num_envs)
+        result = theirs.step(actions)
+        assert_equal(ours.step(actions), result)
+        over = result[2] | result[3]
+        if ours.autoreset_mode is AutoresetMode.DISABLED and over.any():
+            masks = result[-1].get("action_mask")
+            again = theirs.reset(options={"reset_mask": over.copy()})
+            assert_equal(ours.reset(options={"reset_mask": over.copy()}), again)
+            if masks is not None:
+                masks[over] = again[-1]["action_mask"][over]
+
+
+def same_streams(ours: Any, theirs: Any) -> None:
+    assert ours.np_random_seed == theirs.np_random_seed
+    for one, other in zip(ours.np_random, theirs.np_random, strict=True):
+        assert position(one) == position(other)
+
+
+@pytest.mark.parametrize("name", NAMES)
+@settings(max_examples=12, deadline=None)
+@given(
+    num_envs=st.integers(1, 9),
+    mode=st.sampled_from(MODES),
+    limit=st.integers(1, 12) | st.none(),
+    threads=st.none() | st.integers(1, 3),
+    copied=st.booleans(),
+    seed=st.integers(0, 2**40),
+)
+def test_compiled_environments_equal_sync_vector_env(
+    name: str, num_envs: int, mode: AutoresetMode, limit: int | None, threads: int | None, copied: bool, seed: int
+) -> None:
+    own = {"threads": threads, "copy": copied, "max_episode_steps": limit}
+    ours, theirs = make(f"QtabOwn/{name}-v0", num_envs, mode, **own)
+    assert ours.is_native
+    in_lockstep(ours, theirs, 25, seed)
+    assert ours.is_native
+    same_streams(ours, theirs)
+    in_lockstep(ours, theirs, 5, seed + 1)
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_python_continues_the_episodes(mode: AutoresetMode) -> None:
+    ours, theirs = make("QtabOwn/Countdown-v0", 5, mode, max_episode_steps=6)
+    actions = np.random.default_rng(0).integers(0, 2, (40, 5))
+    assert_equal(ours.reset(seed=1), theirs.reset(seed=1))
+    for index, row in enumerate(actions):
+        assert_equal(ours.step(row), result := theirs.step(row))
+        if index == 17:
+            assert ours.is_native
+            assert [env.unwrapped.state for env in ours.envs] == [env.unwrapped.state for env in theirs.envs]
+            assert not ours.is_native
+        over = result[2] | result[3]
+        if mode is AutoresetMode.DISABLED and over.any():
+            options = {"reset_mask": over.copy()}
+            assert_equal(ours.reset(options=dict(options)), theirs.reset(options=dict(options)))
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("copied", [copy.deepcopy, lambda env: pickle.loads(pickle.dumps(env))])  # noqa: S301
+def test_copies_continue_with_the_same_numbers(mode: AutoresetMode, copied: Any) -> None:
+    ours = make("QtabOwn/Gambler-v0", 4, mode, max_episode_steps=9)[0]
+    untouched = copied(ours)
+    assert_equal(untouched.reset(seed=3), ours.reset(seed=3))
+    for _ in range(8):
+        ours.reset(seed=3)
+        ours.step(np.array([1, 1, 2, 1]))
+        again = copied(ours)
+        assert again.is_native
+        assert_equal(again.step(np.array([1, 1, 1, 2])), ours.step(np.array([1, 1, 1, 2])))
+        assert again.np_random_seed == ours.np_random_seed
+
+
+@pytest.mark.parametrize("threads", [1, 3])
+def test_the_error_of_a_step_is_that_of_python_and_changes_nothing(threads: int) -> None:
+    ours, theirs = make("QtabOwn/Countdown-v0", 6, threads=threads)
+    ours.reset(seed=4)
+    ours.step([0, 1, 0, 1, 0, 1])
+    untouched = copy.deepcopy(ours)
+    with pytest.raises(KeyError, match="the third action") as raised:
+        ours.step([0, 1, 1, 3, 0, 3])
+    assert any("transition" in str(entry) for entry in raised.traceback)
+    assert ours.is_native
+    for _ in range(5):
+        assert_equal(ours.step([1, 0, 2, 1, 0, 1]), untouched.step([1, 0, 2, 1, 0, 1]))
+    theirs.reset(seed=4)
+    with pytest.raises(KeyError, match="the third action"):
+        theirs.step([0, 1, 1, 3, 0, 3])
+
+
+@pytest.mark.parametrize("mode", [AutoresetMode.SAME_STEP, AutoresetMode.NEXT_STEP])
+def test_the_error_of_a_reset_is_that_of_python_and_changes_nothing(mode: AutoresetMode) -> None:
+    first, _, third = np.random.default_rng(8).random(3)
+    ours, _ = make("QtabOwn/Countdown-v0", 3, mode, unlucky=float(first))
+    ours.reset(seed=0)
+    ours.step([1, 0, 1])
+    before = ours.checkpoint()
+    with pytest.raises(ValueError, match="no first state"):
+        ours.reset(seed=[5, None, 8])
+    assert (ours.np_random_seed, ours.checkpoint()) == ((0, 1, 2), before)
+    assert ours.is_native
+
+    # The reset after an episode, which draws the third number of the generator.
+    ours, theirs = make("QtabOwn/Countdown-v0", 3, mode, unlucky=float(third), max_episode_steps=1)
+    assert_equal(ours.reset(seed=[0, 8, 1]), theirs.reset(seed=[0, 8, 1]))
+    if mode is AutoresetMode.NEXT_STEP:
+        assert_equal(ours.step([1, 1, 1]), theirs.step([1, 1, 1]))
+    before = ours.checkpoint()
+    for _ in range(2):
+        with pytest.raises(ValueError, match="no first state"):
+            ours.step([1, 1, 1])
+        assert ours.checkpoint() == before
+    assert ours.is_native
+
+
+def test_a_state_of_the_options_and_the_number_of_an_action() -> None:
+    ours, theirs = make("QtabOwn/Countdown-v0", 2)
+    assert_equal(ours.reset(seed=0), theirs.reset(seed=0))
+    assert_equal(ours.reset(options={"other": 1}), theirs.reset(options={"other": 1}))
+    with pytest.raises(AssertionError, match=r"sub-environment 1: 4 \(<class 'int'>\) invalid"):
+        ours.step([0, 4])
+    with pytest.raises(ValueError, match=r"actions must have shape \(2,\), got 3 of them"):
+        ours.step([0, 1, 2])
+    assert ours.is_native
+    assert_equal(ours.reset(options={"state": 5}), theirs.reset(options={"state": 5}))
+    assert not ours.is_native
+    gambler, _ = make("QtabOwn/Gambler-v0", 1)
+    gambler.reset(seed=0)
+    for action in (0, 51, -1):
+        with pytest.raises(AssertionError, match=f"sub-environment 0: {action} "):
+            gambler.step([action])
+        with pytest.raises(AssertionError, match=r"sub-environment 0: .* invalid"):
+            gambler.step(np.array([action]))
+
+
+def test_stable_baselines3_gets_what_its_own_vector_environment_gives() -> None:
+    vec_env = pytest.importorskip("stable_baselines3.common.vec_env")
+    name = "QtabOwn/Countdown-v0"
+    ours = qtab.sb3.VecEnv(name, 3, seed=1, max_episode_steps=4)
+    theirs = vec_env.DummyVecEnv([lambda: gym.make(name, max_episode_steps=4)] * 3)
+    theirs.seed(1)
+    assert np.array_equal(ours.reset(), theirs.reset())
+    for row in np.random.default_rng(0).integers(0, 3, (40, 3)):
+        one, other = ours.step(row), theirs.step(row)
+        assert [part.tobytes() for part in one[:3]] == [part.tobytes() for part in other[:3]]
+        assert repr(one[3]) == repr(other[3])
+    assert ours.venv.is_native
+
+
+def test_make_vec_steps_in_rust() -> None:
+    made: Any = gym.make_vec("QtabOwn/Countdown-v0", 3, autoreset_mode="SameStep")
+    assert isinstance(made, qtab.RustVectorEnv)
+    assert made.is_native
+    assert made.autoreset_mode is AutoresetMode.SAME_STEP
+
+
+def test_what_cannot_be_compiled_is_stepped_in_python(caplog: pytest.LogCaptureFixture) -> None:
+    with caplog.at_level(logging.WARNING, "qtab"):
+        ours, theirs = make("QtabOwn/Wide-v0", 4, max_episode_steps=5)
+    assert "QtabOwn/Wide-v0 is stepped in Python" in caplog.text
+    assert "the action space is not Discrete" in caplog.text
+    assert not ours.is_native
+    assert_equal(ours.reset(seed=2), theirs.reset(seed=2))
+    for row in np.random.default_rng(1).integers(0, 2, (30, 4, 2)):
+        assert_equal(ours.step(row), theirs.step(row))
+    again = copy.deepcopy(ours)
+    assert_equal(again.step(np.zeros((4, 2), int)), ours.step(np.zeros((4, 2), int)))
+
+
+def test_without_numba_python_steps(caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("NUMBA_DISABLE_JIT", "1")
+    ours, theirs = make("QtabOwn/Countdown-v0", 2)
+    assert not ours.is_native
+    assert "is stepped in Python, which is much slower than Rust: NUMBA_DISABLE_JIT is set" in caplog.text
+    assert_equal(ours.reset(seed=0), theirs.reset(seed=0))
+    for action in (0, 1, 2, 2, 1):
+        assert_equal(ours.step([action] * 2), theirs.step([action] * 2))
+
+
+def test_frames_of_a_class_are_drawn_in_python() -> None:
+    class Drawn(Countdown):
+        metadata = {"render_modes": ["ansi"], "render_fps": 4}  # noqa: RUF012 - Gymnasium's attribute
+
+        def __init__(self, render_mode: str | None = None) -> None:
+            super().__init__()
+            self.render_mode = render_mode
+
+        def render(self, state: Any) -> Any:  # type: ignore[override]
+            return f"at {state}"
+
+    gym.register("QtabOwn/Drawn-v0", lambda **given: Drawn(**given))
+    try:
+        ours = qtab.RustVectorEnv("QtabOwn/Drawn-v0", 2, render_mode="ansi")
+        ours.reset(seed=0)
+        assert not ours.is_native
+        assert all(frame.startswith("at ") for frame in ours.render())
+    finally:
+        del gym.registry["QtabOwn/Drawn-v0"]
+
+
+class NativeBoard(qtab.NativeEnv):
+    """The board of the tests in C."""
+
+    file: Path
+
+    def __init__(self) -> None:
+        super().__init__(self.file)
+
+
+@pytest.fixture(scope="module")
+def board(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    NativeBoard.file = board_library(tmp_path_factory.mktemp("board"))
+    gym.register("QtabOwn/Board-v0", lambda **_: NativeBoard())
+    yield "QtabOwn/Board-v0"
+    del gym.registry["QtabOwn/Board-v0"]
+
+
+@needs_compiler
+@settings(max_examples=12, deadline=None)
+@given(
+    num_envs=st.integers(1, 5), mode=st.sampled_from(MODES), limit=st.integers(1, 20) | st.none(), seed=st.integers(0)
+)
+def test_a_library_equals_sync_vector_env(
+    board: str, num_envs: int, mode: AutoresetMode, limit: int | None, seed: int
+) -> None:
+    ours, theirs = make(board, num_envs, mode, max_episode_steps=limit)
+    assert ours.is_native
+    in_lockstep(ours, theirs, 40, seed)
+    same_streams(ours, theirs)
+
+
+@needs_compiler
+def test_a_library_continues_in_python_and_in_copies(board: str) -> None:
+    ours, theirs = make(board, 3)
+    in_lockstep(ours, theirs, 7, 5)
+    again = copy.deepcopy(ours)
+    assert ours.call("_elapsed") == theirs.call("_elapsed")
+    for _ in range(30):
+        expected = theirs.step([2, 2, 2])
+        assert_equal(ours.step([2, 2, 2]), expected)
+        assert_equal(again.step([2, 2, 2]), expected)
+    assert again.is_native
+
+
+@needs_compiler
+def test_a_library_that_fails_and_a_class_with_a_capsule(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(NativeBoard, "file", board_library(tmp_path, REWARD=2), raising=False)
+    gym.register("QtabOwn/Failing-v0", lambda **_: NativeBoard())
+    gym.register("QtabOwn/Capsule-v0", lambda **_: CapsuleBoard())
+    try:
+        ours = qtab.RustVectorEnv("QtabOwn/Failing-v0", 2)
+        places, _ = ours.reset(seed=0)
+        for _ in range(int(places[:, 0].min()) + 2):  # to the edge of the board
+            ours.step([0, 0])
+        with pytest.raises(RuntimeError, match="it returned QTAB_FAILED for action 0"):
+            ours.step([0, 0])
+        other = qtab.RustVectorEnv("QtabOwn/Capsule-v0", 2)
+        assert not other.is_native
+        assert "the infos of its class are known to Python only" in caplog.text
+        assert other.reset(seed=0)[0].shape == (2, 2)
+    finally:
+        del gym.registry["QtabOwn/Failing-v0"], gym.registry["QtabOwn/Capsule-v0"]
+
+
+class CapsuleBoard(Board):
+    """A class that gives Rust its functions."""
+
+    def __qtab_env__(self) -> Any:
+        raise AssertionError("a vector environment does not use it")
