@@ -81,6 +81,12 @@ impl ExternalEnv {
         }))
     }
 
+    /// The error of a call, for an environment whose failed calls are not continued in Python.
+    pub(super) fn error(&self, py: Python<'_>, error: CallError, failed: &FailedCall<'_>) -> PyErr {
+        let repeated = self.repeat(py, error, failed);
+        repeated.err().unwrap_or_else(|| PyRuntimeError::new_err("the environment failed in compiled code only"))
+    }
+
     /// Runs with the features of the spec's discretizer, for observations of type `T`.
     fn runs_with<T, F>(self: &Arc<Self>, features: F, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>>
     where

@@ -6,7 +6,7 @@ use qtab_core::memory::{AllocationError, out_of_memory, with_capacity};
 use qtab_core::random::Pcg64;
 use qtab_env::host::{CallError, Ending, Episode, RandomBits};
 
-use super::external_env::FailedCall;
+use super::external_env::{FailedCall, Position};
 use super::external_task::{EnvironmentBits, SharedEnv, saved_state};
 use crate::convert::Seed;
 
@@ -36,7 +36,7 @@ pub(super) struct Progress {
 /// A function that failed: the position of the generator before the call, and the action of a step.
 struct Failure {
     error: CallError,
-    position: (u64, Option<u32>),
+    position: Position,
     action: Option<usize>,
 }
 
@@ -104,14 +104,9 @@ impl SubEnv {
 
     /// The error of the call if it failed, for a generator that was seeded with `seed`.
     pub(super) fn error(&self, py: Python<'_>, seed: &Seed) -> Option<PyErr> {
-        let Failure { error, position: (words_drawn, buffered_u32), action } = self.failure.as_ref()?;
-        let failed = FailedCall {
-            state: action.map(|_| self.episode.state()),
-            words_drawn: *words_drawn,
-            buffered_u32: *buffered_u32,
-            action: *action,
-            seed,
-        };
+        let Failure { error, position, action } = self.failure.as_ref()?;
+        let state = action.map(|_| self.episode.state());
+        let failed = FailedCall { state, before: *position, action: *action, seed, played: None };
         Some(self.episode.shared().0.error(py, *error, &failed))
     }
 
