@@ -1,4 +1,4 @@
-"""The seconds that a call of ``qtab.train`` takes in a new process, before and after a class was compiled."""
+"""The processor time of a call of ``qtab.train`` in a new process, before and after a class was compiled."""
 
 import shutil
 import subprocess
@@ -24,9 +24,9 @@ import sys, time
 import qtab, own_cars
 env = getattr(own_cars, sys.argv[1])() if sys.argv[1:] else "MountainCar-v0"
 backend = "numba" if sys.argv[1:] else "rust"
-started = time.perf_counter()
+started = time.process_time()  # other programs do not change it
 qtab.train(env, seed=0, episodes=1, backend=backend, **own_cars.SETTINGS)
-print(time.perf_counter() - started)
+print(time.process_time() - started)
 """
 
 
@@ -36,7 +36,7 @@ class StartTable:
 
     title: str
     benchmarks: Mapping[str, Callable[[Path], float]]
-    """Functions from the folder of a round to seconds, by name."""
+    """Functions from the folder of a round to seconds of processor time, by name."""
 
     def measured(self, seconds: float, rounds: int | None) -> str:
         """Runs the programs for about ``seconds``, or in ``rounds`` rounds, and returns the table of the minima."""
@@ -48,7 +48,7 @@ class StartTable:
                 found.append([benchmark(Path(folder)) for benchmark in self.benchmarks.values()])
         least = map(min, zip(*found, strict=True))
         rows = [line(name, number(row)) for name, row in zip(self.benchmarks, least, strict=True)]
-        return "\n".join([line(self.title, "seconds"), *rows])
+        return "\n".join([line(self.title, "CPU seconds"), *rows])
 
 
 def starting() -> StartTable:

@@ -290,7 +290,7 @@ def test_wrappers_are_as_for_functional_environments(caplog: pytest.LogCaptureFi
 
 @pytest.mark.usefixtures("compiles")
 def test_a_registered_id() -> None:
-    gym.register("AutoCliff-v0", lambda: grids.CliffEnv(), max_episode_steps=30)
+    gym.register("AutoCliff-v0", lambda **_: grids.CliffEnv(), max_episode_steps=30)
     try:
         run = qtab.train("AutoCliff-v0", **{**SHORT, "max_episode_steps": None})
         assert run.config.backend == "numba"

@@ -135,7 +135,7 @@ def test_copies_train_alike(copied: Any, table: qtab.TabulatedEnv, run: qtab.Run
 
 
 def test_an_environment_made_from_its_id_has_the_same_table(table: qtab.TabulatedEnv) -> None:
-    gym.register("Ferry-v0", entry_point=Ferry, max_episode_steps=20)
+    gym.register("Ferry-v0", entry_point=lambda **kwargs: Ferry(**kwargs), max_episode_steps=20)
     try:
         made = qtab.tabulate(gym.make("Ferry-v0"))
     finally:
