@@ -29,7 +29,7 @@ BOARD = [0, 0, 0]
 SCORES = {"steps": 0}
 COUNT = 0
 LOGGER = logging.getLogger("test_side_effects")
-OUTPUT = sys.__stdout__
+OUTPUT: Any = sys.__stdout__
 LOCK = threading.Lock()
 
 
