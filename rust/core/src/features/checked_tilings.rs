@@ -34,7 +34,7 @@ impl<T: Float, const M: usize> TileCoding<T, M> {
             BuildError::check((1..u32::MAX).contains(&tiles), "tiles", "numbers from 1 to 2**32 - 2", got)?;
         }
         let rows = tiles.iter().try_fold(u64::from(tilings), |rows, &tiles| rows.checked_mul(u64::from(tiles) + 1));
-        let fits = rows.is_some_and(|rows| rows <= u64::from(u32::MAX));
+        let fits = rows.is_some_and(|rows| u32::try_from(rows).is_ok());
         let expected = "few enough for a table of less than 2**32 rows";
         BuildError::check(fits, "tiles", expected, format_args!("{tiles:?}"))?;
         check_bounds(low.iter().copied().zip(high.iter().copied()))?;

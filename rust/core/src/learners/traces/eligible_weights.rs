@@ -17,15 +17,15 @@ impl Traces {
     pub(super) fn grow(&mut self, additional: usize, storage: &mut Vec<f64>) {
         let places = self.count + additional;
         // There are as many values as traces, because passes work in whole blocks.
-        if places > self.traces.len() || self.base + self.traces.len() > storage.len() {
+        if places > self.z.len() || self.base + self.z.len() > storage.len() {
             self.grow_to(places.next_multiple_of(BLOCK), storage);
         }
     }
 
     #[cold]
     fn grow_to(&mut self, places: usize, storage: &mut Vec<f64>) {
-        let places = places.max(self.traces.len());
-        self.traces.resize(places, 0.0);
+        let places = places.max(self.z.len());
+        self.z.resize(places, 0.0);
         self.weights.resize(places, 0);
         storage.resize(self.base + places, 0.0);
     }
@@ -70,11 +70,11 @@ impl Traces {
     /// Gives a weight a trace. The values must be in the table, and the weight must not be eligible.
     pub(super) fn insert(&mut self, weight: u32, trace: f64) {
         let place = self.count;
-        if place == self.traces.len() {
-            self.traces.resize(place + BLOCK, 0.0);
+        if place == self.z.len() {
+            self.z.resize(place + BLOCK, 0.0);
             self.weights.resize(place + BLOCK, 0);
         }
-        self.traces[place] = trace;
+        self.z[place] = trace;
         self.weights[place] = weight;
         self.slots[weight as usize] = (self.base + place) as u32;
         self.count += 1;
@@ -96,8 +96,8 @@ impl Traces {
         let (weight, moving) = (self.weights[place], self.weights[last]);
         storage[weight as usize] = storage[len + place];
         storage[len + place] = storage[len + last];
-        self.traces[place] = self.traces[last];
-        self.traces[last] = 0.0;
+        self.z[place] = self.z[last];
+        self.z[last] = 0.0;
         self.weights[place] = moving;
         self.slots[moving as usize] = (len + place) as u32;
         // The order matters, because the two weights can be the same.
@@ -132,7 +132,7 @@ impl Traces {
 
     /// Frees all places.
     fn empty(&mut self) {
-        self.traces[..self.count].fill(0.0);
+        self.z[..self.count].fill(0.0);
         self.count = 0;
         self.moved = false;
         self.smallest = f64::INFINITY;
@@ -145,7 +145,7 @@ impl Traces {
 impl PartialEq for Traces {
     fn eq(&self, other: &Self) -> bool {
         let parts = |traces: &Self| (traces.num_active(), traces.cutoff, traces.moved, traces.slots.len());
-        let mut traces = self.weights.iter().zip(&*self.traces).take(self.count);
+        let mut traces = self.weights.iter().zip(&*self.z).take(self.count);
         parts(self) == parts(other)
             && traces.all(|(&weight, &trace)| trace == 0.0 || other.get(weight as usize) == trace)
     }

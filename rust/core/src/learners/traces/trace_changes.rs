@@ -22,7 +22,7 @@ impl Traces {
         // Local variables, because fields of `self` and `table` would be loaded again for each weight.
         let base = self.base;
         let slots = self.slots.as_mut_slice();
-        let traces = &mut *self.traces;
+        let traces = &mut *self.z;
         let places = &mut self.weights[..traces.len()];
         let (storage, mut count) = (table.storage_mut().as_mut_slice(), self.count);
         let (mut sum, mut smallest) = (None, self.smallest);
@@ -54,8 +54,8 @@ impl Traces {
         // Local variables, as in `update`. They have 32 bits, so that no sum of them overflows and the compiler knows
         // that the value at a place with a trace is in the storage. `update` would be slower this way, because the next
         // pass waits for it.
-        let (base, places) = (self.base as u32, self.traces.len() as u32);
-        let (slots, traces) = (self.slots.as_mut_slice(), &mut self.traces[..places as usize]);
+        let (base, places) = (self.base as u32, self.z.len() as u32);
+        let (slots, traces) = (self.slots.as_mut_slice(), &mut self.z[..places as usize]);
         let place_weights = &mut self.weights[..places as usize];
         let storage = &mut table.storage_mut()[..base as usize + places as usize];
         let mut count = self.count as u32;

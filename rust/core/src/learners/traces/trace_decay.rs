@@ -18,7 +18,7 @@ impl Traces {
     /// Adds to each eligible weight a function of its index and its trace.
     fn apply_each(&mut self, table: &mut QTable, change: impl Fn(usize, f64) -> f64) {
         let values = &mut table.storage_mut()[self.base..];
-        let traces = self.weights.iter().zip(&*self.traces).take(self.count);
+        let traces = self.weights.iter().zip(&*self.z).take(self.count);
         for (value, (&weight, &trace)) in values.iter_mut().zip(traces) {
             if trace != 0.0 {
                 *value += change(weight as usize, trace);
@@ -58,7 +58,7 @@ impl Traces {
         let len = self.count.next_multiple_of(BLOCK);
         let values = &mut table.storage_mut()[self.base..][..len];
         let cutoff = (self.smallest == 0.0).then_some(self.cutoff);
-        let traces = &mut self.traces[..len];
+        let traces = &mut self.z[..len];
         let level = if len < LONG_PASS { self.level } else { self.long_pass_level };
         level.run(&mut TracePass::<APPLIES, DECAYS> { values, traces, step, factor, cutoff });
     }

@@ -40,7 +40,7 @@ impl SimdCode for ZeroRemoval<'_> {
         let Self { weights, storage } = self;
         for first in (0..weights.count).step_by(GROUP).rev() {
             let in_use = (weights.count - first).min(GROUP);
-            let mut places = zeros(simd, &weights.traces[first..]) & (u64::MAX >> (GROUP - in_use));
+            let mut places = zeros(simd, &weights.z[first..]) & (u64::MAX >> (GROUP - in_use));
             while places != 0 {
                 let place = places.ilog2();
                 places ^= 1 << place;

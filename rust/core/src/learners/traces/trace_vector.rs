@@ -59,8 +59,8 @@ impl Default for TraceOptions {
 pub struct Traces {
     /// The number of places in use. The first places are used.
     pub(super) count: usize,
-    /// The trace at each place, 0 at unused places.
-    pub(super) traces: AlignedVec,
+    /// The trace z at each place, 0 at unused places.
+    pub(super) z: AlignedVec,
     /// A lower bound on the magnitudes of the traces; 0 if a trace may be 0.
     pub(super) smallest: f64,
     /// Traces whose magnitudes fall to this value become 0.
@@ -100,7 +100,7 @@ impl Traces {
         })?;
         Ok(Self {
             count: 0,
-            traces: AlignedVec::with_capacity(places)?,
+            z: AlignedVec::with_capacity(places)?,
             smallest: f64::INFINITY,
             cutoff,
             remove_zeros_at: 0,
@@ -136,7 +136,7 @@ impl Traces {
 
     /// The number of active traces.
     pub(super) fn num_active(&self) -> usize {
-        self.traces[..self.count].iter().filter(|&&trace| trace != 0.0).count()
+        self.z[..self.count].iter().filter(|&&trace| trace != 0.0).count()
     }
 
     /// Whether no trace is active.
@@ -152,7 +152,7 @@ impl Traces {
         // No branch, because it is hard to predict which weights are eligible.
         let eligible = slot >= len;
         let place = select_unpredictable(eligible, slot.wrapping_sub(len), 0);
-        select(eligible, self.traces.get(place).copied().unwrap_or(0.0), 0.0)
+        select(eligible, self.z.get(place).copied().unwrap_or(0.0), 0.0)
     }
 
     /// The sum of the traces of a state-action pair, from left to right.
