@@ -46,7 +46,9 @@ def compiled_if_worthwhile(
         not_in_rust: The reason why Rust does not step it without compilation.
     """
     reason = f"{not_in_rust}; {not_in_rust.remedy}" if not_in_rust.remedy else str(not_in_rust)
-    if has_capsule(env) or is_of_library(type(env.unwrapped)):
+    cls = type(env.unwrapped)
+    of_this_package = any(base.__module__.partition(".")[0] == "qtab" for base in cls.__mro__)  # as of a TabularEnv
+    if has_capsule(env) or is_of_library(cls) or of_this_package:
         return None, reason
     from qtab.compilation.functional import is_installed
 
