@@ -143,6 +143,13 @@ def test_an_environment_made_from_its_id_has_the_same_table(table: qtab.Tabulate
     assert (made.P, made.states, made.max_episode_steps) == (table.P, table.states, 20)
 
 
+def test_a_table_whose_class_was_copied_is_stepped_in_rust() -> None:
+    for env in (ferry(), qtab.TabularEnv(ferry().P, ferry().initial_state_distrib)):
+        copy.deepcopy(env)
+    assert "__slotnames__" in vars(qtab.TabulatedEnv)
+    assert qtab.train(ferry(), episodes=2, seed=0).config.backend == "rust"
+
+
 def test_a_registered_table_trains_by_its_id_and_steps_in_vectors(run: qtab.Run) -> None:
     gym.register("TabulatedFerry-v0", entry_point=lambda **_: ferry(), max_episode_steps=20)
     try:

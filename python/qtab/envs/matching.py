@@ -19,6 +19,7 @@ _NOT_STEPPING = {
     *("__init__", "__repr__", "__str__", "metadata", "render", "render_mode", "close"),
     *("__module__", "__doc__", "__dict__", "__weakref__", "__annotations__", "__parameters__", "__orig_bases__"),
     *("__firstlineno__", "__static_attributes__", "__annotate_func__", "__annotations_cache__"),
+    "__slotnames__",  # Python adds it when an object of the class is copied or pickled
 }
 
 # The attributes of wrappers besides their arguments: a reference, a cache, and whether one was closed.
