@@ -1,18 +1,9 @@
 """Environments whose methods may have effects outside of them are refused before anything of them is run."""
 
 import inspect
-import logging
 import os
-import random
-import socket
-import subprocess
-import sys
-import threading
-import time
-import warnings
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import gymnasium as gym
 import numpy as np
@@ -22,270 +13,8 @@ import qtab
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.twins.class_twin import restored, twin_of
 from qtab.compilation.twins.side_effects import refuse_effects
-
-RAN: list[str] = []
-"""What the methods of the classes below have run; a class that is refused leaves it as it is."""
-BOARD = [0, 0, 0]
-SCORES = {"steps": 0}
-COUNT = 0
-LOGGER = logging.getLogger("test_side_effects")
-OUTPUT: Any = sys.__stdout__
-LOCK = threading.Lock()
-
-
-class Quiet(gym.Env):
-    """A walk without effects, which is compiled."""
-
-    observation_space = gym.spaces.Discrete(10)
-    action_space = gym.spaces.Discrete(2)
-    shared = np.zeros(3)
-
-    def __init__(self) -> None:
-        self.window: Any = None
-        self.output = OUTPUT
-        self.render_mode = None
-
-    def reset(self, *, seed=None, options=None):
-        super().reset(seed=seed)
-        self.cell = 0
-        self.effect()
-        return self.cell, {}
-
-    def step(self, action):
-        self.cell = min(max(self.cell + 2 * int(action) - 1, 0), 9)
-        return self.cell, float(self.cell == 9), self.cell == 9, False, {}
-
-    def effect(self):
-        pass
-
-
-class Window:
-    def update(self):
-        RAN.append("window")
-
-    def pop(self):
-        RAN.append("window")
-
-
-class Prints(Quiet):
-    def effect(self):
-        print("reset")  # noqa: T201 # here
-
-
-class OpensFile(Quiet):
-    def effect(self):
-        open("effect.txt", "w")  # noqa: SIM115, PTH123 # here
-
-
-class WritesFile(Quiet):
-    def effect(self):
-        self.output.write("reset")  # here
-
-
-class WritesPath(Quiet):
-    def effect(self):
-        Path("effect.txt").write_text("reset")  # here
-
-
-class Connects(Quiet):
-    def effect(self):
-        socket.create_connection(("localhost", 9))  # here
-
-
-class StartsProcess(Quiet):
-    def effect(self):
-        subprocess.run([sys.executable, "-c", ""], check=False)  # here
-
-
-class Logs(Quiet):
-    def effect(self):
-        LOGGER.info("reset")  # here
-
-
-class Warns(Quiet):
-    def effect(self):
-        warnings.warn("reset", stacklevel=2)  # here
-
-
-class ReadsClock(Quiet):
-    def effect(self):
-        self.began = time.monotonic()  # here
-
-
-class Sleeps(Quiet):
-    def effect(self):
-        time.sleep(0.0)  # here
-
-
-class DrawsGlobally(Quiet):
-    def effect(self):
-        self.cell = int(np.random.randint(3))  # noqa: NPY002 # here
-
-
-class DrawsInModule(Quiet):
-    def effect(self):
-        self.cell = random.randrange(3)  # noqa: S311 # here
-
-
-class ChangesEnvironmentVariables(Quiet):
-    def effect(self):
-        os.environ["QTAB_EFFECT"] = "1"  # here
-
-
-class CountsInModule(Quiet):
-    def effect(self):
-        global COUNT  # here
-        COUNT += 1
-
-
-class CountsInDict(Quiet):
-    def effect(self):
-        SCORES["steps"] += 1  # here
-
-
-class CountsInClass(Quiet):
-    count = 0
-
-    def effect(self):
-        CountsInClass.count += 1  # here
-
-
-class CountsInItsClass(Quiet):
-    count = 0
-
-    def effect(self):
-        type(self).count += 1  # here
-
-
-class AppendsToModule(Quiet):
-    def effect(self):
-        RAN.append("reset")
-
-
-class AppendsThroughVariable(Quiet):
-    def effect(self):
-        found = RAN
-        found.append("reset")
-
-
-class ChangesBoard(Quiet):
-    def effect(self):
-        board = BOARD
-        board[1] += 1
-
-
-class ChangesArrayOfClass(Quiet):
-    def effect(self):
-        self.shared[0] += 1.0
-
-
-class UpdatesWindow(Quiet):
-    def __init__(self) -> None:
-        super().__init__()
-        self.window = Window()
-
-    def effect(self):
-        if self.window is not None:  # here
-            self.window.update()
-
-
-class UpdatesWindowOfVariable(UpdatesWindow):
-    def effect(self):
-        window = self.window  # here
-        window.pop()
-
-
-class UpdatesWindowOfModule(Quiet):
-    opened = Window()
-
-    def effect(self):
-        self.opened.update()  # here
-
-
-class MakesWindow(Quiet):
-    def effect(self):
-        Window().update()  # here
-
-
-class PassesItself(Quiet):
-    def effect(self):
-        changed(self)  # here
-
-
-def changed(env: Any) -> None:
-    env.window.update()
-
-
-class Locks(Quiet):
-    def effect(self):
-        with LOCK:  # here
-            self.cell = 0
-
-
-class Saves(Quiet):
-    def effect(self):
-        np.save("effect.npy", np.zeros(1))  # here
-
-
-class SavesArray(Quiet):
-    def effect(self):
-        np.zeros(1).tofile("effect.bin")  # here
-
-
-class Samples(Quiet):
-    def effect(self):
-        self.cell = int(self.observation_space.sample()) % 3  # here
-
-
-class Imports(Quiet):
-    def effect(self):
-        import this  # noqa: F401 # here
-
-
-class Evaluates(Quiet):
-    def effect(self):
-        eval("print(1)")  # noqa: S307 # here
-
-
-class CallsAttribute(Quiet):
-    def __init__(self) -> None:
-        super().__init__()
-        self.call = lambda: RAN.append("called")
-
-    def effect(self):
-        self.call()
-
-
-class SortsByFunction(Quiet):
-    def effect(self):
-        self.cell = len(list(map(print, [1])))  # here
-
-
-class PropertyPrints(Quiet):
-    @property
-    def loud(self):
-        print("read")  # noqa: T201 # here
-        return 0
-
-    def effect(self):
-        self.cell = self.loud
-
-
-class StepPrints(Quiet):
-    def step(self, action):
-        print("step")  # noqa: T201 # here
-        return super().step(action)
-
-
-class MaskPrints(Quiet):
-    def action_masks(self):
-        print("mask")  # noqa: T201 # here
-        return np.ones(2)
-
-
-REFUSED = [one for one in Quiet.__subclasses__() if one is not UpdatesWindow] + [UpdatesWindowOfVariable, UpdatesWindow]
-CHANGING_DATA = (AppendsToModule, AppendsThroughVariable, ChangesBoard, ChangesArrayOfClass)
-"""Classes of which a copy changes lists and arrays, which are restored."""
+from support.gym_classes import effects
+from support.gym_classes.effects import CHANGING_DATA, OUTPUT, RAN, REFUSED, CallsAttribute, Quiet, StepPrints
 
 
 def line_of(cls: type) -> int:
@@ -303,10 +32,11 @@ def test_effects_are_refused_and_never_happen(
     with pytest.raises(NotCompilable) as caught:
         refuse_effects(env)
     if cls is not CallsAttribute:
-        assert (caught.value.file, caught.value.line) == (__file__, line_of(cls))  # type: ignore[arg-type]
+        assert (caught.value.file, caught.value.line) == (effects.__file__, line_of(cls))  # type: ignore[arg-type]
     assert caught.value.advice
     assert not RAN
-    assert COUNT == SCORES["steps"] == CountsInClass.count == CountsInItsClass.count == 0
+    assert effects.COUNT == effects.SCORES["steps"] == 0
+    assert effects.CountsInClass.count == effects.CountsInItsClass.count == 0
     assert repr(np.random.get_state()) == numpy_state  # noqa: NPY002
     assert capsys.readouterr() == ("", "")
     assert not list(tmp_path.iterdir())
@@ -319,7 +49,7 @@ def test_data_outside_of_the_environment_is_restored(cls: Callable[[], gym.Env])
     shared = refuse_effects(env)
     with pytest.raises(NotCompilable, match="outside of the environment is changed"), restored(shared):
         twin_of(env).reset(seed=0)
-    assert (RAN, BOARD, Quiet.shared.tolist()) == ([], [0, 0, 0], [0.0, 0.0, 0.0])
+    assert (RAN, effects.BOARD, Quiet.shared.tolist()) == ([], [0, 0, 0], [0.0, 0.0, 0.0])
 
 
 def test_a_class_without_effects_is_not_refused() -> None:
@@ -396,4 +126,4 @@ def test_training_steps_such_a_class_in_python_and_names_the_line(
     assert run.config.backend == "gymnasium"
     assert capsys.readouterr().out.count("step") == run.episode_lengths.sum()
     qtab.train(StepPrints(), episodes=2, max_episode_steps=10, seed=0)
-    assert f"{__file__}:{line_of(StepPrints)}: print is called; log in a wrapper or a callback" in caplog.text
+    assert f"{effects.__file__}:{line_of(StepPrints)}: print is called; log in a wrapper or a callback" in caplog.text

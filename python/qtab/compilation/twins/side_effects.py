@@ -2,11 +2,8 @@
 
 import ast
 import builtins
-import inspect
-import operator
 import sys
-from collections.abc import Callable
-from types import FunctionType, ModuleType
+from types import BuiltinFunctionType, FunctionType, ModuleType
 from typing import Any
 
 import gymnasium as gym
@@ -14,43 +11,23 @@ import numpy as np
 from gymnasium import spaces
 
 from qtab.compilation.not_compilable import NotCompilable
-from qtab.compilation.rewriting.attributes import MISSING, Attributes, own_attribute
+from qtab.compilation.rewriting.attributes import MISSING, Attributes
 from qtab.compilation.rewriting.expressions.calls import MODULE_ADVICE, SIDE_EFFECTS
 from qtab.compilation.rewriting.source.sources import Source, source_of
-from qtab.compilation.rewriting.source.syntax import CHANGING, Names
+from qtab.compilation.rewriting.source.syntax import CHANGING
 from qtab.compilation.rewriting.statements.effects import PURE_BUILTINS, PURE_METHODS
+from qtab.compilation.twins.known_values import KnownValues
 from qtab.compilation.twins.plain_data import is_plain
 
 METHODS = ("reset", "step", "action_masks", "action_mask")
 """The methods that are run in Python before they are compiled."""
-SAFE_BUILTINS = (
-    *PURE_BUILTINS,
-    "bytes",
-    "chr",
-    "complex",
-    "format",
-    "hash",
-    "issubclass",
-    "iter",
-    "next",
-    "ord",
-    "slice",
-)
+SAFE_BUILTINS = {
+    *(*PURE_BUILTINS, "bytes", "chr", "complex", "format", "hash", "issubclass", "iter", "next", "ord", "slice"),
+}
 SAFE_METHODS = {
-    *(
-        *CHANGING,
-        *PURE_METHODS,
-        "dot",
-        "endswith",
-        "isdigit",
-        "nonzero",
-        "isspace",
-        "prod",
-        "replace",
-        "rotate",
-        "searchsorted",
-    ),
-    *("split", "startswith", "strip", "transpose", "union", "var", "cumsum", "difference", "intersection", "squeeze"),
+    *(*CHANGING, *PURE_METHODS, "contains", "cumsum", "difference", "dot", "endswith", "intersection", "isdigit"),
+    *("isspace", "nonzero", "prod", "replace", "rotate", "searchsorted", "split", "squeeze", "startswith", "strip"),
+    *("transpose", "union", "var"),
 }
 """The methods of numbers, texts, arrays and collections."""
 UNSAFE_NUMPY = ("save", "load", "fromfile", "memmap", "open", "set", "genfromtxt", "fromregex", "DataSource", "test")
@@ -60,18 +37,6 @@ REFUSED: tuple[type[ast.AST], ...] = (
     *(ast.Global, ast.Nonlocal, ast.Delete, ast.FunctionDef, ast.AsyncFunctionDef, getattr(ast, "TryStar", ast.Try)),
 )
 """The syntax that is not compiled and may have effects."""
-COMPARISONS: dict[type[ast.cmpop], Callable[[Any, Any], Any]] = {
-    ast.Eq: operator.eq,
-    ast.NotEq: operator.ne,
-    ast.Lt: operator.lt,
-    ast.LtE: operator.le,
-    ast.Gt: operator.gt,
-    ast.GtE: operator.ge,
-    ast.Is: operator.is_,
-    ast.IsNot: operator.is_not,
-    ast.In: lambda one, other: one in other,
-    ast.NotIn: lambda one, other: one not in other,
-}
 ADVICE = "use numbers, math, and the NumPy functions of the documentation"
 
 
@@ -132,19 +97,12 @@ class _Search:
             _Body(self, source_of(function), owner, receiver).search()
 
 
-class _Body:
+class _Body(KnownValues):
     """The search in the body of a function."""
 
     def __init__(self, search: _Search, source: Source, owner: type | None, receiver: str) -> None:
+        super().__init__(search.env, search.known, source, receiver)
         self._all, self._source, self._owner = search, source, owner
-        self._names = Names(source)
-        arguments = source.node.args
-        first = [one.arg for one in (*arguments.posonlyargs, *arguments.args)][:1]
-        self._own = first[0] if first and receiver == "self" else ""
-        self._class = first[0] if first and receiver == "class" else ""
-        closure = inspect.getclosurevars(source.function)
-        self._globals = {**vars(builtins), **source.function.__globals__, **closure.nonlocals}
-        self._imported: dict[str, Any] = {}
 
     def search(self) -> None:
         """Searches the function.
@@ -161,7 +119,7 @@ class _Body:
     def _visit(self, node: ast.AST) -> None:
         if isinstance(node, REFUSED):
             raise self._refuse(node, f"`{ast.unparse(node).splitlines()[0]}` may have effects", "write conditions")
-        if isinstance(node, ast.If | ast.IfExp) and isinstance(taken := self._constant(node.test), bool):
+        if isinstance(node, ast.If | ast.IfExp) and isinstance(taken := self.known_condition(node.test), bool):
             chosen = node.body if taken else node.orelse
             for one in chosen if isinstance(chosen, list) else [chosen]:
                 self._visit(one)
@@ -190,7 +148,7 @@ class _Body:
             if module is None or (isinstance(node, ast.ImportFrom) and node.level):
                 raise self._refuse(node, f"`{ast.unparse(node)}` runs a module", "import it at the top of the file")
             value = module if isinstance(node, ast.Import) else getattr(module, alias.name, MISSING)
-            self._imported[alias.asname or alias.name.partition(".")[0]] = value
+            self.imported[alias.asname or alias.name.partition(".")[0]] = value
 
     def _store(self, node: ast.Attribute | ast.Subscript) -> None:
         """Checks an assignment: to the environment, or to an element of its data or of a local variable."""
@@ -198,26 +156,23 @@ class _Body:
         while isinstance(base, ast.Subscript):
             self._visit(base.slice)
             base = base.value
-        if isinstance(base, ast.Attribute) and self._is_own(base.value):
+        if isinstance(base, ast.Attribute) and self.is_own(base.value):
             self._load(ast.Attribute(base.value, base.attr, ast.Load(), lineno=node.lineno), stores=base is node)
-        elif base is node or not (isinstance(base, ast.Name) and self._names.is_local(base.id)):
+        elif base is node or not (isinstance(base, ast.Name) and self.names.is_local(base.id)):
             raise self._refuse(node, f"`{ast.unparse(node)}` is assigned", "change only attributes of self")
-
-    def _is_own(self, node: ast.expr) -> bool:
-        return isinstance(node, ast.Name) and node.id == self._own != ""
 
     def _load(self, node: ast.Attribute | ast.Name, stores: bool = False) -> None:
         """Checks a value that is read: it must be data, or a function without effects."""
         if isinstance(node, ast.Attribute):
-            if self._is_own(node.value) or self._is_super(node.value):
+            if self.is_own(node.value) or self._is_super(node.value):
                 self._member(node, stores)
                 return
-            if self._value(node.value) is MISSING:
+            if self.value(node.value) is MISSING:
                 self._visit(node.value)
                 return
-        elif self._is_own(node):
+        elif self.is_own(node):
             raise self._refuse(node, "self is passed on", "use self directly in the environment's methods")
-        value = self._value(node)
+        value = self.value(node)
         if value is MISSING:
             if isinstance(node, ast.Attribute):
                 raise self._refuse(
@@ -264,10 +219,10 @@ class _Body:
         function, passes_self = node.func, self._is_super(node)
         if (
             isinstance(function, ast.Attribute)
-            and not self._is_own(function.value)
+            and not self.is_own(function.value)
             and not self._is_super(function.value)
         ):
-            value, owner = self._value(function), self._value(function.value)
+            value, owner = self.value(function), self.value(function.value)
             if isinstance(value, FunctionType) and isinstance(owner, type) and isinstance(self._all.env, owner):
                 passes_self = True  # Base.method(self, ...)
                 if value is not gym.Env.reset:
@@ -279,27 +234,27 @@ class _Body:
                     self._method(node, function)
             else:
                 self._load(function)
-        elif isinstance(function, ast.Name) and self._names.is_local(function.id) and function.id not in self._imported:
+        elif isinstance(function, ast.Name) and self.names.is_local(function.id) and function.id not in self.imported:
             raise self._refuse(node, f"{function.id} is called, a variable", "call functions by name")
         elif not isinstance(function, ast.Name | ast.Attribute):
             raise self._refuse(node, f"`{ast.unparse(function)}` is called", "call functions by name")
         elif not self._is_super(node):
             self._visit(function)
         for argument in (*node.args, *[keyword.value for keyword in node.keywords]):
-            if not (passes_self and self._is_own(argument)):
+            if not (passes_self and self.is_own(argument)):
                 self._visit(argument)
 
     def _draws(self, node: ast.expr) -> bool:
-        return isinstance(node, ast.Attribute) and node.attr == "np_random" and self._is_own(node.value)
+        return isinstance(node, ast.Attribute) and node.attr == "np_random" and self.is_own(node.value)
 
     def _method(self, node: ast.Call, function: ast.Attribute) -> None:
         """Checks the call of a method of data."""
-        owner = self._value(function.value)
+        owner = self.value(function.value)
         if isinstance(owner, spaces.Space) and function.attr != "contains":
             raise self._refuse(node, "a space has a random generator of its own", "draw from self.np_random")
         if isinstance(owner, np.random.Generator):
             raise self._refuse(node, "a second random generator", "draw from self.np_random")
-        if function.attr not in (*SAFE_METHODS, "contains"):
+        if function.attr not in SAFE_METHODS:
             raise self._refuse(node, f"`{ast.unparse(function)}` is called")
         self._visit(function.value)
 
@@ -329,7 +284,7 @@ class _Body:
         elif isinstance(value, FunctionType) and root not in sys.stdlib_module_names - {"__main__"}:
             self._all.add(value, None, "")
             return
-        if value in SIDE_EFFECTS:
+        if isinstance(value, BuiltinFunctionType) and value in SIDE_EFFECTS:
             raise self._refuse(node, *SIDE_EFFECTS[value])
         for prefix, (reason, advice) in MODULE_ADVICE.items():
             if module == prefix or module.startswith(prefix + "."):
@@ -337,56 +292,3 @@ class _Body:
         if type(getattr(value, "__self__", None)).__module__ == "random":
             raise self._refuse(node, *MODULE_ADVICE["random"])
         raise self._refuse(node, f"{name} is called")
-
-    def _value(self, node: ast.expr) -> Any:
-        """Returns the value of a name or an attribute that no method of the environment assigns, else ``MISSING``."""
-        if isinstance(node, ast.Constant):
-            return node.value
-        if isinstance(node, ast.Name):
-            if node.id in self._imported:
-                return self._imported[node.id]
-            if node.id == self._class != "":
-                return type(self._all.env)
-            return MISSING if self._names.is_local(node.id) else self._globals.get(node.id, MISSING)
-        if not isinstance(node, ast.Attribute):
-            return MISSING
-        if self._is_own(node.value):
-            if node.attr in self._all.known.assigned:
-                return MISSING
-            value = vars(self._all.env).get(node.attr, self._all.known.find(node.attr)[0])
-            return MISSING if hasattr(type(value), "__get__") and not isinstance(value, type) else value
-        owner = self._value(node.value)
-        if owner is MISSING:
-            return MISSING
-        if isinstance(owner, ModuleType | type):
-            return getattr(owner, node.attr, MISSING)
-        return getattr(owner, node.attr, MISSING) if is_plain(owner) else own_attribute(owner, node.attr)
-
-    def _constant(self, node: ast.expr) -> Any:
-        """Returns the truth of a condition that is the same at every step, else ``MISSING``."""
-        if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.Not):
-            inner = self._constant(node.operand)
-            return inner if inner is MISSING else not inner
-        if isinstance(node, ast.BoolOp):
-            is_and = isinstance(node.op, ast.And)
-            values = [self._constant(one) for one in node.values]
-            if any(value is not MISSING and value != is_and for value in values):
-                return not is_and
-            return MISSING if MISSING in values else is_and
-        if isinstance(node, ast.Compare) and len(node.ops) == 1:
-            item = self._value if isinstance(node.ops[0], ast.Is | ast.IsNot) else self._item
-            sides = [item(one) for one in (node.left, node.comparators[0])]
-            try:
-                return MISSING if any(one is MISSING for one in sides) else bool(COMPARISONS[type(node.ops[0])](*sides))
-            except (TypeError, ValueError):
-                return MISSING
-        value = self._item(node)
-        return bool(value) if isinstance(value, bool | int | float | str | type(None)) else MISSING
-
-    def _item(self, node: ast.expr) -> Any:
-        """Returns the value of a constant that can be compared, also of a display of constants."""
-        if isinstance(node, ast.List | ast.Tuple | ast.Set):
-            items = [self._item(one) for one in node.elts]
-            return MISSING if MISSING in items else items
-        value = self._value(node)
-        return value if isinstance(value, bool | int | float | str | tuple | list | type(None)) else MISSING

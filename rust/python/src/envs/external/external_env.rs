@@ -1,5 +1,7 @@
 //! Runs in an environment of another library.
 
+use std::borrow::BorrowMut;
+use std::ops::Deref;
 use std::sync::Arc;
 
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
@@ -7,12 +9,13 @@ use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use qtab_core::features::MAX_TILINGS;
 use qtab_core::numeric::Float;
+use qtab_core::random::Pcg64;
 use qtab_core::{Features, StopFlag};
-use qtab_env::host::{CallError, Environment};
+use qtab_env::host::{BitGenerator, CallError, Environment};
 use qtab_env::{FLOAT32, FLOAT64, Number};
 
 use super::super::native_env::NativeEnv;
-use super::external_task::{ExternalTask, SharedEnv, TaskOptions};
+use super::external_task::{ExternalTask, TaskOptions};
 use super::external_vector_env::{ExternalVectorEnv, PySpaces};
 use super::observations::{ConvertTo, Converted};
 use crate::convert::Seed;
@@ -33,6 +36,35 @@ pub(crate) struct ExternalEnv {
     pub(super) on_failure: Option<Py<PyAny>>,
     /// Whether `on_failure` repeats the whole episode, so that its actions are kept.
     pub(super) repeats_episodes: bool,
+}
+
+/// A shared environment and its capsule.
+#[derive(Clone)]
+pub(super) struct SharedEnv(pub(super) Arc<ExternalEnv>);
+
+impl Deref for SharedEnv {
+    type Target = Environment;
+
+    #[inline]
+    fn deref(&self) -> &Environment {
+        &self.0.environment
+    }
+}
+
+/// The environment's generator, or a reference to it, from which its functions draw bits.
+#[derive(Clone)]
+pub(super) struct EnvironmentBits<R>(pub(super) R);
+
+impl<R: BorrowMut<Pcg64>> BitGenerator for EnvironmentBits<R> {
+    #[inline]
+    fn next_u64(&mut self) -> u64 {
+        self.0.borrow_mut().next_u64()
+    }
+
+    #[inline]
+    fn next_u32(&mut self) -> u32 {
+        self.0.borrow_mut().next_u32()
+    }
 }
 
 /// The number of words that a generator has drawn, and its buffered half-word.

@@ -1,8 +1,6 @@
 //! An environment of another library as a learner's task.
 
-use std::borrow::BorrowMut;
 use std::marker::PhantomData;
-use std::ops::Deref;
 use std::sync::Arc;
 
 use pyo3::exceptions::PyValueError;
@@ -13,42 +11,13 @@ use qtab_core::prediction::ObservableTask;
 use qtab_core::random::Pcg64;
 use qtab_core::tasks::{NextKind, RngSnapshot, Transition};
 use qtab_core::{Features, Task};
-use qtab_env::host::{BitGenerator, CallError, Ending, Environment, Episode, RandomBits};
+use qtab_env::host::{CallError, Ending, Episode, RandomBits};
 use qtab_env::{CONTINUES, Number, TRUNCATED};
 
-use super::external_env::{ExternalEnv, FailedCall, Position, Repeated};
+use super::external_env::{EnvironmentBits, ExternalEnv, FailedCall, Position, Repeated, SharedEnv};
 use crate::convert::Seed;
 use crate::error::{RunError, allocation};
 use crate::rng::environment_rng;
-
-/// A shared environment and its capsule.
-#[derive(Clone)]
-pub(super) struct SharedEnv(pub(super) Arc<ExternalEnv>);
-
-impl Deref for SharedEnv {
-    type Target = Environment;
-
-    #[inline]
-    fn deref(&self) -> &Environment {
-        &self.0.environment
-    }
-}
-
-/// The environment's generator, or a reference to it, from which its functions draw bits.
-#[derive(Clone)]
-pub(super) struct EnvironmentBits<R>(pub(super) R);
-
-impl<R: BorrowMut<Pcg64>> BitGenerator for EnvironmentBits<R> {
-    #[inline]
-    fn next_u64(&mut self) -> u64 {
-        self.0.borrow_mut().next_u64()
-    }
-
-    #[inline]
-    fn next_u32(&mut self) -> u32 {
-        self.0.borrow_mut().next_u32()
-    }
-}
 
 /// The time limit of a task, and whether the learner uses the action masks of the environment.
 #[derive(Clone, Copy)]
@@ -59,7 +28,7 @@ pub(super) struct TaskOptions {
 
 /// An episode so far.
 #[derive(Default)]
-struct Played {
+struct EpisodeSoFar {
     /// The position of the generator before the reset.
     start: Position,
     actions: Vec<u32>,
@@ -75,9 +44,9 @@ pub(super) struct ExternalTask<T, F> {
     /// The actions available in the last state that is not terminal; `None` if the learner does not use action masks.
     mask: Option<Vec<bool>>,
     /// The episode so far, for an environment that repeats it in Python where a step fails; `None` if it is not known.
-    played: Option<Played>,
+    played: Option<EpisodeSoFar>,
     /// A function of an action, which takes the next step in Python, after a step that failed.
-    in_python: Option<Py<PyAny>>,
+    next_step: Option<Py<PyAny>>,
     numbers: PhantomData<T>,
 }
 
@@ -100,7 +69,7 @@ impl<T: Number, F: Features<[T]>> ExternalTask<T, F> {
             seed: seed.clone(),
             mask,
             played: None,
-            in_python: None,
+            next_step: None,
             numbers: PhantomData,
         })
     }
@@ -129,7 +98,7 @@ impl<T: Number, F: Features<[T]>> ExternalTask<T, F> {
             played: self.played.as_ref().map(|played| (played.start, played.actions.as_slice())),
         };
         let (result, next_step) = Python::attach(|py| self.episode.shared().0.repeat(py, error, &failed))?;
-        self.in_python = Some(next_step);
+        self.next_step = Some(next_step);
         self.take_over(result)
     }
 
@@ -188,8 +157,8 @@ impl<T: Number, F: Features<[T]>> ExternalTask<T, F> {
     #[inline]
     fn take_step(&mut self, elapsed: &mut u64, action: usize) -> Result<(f64, NextKind), RunError> {
         let before = self.position();
-        let (reward, ending) = if let Some(next_step) = &self.in_python {
-            let result = Python::attach(|py| next_step.call1(py, (action,))?.extract(py))?;
+        let (reward, ending) = if let Some(step) = &self.next_step {
+            let result = Python::attach(|py| step.call1(py, (action,))?.extract(py))?;
             self.take_over(result)?
         } else {
             match self.episode.step(action, &mut RandomBits::new(&mut self.bits)) {
@@ -234,7 +203,7 @@ impl<T: Number, F: Features<[T]>> Task for ExternalTask<T, F> {
 
     fn reset(&mut self) -> Result<(u64, F::Active), RunError> {
         let before = self.position();
-        self.in_python = None;
+        self.next_step = None;
         if self.episode.shared().0.repeats_episodes {
             let played = self.played.get_or_insert_default();
             played.start = before;
@@ -291,7 +260,7 @@ impl<T: Number, F: Features<[T]>> Task for ExternalTask<T, F> {
         const INVALID: CheckpointError = CheckpointError::Invalid("state of the environment");
         self.bits.0.persist(checkpoint)?;
         let Some(elapsed) = state else { return Ok(()) };
-        if self.in_python.is_some() && !checkpoint.is_restoring() {
+        if self.next_step.is_some() && !checkpoint.is_restoring() {
             return Err(CheckpointError::Invalid("state of the environment, which is stepped in Python"));
         }
         let bytes = saved_state(&self.episode, checkpoint)?;

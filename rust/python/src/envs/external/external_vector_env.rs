@@ -13,7 +13,7 @@ use qtab_core::random::Pcg64;
 use qtab_core::vector::Autoreset;
 use qtab_env::{FLOAT32, FLOAT64, Number};
 
-use super::external_task::SharedEnv;
+use super::external_env::SharedEnv;
 use super::observations::observation_array;
 use super::sub_env::SubEnv;
 use crate::convert::{Seed, array_of};

@@ -6,7 +6,7 @@ use qtab_core::features::OutOfBounds;
 use qtab_env::host::Episode;
 use qtab_env::{FLOAT32, FLOAT64, Number};
 
-use super::external_task::SharedEnv;
+use super::external_env::SharedEnv;
 use crate::convert::{DiscreteReader, array_from};
 
 /// A number of an observation that can be converted to the dtype of a discretizer, as `NumPy`'s `astype` does.

@@ -10,8 +10,7 @@ use qtab_env::{FLOAT32, FLOAT64};
 
 use super::super::native_env::{NativeEnv, PyNativeEnv};
 use super::capsule::environment_of;
-use super::external_env::{ExternalEnv, SharedExternalEnv};
-use super::external_task::EnvironmentBits;
+use super::external_env::{EnvironmentBits, ExternalEnv, SharedExternalEnv};
 use super::external_vector_env::PySpaces;
 use crate::convert::Seed;
 use crate::rng::environment_rng;

@@ -9,7 +9,7 @@ use pyo3::types::PyBytes;
 use qtab_env::host::{CallError, Ending, Episode};
 
 use super::capsule::with_bits_of;
-use super::external_task::SharedEnv;
+use super::external_env::SharedEnv;
 use super::observations::observation_array;
 use super::py_external_env::PyExternalEnv;
 use crate::convert::array_of;

@@ -6,8 +6,8 @@ use qtab_core::memory::{AllocationError, out_of_memory, with_capacity};
 use qtab_core::random::Pcg64;
 use qtab_env::host::{CallError, Ending, Episode, RandomBits};
 
-use super::external_env::{FailedCall, Position};
-use super::external_task::{EnvironmentBits, SharedEnv, saved_state};
+use super::external_env::{EnvironmentBits, FailedCall, Position, SharedEnv};
+use super::external_task::saved_state;
 use crate::convert::Seed;
 
 /// The episode of a sub-environment, and the results of its last step.
