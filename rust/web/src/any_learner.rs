@@ -37,7 +37,7 @@ impl<R: ActiveRows> AnyLearner<R> {
         stop: &StopFlag<'_>,
     ) -> Result<Self, Failure> {
         if algorithm.needs_single_rows() && size_of::<R>() != size_of::<u32>() {
-            return Err(Failure("algorithm must be one without a model for several active rows".into()));
+            return Err("algorithm must be one without a model for several active rows".into());
         }
         let new_model = || Model::new(n_rows, num_actions, stop);
         let new_traces = |cutoff: f64| Traces::new(n_rows * num_actions, cutoff, stop);
@@ -46,7 +46,7 @@ impl<R: ActiveRows> AnyLearner<R> {
             AnyAlgorithm::Sarsa => Self::Sarsa(TdLearner { agent, rule: Sarsa }),
             AnyAlgorithm::ExpectedSarsa => Self::ExpectedSarsa(TdLearner { agent, rule: ExpectedSarsa }),
             AnyAlgorithm::DoubleQLearning => {
-                let second_table = second_table.ok_or_else(|| Failure("algorithm must have a second table".into()))?;
+                let second_table = second_table.ok_or("algorithm must have a second table")?;
                 let rule = DoubleQLearning::new(agent.learning_rate.clone(), second_table);
                 Self::DoubleQLearning(TdLearner { agent, rule })
             }
@@ -72,7 +72,7 @@ impl<R: ActiveRows> AnyLearner<R> {
                 let rule = DynaQPlus::new(new_model()?, planning_steps, time_weight, stop)?;
                 Self::DynaQPlus(TdLearner { agent, rule })
             }
-            _ => return Err(Failure("algorithm must be one of the playground's".into())),
+            _ => return Err("algorithm must be one of the playground's".into()),
         })
     }
 }

@@ -3,7 +3,8 @@
 use qtab_core::learners::AnyAlgorithm;
 use qtab_core::settings::LearningRateSpec;
 
-use crate::settings::{SettingError, Settings};
+use crate::failure::Failure;
+use crate::settings::Settings;
 
 /// The largest memory of a request's runs.
 const MAX_BYTES: u64 = 512 << 20;
@@ -11,11 +12,7 @@ const MAX_BYTES: u64 = 512 << 20;
 const BYTES_PER_EPISODE: u64 = 2 * (8 + 8 + 1);
 
 /// Rejects runs that would take too much memory.
-pub(crate) fn check(
-    settings: &Settings,
-    (rows, num_actions): (usize, usize),
-    seeds: usize,
-) -> Result<(), SettingError> {
+pub(crate) fn check(settings: &Settings, (rows, num_actions): (usize, usize), seeds: usize) -> Result<(), Failure> {
     let needed = needed(settings, (rows as u64, num_actions as u64), seeds as u64);
     if needed <= MAX_BYTES {
         return Ok(());

@@ -7,7 +7,6 @@ use crate::best::Planner;
 use crate::failure::Failure;
 use crate::json::{integer, written};
 use crate::report::{Arrays, inspection, report, table};
-use crate::settings::SettingError;
 use crate::training::{Position, State, Training};
 
 /// The largest amount of work per call: a tenth of a second or less.
@@ -60,7 +59,7 @@ impl Playground {
         self.arrays.floats(name)
     }
 
-    fn answer(&mut self, request: &[u8]) -> Result<String, SettingError> {
+    fn answer(&mut self, request: &[u8]) -> Result<String, Failure> {
         let request: Value =
             serde_json::from_slice(request).map_err(|error| format!("the request must be JSON: {error}"))?;
         let bounded = |name: &str, default: u32, most: u32| match request.get(name) {
@@ -99,25 +98,19 @@ impl Playground {
                 let index = bounded("seed", 0, u32::MAX)?;
                 let Some(training) = &self.training else { return Err(not_started()) };
                 let table = table(training, index as usize, &mut self.arrays);
-                return table.map(|table| written(&table)).ok_or_else(|| "no such run".to_string().into());
+                return table.map(|table| written(&table)).ok_or_else(|| "no such run".into());
             }
-            _ => return Err("call must be one of the playground's".to_string().into()),
+            _ => return Err("call must be one of the playground's".into()),
         }
         let training = self.started()?;
         Ok(written(&Advanced { state: training.state(), done: training.done() }))
     }
 
-    fn started(&mut self) -> Result<&mut Training, SettingError> {
+    fn started(&mut self) -> Result<&mut Training, Failure> {
         self.training.as_mut().ok_or_else(not_started)
     }
 }
 
-fn not_started() -> SettingError {
-    "nothing was started".to_string().into()
-}
-
-impl From<Failure> for SettingError {
-    fn from(Failure(message): Failure) -> Self {
-        message.into()
-    }
+fn not_started() -> Failure {
+    "nothing was started".into()
 }

@@ -9,7 +9,7 @@ use crate::json::integer;
 use crate::memory;
 use crate::plane::Cells;
 use crate::run::Run;
-use crate::settings::{SettingError, Settings};
+use crate::settings::Settings;
 use crate::subject::{StartedRun, Subject, subject};
 use crate::updates::Watch;
 
@@ -59,7 +59,7 @@ pub(crate) enum Position {
 }
 
 impl Training {
-    pub(crate) fn new(request: &Value) -> Result<Self, SettingError> {
+    pub(crate) fn new(request: &Value) -> Result<Self, Failure> {
         let environment = Environment::parse(request.get("environment").unwrap_or(&Value::Null))?;
         let settings = Settings::parse(request.get("settings").unwrap_or(&Value::Null), environment.bounds())?;
         let seeds: Option<Vec<u32>> = match request.get("seeds").and_then(Value::as_array) {
@@ -73,7 +73,7 @@ impl Training {
         if settings.episodes * seeds.len() > MAX_TOTAL_EPISODES {
             let most = MAX_TOTAL_EPISODES / seeds.len();
             let message = format!("episodes must be at most {most} for {} seeds", seeds.len());
-            return Err(SettingError { setting: Some("episodes".into()), message });
+            return Err(Failure { setting: Some("episodes".into()), message });
         }
         let subject = subject(&environment, &settings.discretizer);
         let subject = subject.ok_or_else(|| "the discretizer does not fit the environment".to_string())?;
@@ -87,7 +87,7 @@ impl Training {
 
     /// Starts the runs. The first one watches the cell to inspect, or that of its first state, in its last episodes:
     /// they usually have as many updates as an inspection shows, and watching more of them would slow the run down.
-    fn start(&mut self, inspect: Option<&Value>) -> Result<(), SettingError> {
+    fn start(&mut self, inspect: Option<&Value>) -> Result<(), Failure> {
         let first = self.cells.cell(&self.subject.first_observation(self.seeds[0]));
         let cell = inspect.and_then(|inspect| self.cell_of(inspect)).unwrap_or(first);
         let mut watch = self.watch(cell, self.settings.episodes - self.settings.episodes / LAST_PART);
@@ -166,7 +166,7 @@ impl Training {
             return Ok(Position::Reached);
         }
         if self.replay.as_ref().is_none_or(|replay| replay.cell != cell) {
-            let watch = self.watch(cell, 0).ok_or_else(|| Failure("cell must be one with action values".into()))?;
+            let watch = self.watch(cell, 0).ok_or("cell must be one with action values")?;
             let run = self.subject.run(&self.settings, self.seeds[0], true, Some(watch))?;
             self.replay = Some(Replay { cell, run });
         }

@@ -3,8 +3,9 @@
 use qtab_core::features::{AnyGrid, Axis, Bins, Edges, MAX_TILINGS, Rounding, TileCoding};
 use qtab_core::settings::SettingSource;
 
-use super::fields::{Fields, SettingError};
+use super::fields::Fields;
 use crate::environment::Bounds;
+use crate::failure::Failure;
 
 /// The largest number of rows of a table.
 const MAX_ROWS: u64 = 1 << 24;
@@ -32,7 +33,7 @@ pub(crate) struct Grid {
 }
 
 impl Discretizer {
-    pub(crate) fn parse(fields: &Fields<'_>, bounds: Option<Bounds>) -> Result<Self, SettingError> {
+    pub(crate) fn parse(fields: &Fields<'_>, bounds: Option<Bounds>) -> Result<Self, Failure> {
         let Some(bounds) = bounds else {
             fields.word("discretizer", &[("identity", ())])?;
             return Ok(Self::Identity);
@@ -52,9 +53,9 @@ impl Discretizer {
     }
 }
 
-type Parser = fn(&Fields<'_>, Bounds) -> Result<Discretizer, SettingError>;
+type Parser = fn(&Fields<'_>, Bounds) -> Result<Discretizer, Failure>;
 
-fn rounding(fields: &Fields<'_>, bounds: Bounds) -> Result<Discretizer, SettingError> {
+fn rounding(fields: &Fields<'_>, bounds: Bounds) -> Result<Discretizer, Failure> {
     let scale = fields.numbers("scale", bounds.len())?.unwrap_or_default();
     if scale.len() != bounds.len() || scale.iter().any(|&scale| scale <= 0.0) {
         return Err(fields.invalid("scale", &format!("{} positive numbers", bounds.len())));
@@ -69,7 +70,7 @@ fn rounding(fields: &Fields<'_>, bounds: Bounds) -> Result<Discretizer, SettingE
     Ok(Discretizer::Grid(Grid { edges: edges.collect(), features: AnyGrid::Rounding(Rounding::new(axes)) }))
 }
 
-fn bins(fields: &Fields<'_>, bounds: Bounds) -> Result<Discretizer, SettingError> {
+fn bins(fields: &Fields<'_>, bounds: Bounds) -> Result<Discretizer, Failure> {
     let limits = limits(fields, bounds)?;
     let counts = fields.integers("bins", bounds.len(), 1_000_000)?;
     check_rows(fields, "bins", counts.iter().map(|&count| count.into()))?;
@@ -81,7 +82,7 @@ fn bins(fields: &Fields<'_>, bounds: Bounds) -> Result<Discretizer, SettingError
     Ok(Discretizer::Grid(Grid { edges: drawn.collect(), features: AnyGrid::Bins(Bins::new(edges)) }))
 }
 
-fn tiles(fields: &Fields<'_>, bounds: Bounds) -> Result<Discretizer, SettingError> {
+fn tiles(fields: &Fields<'_>, bounds: Bounds) -> Result<Discretizer, Failure> {
     let limits = limits(fields, bounds)?;
     let tilings = fields.integer("tilings", 1, MAX_TILINGS as u64)? as u32;
     let tiles = fields.integers("tiles", bounds.len(), 1_000_000)?;
@@ -93,7 +94,7 @@ fn tiles(fields: &Fields<'_>, bounds: Bounds) -> Result<Discretizer, SettingErro
 }
 
 /// The lower and the upper limit of each component: the given ones, or those of the observation space.
-fn limits(fields: &Fields<'_>, bounds: Bounds) -> Result<Vec<(f64, f64)>, SettingError> {
+fn limits(fields: &Fields<'_>, bounds: Bounds) -> Result<Vec<(f64, f64)>, Failure> {
     let (low, high) = (fields.numbers("low", bounds.len())?, fields.numbers("high", bounds.len())?);
     let mut limits = Vec::new();
     for (index, &(lower, upper)) in bounds.iter().enumerate() {
@@ -111,11 +112,7 @@ fn limits(fields: &Fields<'_>, bounds: Bounds) -> Result<Vec<(f64, f64)>, Settin
     Ok(limits)
 }
 
-fn check_rows(
-    fields: &Fields<'_>,
-    name: &'static str,
-    mut counts: impl Iterator<Item = u64>,
-) -> Result<(), SettingError> {
+fn check_rows(fields: &Fields<'_>, name: &'static str, mut counts: impl Iterator<Item = u64>) -> Result<(), Failure> {
     let rows = counts.try_fold(1_u64, u64::checked_mul).filter(|rows| *rows <= MAX_ROWS);
     rows.map(|_| ()).ok_or_else(|| fields.invalid(name, &format!("such that the table has at most {MAX_ROWS} rows")))
 }

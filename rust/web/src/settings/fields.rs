@@ -3,24 +3,10 @@
 use std::cell::RefCell;
 
 use qtab_core::settings::SettingSource;
-use serde::Serialize;
 use serde_json::{Map, Value};
 
+use crate::failure::Failure;
 use crate::json::{integer, numbers, shown};
-
-/// An error in the settings, and the name of the setting.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct SettingError {
-    pub(crate) setting: Option<String>,
-    #[serde(rename = "error")]
-    pub(crate) message: String,
-}
-
-impl From<String> for SettingError {
-    fn from(message: String) -> Self {
-        Self { setting: None, message }
-    }
-}
 
 /// The settings of a request, and the names of those that were read.
 pub(crate) struct Fields<'a> {
@@ -29,10 +15,10 @@ pub(crate) struct Fields<'a> {
 }
 
 impl<'a> Fields<'a> {
-    pub(crate) fn new(settings: &'a Value) -> Result<Self, SettingError> {
+    pub(crate) fn new(settings: &'a Value) -> Result<Self, Failure> {
         match settings {
             Value::Object(settings) => Ok(Self { settings, used: RefCell::default() }),
-            _ => Err("settings must be an object".to_string().into()),
+            _ => Err("settings must be an object".into()),
         }
     }
 
@@ -42,13 +28,13 @@ impl<'a> Fields<'a> {
     }
 
     /// A setting, whatever its type.
-    pub(crate) fn any(&self, name: &'static str) -> Result<&'a Value, SettingError> {
-        let message = || SettingError { setting: Some(name.into()), message: format!("{name} must be given") };
+    pub(crate) fn any(&self, name: &'static str) -> Result<&'a Value, Failure> {
+        let message = || Failure { setting: Some(name.into()), message: format!("{name} must be given") };
         self.find(name).ok_or_else(message)
     }
 
     /// A number for each of `count` components, if given.
-    pub(crate) fn numbers(&self, name: &'static str, count: usize) -> Result<Option<Vec<f64>>, SettingError> {
+    pub(crate) fn numbers(&self, name: &'static str, count: usize) -> Result<Option<Vec<f64>>, Failure> {
         let Some(given) = self.find(name) else { return Ok(None) };
         match numbers(given) {
             Some(numbers) if numbers.len() == count => Ok(Some(numbers)),
@@ -57,7 +43,7 @@ impl<'a> Fields<'a> {
     }
 
     /// An integer for each of `count` components, given as an array or as one number for all.
-    pub(crate) fn integers(&self, name: &'static str, count: usize, high: u32) -> Result<Vec<u32>, SettingError> {
+    pub(crate) fn integers(&self, name: &'static str, count: usize, high: u32) -> Result<Vec<u32>, Failure> {
         let given = self.any(name)?;
         let given = given.as_array().map_or(std::slice::from_ref(given), Vec::as_slice);
         let integers: Option<Vec<u32>> = given.iter().map(|given| integer(given, high)).collect();
@@ -71,40 +57,40 @@ impl<'a> Fields<'a> {
     }
 
     /// Rejects settings that were not read: they do not apply, or do not exist.
-    pub(crate) fn check_all_used(&self) -> Result<(), SettingError> {
+    pub(crate) fn check_all_used(&self) -> Result<(), Failure> {
         let used = self.used.borrow();
         let unused = self.settings.keys().find(|name| !used.contains(&name.as_str()));
         let Some(name) = unused else { return Ok(()) };
         let name: String = name.chars().take(40).collect();
-        Err(SettingError { message: format!("{name} does not apply to these settings"), setting: Some(name) })
+        Err(Failure { message: format!("{name} does not apply to these settings"), setting: Some(name) })
     }
 }
 
 impl SettingSource for Fields<'_> {
-    type Error = SettingError;
+    type Error = Failure;
 
     fn has(&self, name: &str) -> bool {
         self.settings.contains_key(name)
     }
 
-    fn any_number(&self, name: &'static str) -> Result<Option<f64>, SettingError> {
+    fn any_number(&self, name: &'static str) -> Result<Option<f64>, Failure> {
         self.any(name).map(Value::as_f64)
     }
 
-    fn any_integer(&self, name: &'static str) -> Result<Option<u64>, SettingError> {
+    fn any_integer(&self, name: &'static str) -> Result<Option<u64>, Failure> {
         self.any(name).map(Value::as_u64)
     }
 
-    fn any_flag(&self, name: &'static str) -> Result<Option<bool>, SettingError> {
+    fn any_flag(&self, name: &'static str) -> Result<Option<bool>, Failure> {
         self.any(name).map(Value::as_bool)
     }
 
-    fn any_text(&self, name: &'static str) -> Result<Option<String>, SettingError> {
+    fn any_text(&self, name: &'static str) -> Result<Option<String>, Failure> {
         self.any(name).map(|text| text.as_str().map(String::from))
     }
 
-    fn invalid(&self, name: &'static str, expected: &str) -> SettingError {
+    fn invalid(&self, name: &'static str, expected: &str) -> Failure {
         let got = self.find(name).map_or_else(|| "nothing".into(), shown);
-        SettingError { setting: Some(name.into()), message: format!("{name} must be {expected}, got {got}") }
+        Failure { setting: Some(name.into()), message: format!("{name} must be {expected}, got {got}") }
     }
 }

@@ -13,9 +13,9 @@ use serde_json::Value;
 
 pub(crate) use discretizer::Discretizer;
 use fields::Fields;
-pub(crate) use fields::SettingError;
 
 use crate::environment::Bounds;
+use crate::failure::Failure;
 use crate::json::numbers;
 
 const MAX_EPISODES: u64 = 1_000_000;
@@ -45,7 +45,7 @@ enum InitialQ {
 
 impl Settings {
     /// `bounds` are those of the observation space; `None` for numbered states.
-    pub(crate) fn parse(settings: &Value, bounds: Option<Bounds>) -> Result<Self, SettingError> {
+    pub(crate) fn parse(settings: &Value, bounds: Option<Bounds>) -> Result<Self, Failure> {
         let fields = Fields::new(settings)?;
         let episodes = fields.integer("episodes", 1, MAX_EPISODES)?;
         let max_episode_steps = fields.integer("max_episode_steps", 1, MAX_STEPS)?;
@@ -143,7 +143,7 @@ fn assigns(algorithm: AnyAlgorithm) -> bool {
     matches!(algorithm, QLearning | Sarsa | ExpectedSarsa | DoubleQLearning | DynaQ { .. } | DynaQPlus { .. })
 }
 
-fn initial_q(fields: &Fields<'_>) -> Result<InitialQ, SettingError> {
+fn initial_q(fields: &Fields<'_>) -> Result<InitialQ, Failure> {
     let given = fields.any("initial_q")?;
     if let Some(value) = given.as_f64() {
         return Ok(InitialQ::Constant(value));
