@@ -53,6 +53,7 @@ CRATE_ORDERS = {
         {"batch", "builder"},
     ),
     "python": (
+        {"locks"},
         {"error", "interrupt"},
         {"convert"},
         {"rng"},

@@ -1,13 +1,15 @@
 //! Long calls release the GIL and react to Ctrl-C.
 
 use std::panic::resume_unwind;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use pyo3::prelude::*;
 use qtab_core::StopFlag;
+
+use crate::locks::{into_inner, lock};
 
 /// The interval between checks for signals. Ctrl-C takes effect within this time plus the time between two checks of
 /// the flag.
@@ -69,7 +71,7 @@ pub(crate) fn run_polled<T: Send>(
     let (stop, done, caller) = (StopFlag::new(), AtomicBool::new(false), thread::current());
     // In a mutex, so that the thread can take it, and this thread can take it back.
     let work = Mutex::new(Some(work));
-    let take = || work.lock().unwrap_or_else(PoisonError::into_inner).take();
+    let take = || lock(&work).take();
     let finished = thread::scope(|scope| {
         let worker = thread::Builder::new().spawn_scoped(scope, || {
             let _wake = WakeOnDrop { done: &done, caller };
@@ -106,7 +108,7 @@ pub(crate) fn run_polling<T>(work: impl FnOnce(&StopFlag<'_>) -> T) -> PyResult<
 pub(crate) fn run_detached<T: Send>(py: Python<'_>, work: impl FnOnce(&StopFlag<'_>) -> T + Send) -> PyResult<T> {
     let asked = Mutex::new(Instant::now());
     let is_due = || {
-        let mut asked = asked.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut asked = lock(&asked);
         let is_due = asked.elapsed() >= POLL;
         if is_due {
             *asked = Instant::now();
@@ -130,12 +132,12 @@ fn run_polling_when<T>(is_due: impl Fn() -> bool + Sync, work: impl FnOnce(&Stop
         let signal = Python::attach(|py| py.check_signals());
         let stopped = signal.is_err();
         if let Err(error) = signal {
-            *raised.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
+            *lock(&raised) = Some(error);
         }
         stopped
     };
     let result = work(&StopFlag::polling(&poll));
-    match raised.into_inner().unwrap_or_else(PoisonError::into_inner) {
+    match into_inner(raised) {
         None => Ok(result),
         Some(error) => Err(error),
     }

@@ -7,6 +7,7 @@ mod discretizer;
 mod envs;
 mod error;
 mod interrupt;
+mod locks;
 mod planning;
 mod rng;
 mod runs;

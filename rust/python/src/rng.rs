@@ -1,6 +1,6 @@
 //! Random generators: the environment's and the agent's, seeded like `NumPy`'s.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::Mutex;
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -8,6 +8,7 @@ use qtab_core::random::{AgentRng, Pcg64, Rng, SeedSequence};
 
 use crate::convert::Seed;
 use crate::error::invalid;
+use crate::locks::lock;
 
 /// The agent's bit generator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,7 +47,7 @@ pub(crate) struct PyAgentRng(Mutex<AgentRng>);
 
 impl PyAgentRng {
     fn with<T>(&self, draw: impl FnOnce(&mut AgentRng) -> T) -> T {
-        draw(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
+        draw(&mut lock(&self.0))
     }
 }
 

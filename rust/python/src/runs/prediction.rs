@@ -79,7 +79,7 @@ where
     let (spec, prediction) = (Arc::clone(spec), Arc::clone(prediction));
     let build = move |seed: &Seed, stop: &StopFlag<'_>| {
         let task = NativeTask::new(env.clone(), features.clone(), Some(spec.max_episode_steps), environment_rng(seed));
-        let policies = prediction.policies(&spec, |own| BoxFeatures::<f32>::new(own, |bound| bound as f32))?;
+        let policies = prediction.policies(&spec, any_features)?;
         Ok((observed_run(task, policies, seed, &spec, &prediction, stop)?, AnyRecordings::None))
     };
     Box::new(BoxedFactory(build))

@@ -1,7 +1,7 @@
 //! Estimates with many seeds in one call, on several threads if Rust steps the environment.
 
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 use numpy::{PyReadonlyArray1, PyReadwriteArray3, PyUntypedArrayMethods};
 use pyo3::exceptions::PyOverflowError;
@@ -13,6 +13,7 @@ use super::{EnvironmentSpec, Memory, WORK_BETWEEN_CHECKS, room_of};
 use crate::convert::Seeds;
 use crate::error::{RunError, invalid};
 use crate::interrupt::{on_threads, run_polled};
+use crate::locks::{into_inner, lock};
 use crate::runs::{Run, python_task};
 use crate::spec::{Fields, PredictionSpec, RunSpec};
 
@@ -87,16 +88,16 @@ pub(crate) fn estimate_values(
     // Takes runs one after another, until none is left.
     let work = |stop: &StopFlag<'_>| {
         while !stop.is_set() {
-            let Some((index, row)) = rows.lock().unwrap_or_else(PoisonError::into_inner).next() else { return };
+            let Some((index, row)) = lock(&rows).next() else { return };
             let check = || if stop.is_set() { Err(RunError::Allocation(AllocationError::Stopped)) } else { Ok(()) };
             let run = factory.build(&seeds[index], stop);
             if let Err(error) = run.and_then(|built| estimates.run(built.run, row, check)) {
-                shared_failed.lock().unwrap_or_else(PoisonError::into_inner).push((index, error));
+                lock(&shared_failed).push((index, error));
             }
         }
     };
     run_polled(py, |_| report(), |stop| on_threads(threads.min(seeds.len()), || work(stop)))?;
-    failed = shared_failed.into_inner().unwrap_or_else(PoisonError::into_inner);
+    failed = into_inner(shared_failed);
     failed.sort_by_key(|&(index, _)| index);
     Ok(failed)
 }

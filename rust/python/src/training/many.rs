@@ -1,7 +1,7 @@
 //! Many runs in one call, on several threads, and in batches if the runs can be batched.
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 use pyo3::prelude::*;
 use qtab_core::memory::MemoryRoom;
@@ -12,6 +12,7 @@ use super::results::{Results, Row, Rows};
 use super::{Memory, WORK_BETWEEN_CHECKS, room_of};
 use crate::convert::{Seed, Seeds};
 use crate::interrupt::{on_threads, run_interruptible};
+use crate::locks::{into_inner, lock};
 use crate::runs::{RunBatch, RunFactory, check_tables};
 use crate::spec::{Fields, InitialQSpec, RunSpec};
 
@@ -54,7 +55,7 @@ pub(crate) fn train_many(
         cancelled: AtomicBool::new(false),
     };
     run_interruptible(py, |stop| on_threads(threads, || queue.run_worker(share, stop)))?;
-    let mut failed = queue.failed.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let mut failed = into_inner(queue.failed);
     failed.sort_by_key(|&(index, _)| index);
     Ok(failed)
 }
@@ -107,7 +108,7 @@ impl<'a> WorkQueue<'a> {
     /// Starts runs until the batch has `lanes` runs, or no run is left.
     fn fill(&self, batch: &mut dyn RunBatch, rows: &mut Vec<Row<'a>>, lanes: usize, stop: &StopFlag<'_>) {
         while rows.len() < lanes && !self.is_cancelled(stop) {
-            let Some(row) = self.rows.lock().unwrap_or_else(PoisonError::into_inner).next() else { return };
+            let Some(row) = lock(&self.rows).next() else { return };
             match batch.push(&self.seeds[row.index], stop) {
                 Ok(()) => rows.push(row),
                 // An error from an interrupted construction is not a failed run.
@@ -118,7 +119,7 @@ impl<'a> WorkQueue<'a> {
     }
 
     fn fail(&self, index: usize, error: PyErr) {
-        self.failed.lock().unwrap_or_else(PoisonError::into_inner).push((index, error));
+        lock(&self.failed).push((index, error));
         self.cancelled.fetch_or(!self.keep_going, Ordering::AcqRel);
     }
 

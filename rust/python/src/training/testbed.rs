@@ -1,7 +1,7 @@
 //! Many runs on the k-armed testbed in one call.
 
 use std::sync::atomic::Ordering;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 use numpy::{PyReadwriteArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -12,6 +12,7 @@ use super::env_spec::EnvironmentSpec;
 use crate::convert::{Seed, Seeds};
 use crate::error::invalid;
 use crate::interrupt::{on_threads, run_interruptible};
+use crate::locks::{into_inner, lock};
 use crate::runs::{AnyRecordings, RunFactory, check_tables};
 use crate::spec::{Fields, InitialQSpec, RunSpec};
 
@@ -42,21 +43,21 @@ pub(crate) fn run_testbeds(
     let rows = rewards.as_slice_mut()?.chunks_exact_mut(steps).zip(optimal.as_slice_mut()?.chunks_exact_mut(steps));
     let rows = seeds.iter().zip(rows).map(|(seed, (rewards, optimal))| (seed, rewards, optimal));
     let (rows, failure) = (Mutex::new(rows), Mutex::new(None));
-    let next = || -> Option<Row<'_>> { rows.lock().unwrap_or_else(PoisonError::into_inner).next() };
-    let has_failed = || failure.lock().unwrap_or_else(PoisonError::into_inner).is_some();
+    let next = || -> Option<Row<'_>> { lock(&rows).next() };
+    let has_failed = || lock(&failure).is_some();
     let work = |stop: &StopFlag<'_>| {
         while let Some((seed, rewards, optimal)) = next() {
             if stop.is_set() || has_failed() {
                 return;
             }
             if let Err(error) = run_testbed(&*factory, &spec.initial_q, (seed, rewards, optimal), stop) {
-                failure.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+                lock(&failure).get_or_insert(error);
                 return;
             }
         }
     };
     run_interruptible(py, |stop| on_threads(threads.min(seeds.len()), || work(stop)))?;
-    failure.into_inner().unwrap_or_else(PoisonError::into_inner).map_or(Ok(()), Err)
+    into_inner(failure).map_or(Ok(()), Err)
 }
 
 /// Trains until both slices are full, or `stop` is set.

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
+use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
 
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::PyRuntimeError;
@@ -18,6 +18,7 @@ use super::{Memory, WORK_BETWEEN_CHECKS, room_of};
 use crate::convert::{Seed, array_of};
 use crate::error::{RunError, allocation, invalid, unusable_checkpoint};
 use crate::interrupt::{run_detached, run_polling, run_resumable};
+use crate::locks::lock;
 use crate::runs::{AnyRecordings, BuiltRun, Run, check_tables, python_task};
 use crate::spec::{Fields, InitialQSpec, RunSpec};
 
@@ -231,5 +232,5 @@ fn unusable(error: CheckpointError) -> PyErr {
 }
 
 fn take<S>(recordings: &Recordings<S>) -> VecDeque<Recording<S>> {
-    std::mem::take(&mut recordings.lock().unwrap_or_else(PoisonError::into_inner))
+    std::mem::take(&mut lock(recordings))
 }
