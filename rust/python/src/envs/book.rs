@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use pyo3::intern;
 use pyo3::prelude::*;
 use qtab_core::envs::tabular::{
     Ground, MAXIMIZATION_BIAS_STATES, MaximizationBias, Racetrack, ShortCorridor, TabularMdp,
@@ -20,33 +19,28 @@ use crate::runs::{AnyRecordings, BoxedFactory, RunFactory, boxed_factory, boxed_
 use crate::spec::RunSpec;
 
 /// `qtab/KArmedBandit-v0`, the k-armed bandit testbed.
-pub(super) struct KArmedBanditEnv(Testbed);
-
-impl KArmedBanditEnv {
-    pub(super) fn from_gymnasium(env: &Bound<'_, PyAny>) -> PyResult<Arc<dyn NativeEnv>> {
-        let py = env.py();
-        Ok(Arc::new(Self(Testbed {
-            num_actions: env.getattr(intern!(py, "k"))?.extract()?,
-            mean: env.getattr(intern!(py, "mean"))?.extract()?,
-            deviation: env.getattr(intern!(py, "deviation"))?.extract()?,
-            random_walk: env.getattr(intern!(py, "random_walk"))?.extract()?,
-        })))
-    }
+pub(super) fn k_armed_bandit(env: &Bound<'_, PyAny>) -> PyResult<Arc<dyn NativeEnv>> {
+    Ok(Arc::new(Testbed {
+        num_actions: env.getattr("k")?.extract()?,
+        mean: env.getattr("mean")?.extract()?,
+        deviation: env.getattr("deviation")?.extract()?,
+        random_walk: env.getattr("random_walk")?.extract()?,
+    }))
 }
 
-impl NativeEnv for KArmedBanditEnv {
+impl NativeEnv for Testbed {
     fn runs(&self, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>> {
         spec.discretizer.check_identity(1)?;
-        check_actions(self.0.num_actions, spec)?;
-        let testbed = self.0;
+        check_actions(self.num_actions, spec)?;
+        let testbed = *self;
         let new_task = move |seed: &Seed| KArmedBandit::new(testbed, environment_rng(seed));
         Ok(boxed_factory(new_task, (1, 1), spec, AnyRecordings::Native))
     }
 
     fn testbed_runs(&self, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>> {
         spec.discretizer.check_identity(1)?;
-        check_actions(self.0.num_actions, spec)?;
-        let (testbed, spec) = (self.0, Arc::clone(spec));
+        check_actions(self.num_actions, spec)?;
+        let (testbed, spec) = (*self, Arc::clone(spec));
         let build = move |seed: &Seed, stop: &StopFlag<'_>| {
             let mut task = KArmedBandit::new(testbed, environment_rng(seed));
             let optimal = task.record(spec.episodes as usize).map_err(allocation)?;
@@ -58,46 +52,38 @@ impl NativeEnv for KArmedBanditEnv {
 }
 
 /// `qtab/MaximizationBias-v0`, the example of maximization bias.
-pub(super) struct MaximizationBiasEnv(MaximizationBias);
-
-impl MaximizationBiasEnv {
-    pub(super) fn from_gymnasium(env: &Bound<'_, PyAny>) -> PyResult<Arc<dyn NativeEnv>> {
-        let py = env.py();
-        Ok(Arc::new(Self(MaximizationBias {
-            num_actions: env.getattr(intern!(py, "actions"))?.extract()?,
-            mean: env.getattr(intern!(py, "mean"))?.extract()?,
-            standard_deviation: env.getattr(intern!(py, "deviation"))?.extract()?,
-        })))
-    }
+pub(super) fn maximization_bias(env: &Bound<'_, PyAny>) -> PyResult<Arc<dyn NativeEnv>> {
+    Ok(Arc::new(MaximizationBias {
+        num_actions: env.getattr("actions")?.extract()?,
+        mean: env.getattr("mean")?.extract()?,
+        standard_deviation: env.getattr("deviation")?.extract()?,
+    }))
 }
 
-impl NativeEnv for MaximizationBiasEnv {
+impl NativeEnv for MaximizationBias {
     fn runs(&self, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>> {
         spec.discretizer.check_identity(MAXIMIZATION_BIAS_STATES as usize)?;
-        generic(self.0, Identity(MAXIMIZATION_BIAS_STATES), spec)
+        generic(*self, Identity(MAXIMIZATION_BIAS_STATES), spec)
     }
 }
 
 /// `qtab/BlockingMaze-v0` and `qtab/ShortcutMaze-v0`, mazes that change after a number of steps.
-pub(super) struct ChangingMazeEnv {
+pub(super) fn changing_maze(env: &Bound<'_, PyAny>) -> PyResult<Arc<dyn NativeEnv>> {
+    let (before, after): (Bound<'_, PyAny>, Bound<'_, PyAny>) = env.getattr("mazes")?.extract()?;
+    let tables = [table_of(&before)?, table_of(&after)?];
+    if tables[0].num_states() != tables[1].num_states() || tables[0].num_actions() != tables[1].num_actions() {
+        return Err(invalid("mazes", "two with the same states and actions", "others"));
+    }
+    Ok(Arc::new(ChangingMaze { tables, change_after: env.getattr("change_after")?.extract()? }))
+}
+
+struct ChangingMaze {
     /// The table before the change, and the one after it.
     tables: [TabularMdp; 2],
     change_after: u64,
 }
 
-impl ChangingMazeEnv {
-    pub(super) fn from_gymnasium(env: &Bound<'_, PyAny>) -> PyResult<Arc<dyn NativeEnv>> {
-        let py = env.py();
-        let (before, after): (Bound<'_, PyAny>, Bound<'_, PyAny>) = env.getattr(intern!(py, "mazes"))?.extract()?;
-        let tables = [table_of(&before)?, table_of(&after)?];
-        if tables[0].num_states() != tables[1].num_states() || tables[0].num_actions() != tables[1].num_actions() {
-            return Err(invalid("mazes", "two with the same states and actions", "others"));
-        }
-        Ok(Arc::new(Self { tables, change_after: env.getattr(intern!(py, "change_after"))?.extract()? }))
-    }
-}
-
-impl NativeEnv for ChangingMazeEnv {
+impl NativeEnv for ChangingMaze {
     fn runs(&self, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>> {
         let (tables, change_after, limit) = (self.tables.clone(), self.change_after, spec.max_episode_steps);
         let num_states = tables[0].num_states();
@@ -109,21 +95,16 @@ impl NativeEnv for ChangingMazeEnv {
 }
 
 /// `qtab/Racetrack-v0`, the racetrack of Exercise 5.12.
-pub(super) struct RacetrackEnv(Racetrack);
-
-impl RacetrackEnv {
-    pub(super) fn from_gymnasium(env: &Bound<'_, PyAny>) -> PyResult<Arc<dyn NativeEnv>> {
-        let py = env.py();
-        let rows: Vec<String> = env.getattr(intern!(py, "layout"))?.extract()?;
-        let columns = rows.first().map_or(0, String::len);
-        let ground: Vec<Ground> = rows.iter().flat_map(|row| row.bytes()).map(ground).collect();
-        let is_rectangle = rows.iter().all(|row| row.len() == columns);
-        let failure = env.getattr(intern!(py, "failure"))?.extract()?;
-        let track = u32::try_from(columns).ok().and_then(|columns| Racetrack::new(&ground, columns, failure));
-        let track = track.filter(|_| is_rectangle);
-        track
-            .map(|track| Arc::new(Self(track)) as Arc<dyn NativeEnv>)
-            .ok_or_else(|| invalid("layout", "rows of the same length with a starting line", "other rows"))
+pub(super) fn racetrack(env: &Bound<'_, PyAny>) -> PyResult<Arc<dyn NativeEnv>> {
+    let rows: Vec<String> = env.getattr("layout")?.extract()?;
+    let columns = rows.first().map_or(0, String::len);
+    let ground: Vec<Ground> = rows.iter().flat_map(|row| row.bytes()).map(ground).collect();
+    let is_rectangle = rows.iter().all(|row| row.len() == columns);
+    let failure = env.getattr("failure")?.extract()?;
+    let track = u32::try_from(columns).ok().and_then(|columns| Racetrack::new(&ground, columns, failure));
+    match track.filter(|_| is_rectangle) {
+        Some(track) => Ok(Arc::new(track)),
+        None => Err(invalid("layout", "rows of the same length with a starting line", "other rows")),
     }
 }
 
@@ -136,24 +117,20 @@ fn ground(cell: u8) -> Ground {
     }
 }
 
-impl NativeEnv for RacetrackEnv {
+impl NativeEnv for Racetrack {
     fn runs(&self, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>> {
-        spec.discretizer.check_identity(self.0.num_states() as usize)?;
-        generic(self.0.clone(), Identity(self.0.num_states()), spec)
+        spec.discretizer.check_identity(self.num_states() as usize)?;
+        generic(self.clone(), Identity(self.num_states()), spec)
     }
 }
 
 /// `qtab/ShortCorridor-v0`, the short corridor with switched actions.
-pub(super) struct ShortCorridorEnv;
-
-impl ShortCorridorEnv {
-    #[expect(clippy::unnecessary_wraps, reason = "the registry has functions that may fail")]
-    pub(super) fn from_gymnasium(_env: &Bound<'_, PyAny>) -> PyResult<Arc<dyn NativeEnv>> {
-        Ok(Arc::new(Self))
-    }
+#[expect(clippy::unnecessary_wraps, reason = "the registry has functions that may fail")]
+pub(super) fn short_corridor(_env: &Bound<'_, PyAny>) -> PyResult<Arc<dyn NativeEnv>> {
+    Ok(Arc::new(ShortCorridor))
 }
 
-impl NativeEnv for ShortCorridorEnv {
+impl NativeEnv for ShortCorridor {
     fn runs(&self, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>> {
         spec.discretizer.check_identity(1)?;
         generic(ShortCorridor, Identity(1), spec)

@@ -5,10 +5,10 @@ use std::sync::Arc;
 use pyo3::prelude::*;
 use qtab_core::envs::classic_control::{Acrobot, CartPole, ContinuousMountainCar, MountainCar, Pendulum};
 
-use super::book::{ChangingMazeEnv, KArmedBanditEnv, MaximizationBiasEnv, RacetrackEnv, ShortCorridorEnv};
+use super::book::{changing_maze, k_armed_bandit, maximization_bias, racetrack, short_corridor};
 use super::classic_control::DynClassicEnv;
 use super::native_env::NativeEnv;
-use super::toy_text::{BlackjackEnv, TableEnv, TaxiEnv};
+use super::toy_text::{blackjack_env, table_env, taxi_env};
 use crate::error::invalid;
 
 /// The constructor of an environment.
@@ -22,18 +22,18 @@ pub(super) enum Entry {
 
 const ENVS: &[(&str, Entry)] = &[
     ("Acrobot", Entry::ClassicControl(|| Arc::new(Acrobot::default()))),
-    ("Blackjack", Entry::FromGymnasium(BlackjackEnv::from_gymnasium)),
+    ("Blackjack", Entry::FromGymnasium(blackjack_env)),
     ("CartPole", Entry::ClassicControl(|| Arc::new(CartPole::default()))),
-    ("ChangingMaze", Entry::FromGymnasium(ChangingMazeEnv::from_gymnasium)),
+    ("ChangingMaze", Entry::FromGymnasium(changing_maze)),
     ("ContinuousMountainCar", Entry::ClassicControl(|| Arc::new(ContinuousMountainCar::default()))),
-    ("KArmedBandit", Entry::FromGymnasium(KArmedBanditEnv::from_gymnasium)),
-    ("MaximizationBias", Entry::FromGymnasium(MaximizationBiasEnv::from_gymnasium)),
+    ("KArmedBandit", Entry::FromGymnasium(k_armed_bandit)),
+    ("MaximizationBias", Entry::FromGymnasium(maximization_bias)),
     ("MountainCar", Entry::ClassicControl(|| Arc::new(MountainCar::default()))),
     ("Pendulum", Entry::ClassicControl(|| Arc::new(Pendulum::default()))),
-    ("Racetrack", Entry::FromGymnasium(RacetrackEnv::from_gymnasium)),
-    ("ShortCorridor", Entry::FromGymnasium(ShortCorridorEnv::from_gymnasium)),
-    ("Table", Entry::FromGymnasium(TableEnv::from_gymnasium)),
-    ("Taxi", Entry::FromGymnasium(TaxiEnv::from_gymnasium)),
+    ("Racetrack", Entry::FromGymnasium(racetrack)),
+    ("ShortCorridor", Entry::FromGymnasium(short_corridor)),
+    ("Table", Entry::FromGymnasium(table_env)),
+    ("Taxi", Entry::FromGymnasium(taxi_env)),
 ];
 
 /// The entry of a name.

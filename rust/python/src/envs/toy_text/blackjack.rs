@@ -28,12 +28,8 @@ const SUITS: [&str; 4] = ["C", "D", "H", "S"];
 const FACES: [&str; 3] = ["J", "Q", "K"];
 
 /// Blackjack by its rules.
-pub(crate) struct BlackjackEnv(Blackjack);
-
-impl BlackjackEnv {
-    pub(crate) fn from_gymnasium(env: &Bound<'_, PyAny>) -> PyResult<Arc<dyn NativeEnv>> {
-        rules(env).map(|rules| Arc::new(Self(rules)) as Arc<dyn NativeEnv>)
-    }
+pub(crate) fn blackjack_env(env: &Bound<'_, PyAny>) -> PyResult<Arc<dyn NativeEnv>> {
+    Ok(Arc::new(rules(env)?))
 }
 
 fn rules(env: &Bound<'_, PyAny>) -> PyResult<Blackjack> {
@@ -43,20 +39,20 @@ fn rules(env: &Bound<'_, PyAny>) -> PyResult<Blackjack> {
     Ok(Blackjack { natural, sab })
 }
 
-impl NativeEnv for BlackjackEnv {
+impl NativeEnv for Blackjack {
     fn runs(&self, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>> {
-        spec.discretizer.check_identity(Blackjack::OBSERVATION_SHAPE.iter().product())?;
-        let features = MultiDiscreteIndex(Blackjack::OBSERVATION_SHAPE.map(|count| count as u32));
-        specialized::<_, _, 2>(self.0, features, spec, OneStepBatching::one_by_one())
+        spec.discretizer.check_identity(Self::OBSERVATION_SHAPE.iter().product())?;
+        let features = MultiDiscreteIndex(Self::OBSERVATION_SHAPE.map(|count| count as u32));
+        specialized::<_, _, 2>(*self, features, spec, OneStepBatching::one_by_one())
     }
 
     fn vector_env(&self, py: Python<'_>, options: VectorOptions) -> PyResult<Option<Box<dyn DynVectorEnv>>> {
         let info = EnvInfo { envs_per_thread: 4096, transition: None, snapshot, terminal_counter: None };
-        native_vector_env::<_, Vec<_>>(py, BlackjackWithHistory(self.0), info, options).map(Some)
+        native_vector_env::<_, Vec<_>>(py, BlackjackWithHistory(*self), info, options).map(Some)
     }
 
     fn mdp(&self) -> PyResult<Option<Mdp>> {
-        Mdp::try_from(&self.0).map(Some).map_err(|error| PyValueError::new_err(error.to_string()))
+        Mdp::try_from(self).map(Some).map_err(|error| PyValueError::new_err(error.to_string()))
     }
 }
 

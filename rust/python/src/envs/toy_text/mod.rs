@@ -6,11 +6,11 @@ mod table;
 mod taxi;
 mod transition_table;
 
-pub(super) use blackjack::BlackjackEnv;
 pub(crate) use blackjack::PyBlackjack;
+pub(super) use blackjack::blackjack_env;
 pub(crate) use table::PyToyText;
-pub(super) use table::TableEnv;
+pub(super) use table::table_env;
 pub(crate) use taxi::PyTaxi;
-pub(super) use taxi::TaxiEnv;
+pub(super) use taxi::taxi_env;
 pub(crate) use transition_table::PyTransitionTable;
 pub(super) use transition_table::table_of;

@@ -60,9 +60,18 @@ pub(super) fn sample_transition<'py>(
     Ok(Some(SampledTransition { probability, state, reward, terminated }))
 }
 
-/// Gymnasium's `categorical_sample` of `initial_state_distrib`, an `np.int64`. Returns None, and draws nothing, if the
+/// Draws the initial state, and writes it and the absence of a last action. Returns None, and changes nothing, if the
 /// distribution is not a float64 array.
-pub(super) fn sample_initial<'py>(env: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyAny>>> {
+pub(super) fn begin_episode<'py>(env: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyAny>>> {
+    let py = env.py();
+    let Some(state) = sample_initial(env)? else { return Ok(None) };
+    env.setattr(intern!(py, "s"), &state)?;
+    env.setattr(intern!(py, "lastaction"), py.None())?;
+    Ok(Some(state))
+}
+
+/// Gymnasium's `categorical_sample` of `initial_state_distrib`, an `np.int64`; None as for `begin_episode`.
+fn sample_initial<'py>(env: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyAny>>> {
     let py = env.py();
     let Some(weights) = env.getattr_opt(intern!(py, "initial_state_distrib"))? else { return Ok(None) };
     let Ok(weights) = weights.cast_into::<PyArray1<f64>>() else { return Ok(None) };

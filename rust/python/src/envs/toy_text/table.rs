@@ -14,19 +14,15 @@ use qtab_core::planning::Mdp;
 
 use super::super::gymnasium::render_if_human;
 use super::super::native_env::NativeEnv;
-use super::sampling::{python_int, reset_fallback, sample_initial, sample_transition, set_snapshot, step_fallback};
+use super::sampling::{begin_episode, python_int, reset_fallback, sample_transition, set_snapshot, step_fallback};
 use super::transition_table::table_of;
 use crate::runs::{OneStepBatching, RunFactory, specialized};
 use crate::spec::RunSpec;
 use crate::vector::{DynVectorEnv, EnvInfo, TransitionInfo, VectorOptions, native_vector_env};
 
-/// A transition table, which all runs share.
-pub(crate) struct TableEnv(TabularMdp);
-
-impl TableEnv {
-    pub(crate) fn from_gymnasium(env: &Bound<'_, PyAny>) -> PyResult<Arc<dyn NativeEnv>> {
-        Ok(Arc::new(Self(table_of(env)?)))
-    }
+/// An environment with a transition table, which all runs share.
+pub(crate) fn table_env(env: &Bound<'_, PyAny>) -> PyResult<Arc<dyn NativeEnv>> {
+    Ok(Arc::new(table_of(env)?))
 }
 
 /// One row for each state of a table, which must agree with the spec.
@@ -46,9 +42,9 @@ pub(super) fn table_runs(table: TabularMdp, spec: &Arc<RunSpec>) -> PyResult<Box
     }
 }
 
-impl NativeEnv for TableEnv {
+impl NativeEnv for TabularMdp {
     fn runs(&self, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>> {
-        table_runs(self.0.clone(), spec)
+        table_runs(self.clone(), spec)
     }
 
     fn vector_env(&self, py: Python<'_>, options: VectorOptions) -> PyResult<Option<Box<dyn DynVectorEnv>>> {
@@ -58,11 +54,11 @@ impl NativeEnv for TableEnv {
             action_masks: None,
         };
         let info = EnvInfo { envs_per_thread: 16_384, transition: Some(transition), snapshot, terminal_counter: None };
-        native_vector_env::<_, Vec<_>>(py, WithTransitionProbability(self.0.clone()), info, options).map(Some)
+        native_vector_env::<_, Vec<_>>(py, WithTransitionProbability(self.clone()), info, options).map(Some)
     }
 
     fn mdp(&self) -> PyResult<Option<Mdp>> {
-        Ok(Some(self.0.clone().into()))
+        Ok(Some(self.clone().into()))
     }
 }
 
@@ -91,9 +87,7 @@ impl PyToyText {
     #[pyo3(name = "_native_reset")]
     fn native_reset<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         let py = slf.py();
-        let Some(state) = sample_initial(slf)? else { return reset_fallback(slf) };
-        slf.setattr(intern!(py, "s"), &state)?;
-        slf.setattr(intern!(py, "lastaction"), py.None())?;
+        let Some(state) = begin_episode(slf)? else { return reset_fallback(slf) };
         render_if_human(slf)?;
         let info = PyDict::new(py);
         info.set_item(intern!(py, "prob"), 1)?;

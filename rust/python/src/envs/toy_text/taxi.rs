@@ -14,7 +14,7 @@ use qtab_core::planning::Mdp;
 
 use super::super::gymnasium::{generator, render_if_human};
 use super::super::native_env::NativeEnv;
-use super::sampling::{python_int, reset_fallback, sample_initial, sample_transition, set_snapshot, step_fallback};
+use super::sampling::{begin_episode, python_int, reset_fallback, sample_transition, set_snapshot, step_fallback};
 use super::table::{identity, table_runs};
 use super::transition_table::table_of;
 use crate::convert::{discrete_action, small_array};
@@ -29,20 +29,17 @@ const IN_TAXI: usize = 4;
 const MAP_SHAPE: [usize; 2] = [7, 11];
 
 /// A taxi, whose table all runs share.
-pub(crate) struct TaxiEnv {
+struct TaxiEnv {
     taxi: Taxi,
     /// Gymnasium's environment, which provides the action masks.
     env: Py<PyAny>,
 }
 
-impl TaxiEnv {
-    pub(crate) fn from_gymnasium(env: &Bound<'_, PyAny>) -> PyResult<Arc<dyn NativeEnv>> {
-        let py = env.py();
-        let is_fickle = env.getattr(intern!(py, "fickle_passenger"))?.is_truthy()?;
-        let fickle = if is_fickle { Some(env.getattr(intern!(py, "fickle_probability"))?.extract()?) } else { None };
-        let taxi = Taxi { table: table_of(env)?, fickle };
-        Ok(Arc::new(Self { taxi, env: env.clone().unbind() }))
-    }
+pub(crate) fn taxi_env(env: &Bound<'_, PyAny>) -> PyResult<Arc<dyn NativeEnv>> {
+    let is_fickle = env.getattr("fickle_passenger")?.is_truthy()?;
+    let fickle = if is_fickle { Some(env.getattr("fickle_probability")?.extract()?) } else { None };
+    let taxi = Taxi { table: table_of(env)?, fickle };
+    Ok(Arc::new(TaxiEnv { taxi, env: env.clone().unbind() }))
 }
 
 impl NativeEnv for TaxiEnv {
@@ -115,9 +112,7 @@ impl PyTaxi {
     #[pyo3(name = "_native_reset")]
     fn native_reset<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         let py = slf.py();
-        let Some(state) = sample_initial(slf)? else { return reset_fallback(slf) };
-        slf.setattr(intern!(py, "s"), &state)?;
-        slf.setattr(intern!(py, "lastaction"), py.None())?;
+        let Some(state) = begin_episode(slf)? else { return reset_fallback(slf) };
         let mut fickle = slf.getattr(intern!(py, "fickle_passenger"))?;
         if fickle.is_truthy()? {
             let random = generator(slf)?.call_method0(intern!(py, "random"))?;
