@@ -2,7 +2,7 @@
 //! else is Gymnasium's.
 
 use std::mem::replace;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard};
 
 use pyo3::exceptions::PyAttributeError;
 use pyo3::intern;
@@ -13,6 +13,7 @@ use super::classic_control::{DynClassicEnv, StepResult, StoredState, numpy_uses_
 use super::gymnasium::{generator, is_numpy_generator, render_if_human};
 use super::registry::{Entry, classic_control, entry};
 use crate::convert::{StateArray, array_from};
+use crate::locks::lock;
 
 /// The names of an environment's parameters, as Gymnasium spells its attributes.
 #[pyfunction]
@@ -89,7 +90,7 @@ impl PyClassicControl {
         if !is_numpy_generator(&generator) || (layout.calls_numpy_trigonometry && !numpy_uses_libm(py)?) {
             return Ok(None);
         }
-        let Some(result) = env.reset_python(&generator)? else { return Ok(None) };
+        let Some(result) = env.py_reset(&generator)? else { return Ok(None) };
         // Bypasses `__setattr__`, since no parameter changes.
         let attributes = slf.getattr(intern!(py, "__dict__"))?.cast_into::<PyDict>()?;
         for name in layout.terminal_counter.iter().chain(&layout.last_action) {
@@ -158,7 +159,7 @@ impl PyClassicControl {
 
 impl PyClassicControl {
     fn lock(&self) -> MutexGuard<'_, Contents> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+        lock(&self.0)
     }
 
     fn store(&self, state: StoredState) {
@@ -192,7 +193,7 @@ impl PyClassicControl {
             StoredState::Unset => None,
         };
         let Some(state) = state else { return Ok(None) };
-        Ok(env.step_python(slf, &state, action)?.map(|result| (result, human)))
+        Ok(env.py_step(slf, &state, action)?.map(|result| (result, human)))
     }
 
     /// Reads the attributes. Returns the environment with these parameters, and whether `render_mode` is "human"; None

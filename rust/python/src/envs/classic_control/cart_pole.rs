@@ -5,17 +5,30 @@ use std::sync::Arc;
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use qtab_core::Env;
-use qtab_core::envs::classic_control::{CartPole, CartPoleState};
-use qtab_core::random::NoRng;
+use qtab_core::envs::classic_control::CartPole;
 use qtab_core::vector::LaneStates;
 
 use super::reset::reset_f64;
-use super::step::set_state;
-use super::{ClassicEnv, EnvLayout, ResetResult, StepResult};
-use crate::convert::{StateArray, discrete_action};
+use super::step::{discrete_step, set_state};
+use super::{ClassicEnv, EnvLayout, GymnasiumClass, ResetOutcome, StepResult, Stepped};
+use crate::convert::StateArray;
 use crate::runs::{OneStepBatching, RunFactory, specialized, tiled_box};
 use crate::spec::{DiscretizerSpec, RunSpec};
+
+impl GymnasiumClass for CartPole {
+    fn py_reset<'py>(&self, generator: &Bound<'py, PyAny>) -> ResetOutcome<'py> {
+        reset_f64(self, 4, generator)
+    }
+
+    fn py_step<'py>(&self, env: &Bound<'py, PyAny>, state: &StateArray, action: &Bound<'py, PyAny>) -> Stepped<'py> {
+        let Some(step) = discrete_step::<_, 4>(self, state, action) else { return Ok(None) };
+        let result = StepResult::new(env.py(), self, step).if_finite();
+        if result.is_some() && step.terminated {
+            env.setattr(intern!(env.py(), "steps_beyond_terminated"), 0)?;
+        }
+        Ok(result)
+    }
+}
 
 impl ClassicEnv for CartPole {
     type States = LaneStates<4>;
@@ -28,33 +41,7 @@ impl ClassicEnv for CartPole {
     };
     const ENVS_PER_THREAD: usize = 16_384;
 
-    fn reset_python<'py>(&self, generator: &Bound<'py, PyAny>) -> PyResult<Option<ResetResult<'py>>> {
-        reset_f64(self, 4, generator).map(Some)
-    }
-
-    fn step_python<'py>(
-        &self,
-        env: &Bound<'py, PyAny>,
-        state: &StateArray,
-        action: &Bound<'py, PyAny>,
-    ) -> PyResult<Option<StepResult<'py>>> {
-        let Some((state, action)) = state.doubles().zip(discrete_action(action, self.num_actions())) else {
-            return Ok(None);
-        };
-        let step = self.step(<[f64; 4]>::into(state), action, &mut NoRng);
-        let result = StepResult::new(env.py(), self, step).if_finite();
-        if result.is_some() && step.terminated {
-            env.setattr(intern!(env.py(), "steps_beyond_terminated"), 0)?;
-        }
-        Ok(result)
-    }
-
-    fn snapshot(
-        attributes: &Bound<'_, PyDict>,
-        _env: &Self,
-        state: &CartPoleState,
-        _last_action: Option<usize>,
-    ) -> PyResult<()> {
+    fn snapshot(&self, attributes: &Bound<'_, PyDict>, state: &Self::State, _: Option<usize>) -> PyResult<()> {
         set_state::<4>(attributes, *state)
     }
 

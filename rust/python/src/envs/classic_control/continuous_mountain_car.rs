@@ -5,33 +5,25 @@ use std::sync::Arc;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use qtab_core::Env;
-use qtab_core::envs::classic_control::{ContinuousMountainCar, ContinuousMountainCarState};
+use qtab_core::envs::classic_control::ContinuousMountainCar;
 use qtab_core::numeric::Scalar;
 use qtab_core::random::NoRng;
 
 use super::reset::reset_f64;
 use super::step::{set_f32_state, set_state};
-use super::{ClassicEnv, EnvLayout, ResetResult, StepResult, StoredState, runs_with_discrete_actions};
+use super::{
+    ClassicEnv, EnvLayout, GymnasiumClass, ResetOutcome, StepResult, Stepped, StoredState, runs_with_discrete_actions,
+};
 use crate::convert::{StateArray, box_action};
 use crate::runs::RunFactory;
 use crate::spec::RunSpec;
 
-impl ClassicEnv for ContinuousMountainCar {
-    type States = Vec<<Self as Env>::State>;
-
-    const LAYOUT: EnvLayout = EnvLayout::new(2);
-    const ENVS_PER_THREAD: usize = 4096;
-
-    fn reset_python<'py>(&self, generator: &Bound<'py, PyAny>) -> PyResult<Option<ResetResult<'py>>> {
-        reset_f64(self, 1, generator).map(Some)
+impl GymnasiumClass for ContinuousMountainCar {
+    fn py_reset<'py>(&self, generator: &Bound<'py, PyAny>) -> ResetOutcome<'py> {
+        reset_f64(self, 1, generator)
     }
 
-    fn step_python<'py>(
-        &self,
-        env: &Bound<'py, PyAny>,
-        state: &StateArray,
-        action: &Bound<'py, PyAny>,
-    ) -> PyResult<Option<StepResult<'py>>> {
+    fn py_step<'py>(&self, env: &Bound<'py, PyAny>, state: &StateArray, action: &Bound<'py, PyAny>) -> Stepped<'py> {
         let Some((state, action)) = state.scalars().zip(box_action(action)) else { return Ok(None) };
         let step = self.step(<[Scalar; 2]>::into(state), action, &mut NoRng);
         let mut result = StepResult::new::<_, 2, 2>(env.py(), self, step);
@@ -39,18 +31,25 @@ impl ClassicEnv for ContinuousMountainCar {
         result.state = StoredState::Python(result.observation.clone().unbind());
         Ok(result.if_finite())
     }
+}
+
+impl ClassicEnv for ContinuousMountainCar {
+    type States = Vec<<Self as Env>::State>;
+
+    const LAYOUT: EnvLayout = EnvLayout::new(2);
+    const ENVS_PER_THREAD: usize = 4096;
 
     /// The state is float64 after a reset, float32 after a step.
     fn snapshot(
+        &self,
         attributes: &Bound<'_, PyDict>,
-        env: &Self,
-        state: &ContinuousMountainCarState,
+        state: &Self::State,
         last_action: Option<Scalar>,
     ) -> PyResult<()> {
         if last_action.is_none() {
             return set_state::<2>(attributes, *state);
         }
-        set_f32_state(attributes, &env.observe(state))
+        set_f32_state(attributes, &self.observe(state))
     }
 
     fn runs(&self, actions: &[f32], spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>> {

@@ -6,8 +6,8 @@ use pyo3::prelude::*;
 use qtab_core::envs::Parameters;
 
 use super::super::native_env::NativeEnv;
-use super::{ClassicEnv, DynClassicEnv, EnvLayout, ResetResult, StepResult};
-use crate::convert::{StateArray, constant};
+use super::{ClassicEnv, DynClassicEnv, EnvLayout};
+use crate::convert::constant;
 use crate::error::invalid;
 use crate::runs::RunFactory;
 use crate::spec::RunSpec;
@@ -45,19 +45,6 @@ impl<E: ClassicEnv> DynClassicEnv for E {
         }
         read.read_other_parameters(env)?;
         Ok(Arc::new(ClassicControl { env: read, actions }))
-    }
-
-    fn reset_python<'py>(&self, generator: &Bound<'py, PyAny>) -> PyResult<Option<ResetResult<'py>>> {
-        ClassicEnv::reset_python(self, generator)
-    }
-
-    fn step_python<'py>(
-        &self,
-        env: &Bound<'py, PyAny>,
-        state: &StateArray,
-        action: &Bound<'py, PyAny>,
-    ) -> PyResult<Option<StepResult<'py>>> {
-        ClassicEnv::step_python(self, env, state, action)
     }
 }
 
@@ -99,7 +86,7 @@ impl<E: ClassicEnv> NativeEnv for ClassicControl<E> {
         let info = EnvInfo {
             envs_per_thread: E::ENVS_PER_THREAD,
             transition: None,
-            snapshot: E::snapshot,
+            snapshot: |attributes, env: &E, state, last_action| env.snapshot(attributes, state, last_action),
             terminal_counter: E::LAYOUT.terminal_counter,
         };
         native_vector_env::<_, E::States>(py, self.env, info, options).map(Some)

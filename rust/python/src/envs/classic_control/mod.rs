@@ -22,7 +22,8 @@ use qtab_core::numeric::Scalar;
 use qtab_core::vector::States;
 
 pub(crate) use cart_pole_batch::step_cart_poles;
-pub(super) use reset::ResetResult;
+use reset::ResetOutcome;
+use step::Stepped;
 pub(super) use step::{StepResult, StoredState};
 pub(crate) use trigonometry::numpy_uses_libm;
 
@@ -62,9 +63,20 @@ impl EnvLayout {
     }
 }
 
+/// Resets and steps of Gymnasium's class. Either returns None, and neither draws nor changes anything, if Gymnasium's own
+/// code must do it.
+pub(super) trait GymnasiumClass {
+    /// The reset, with numbers from `generator`.
+    fn py_reset<'py>(&self, generator: &Bound<'py, PyAny>) -> ResetOutcome<'py>;
+
+    /// One step.
+    fn py_step<'py>(&self, env: &Bound<'py, PyAny>, state: &StateArray, action: &Bound<'py, PyAny>) -> Stepped<'py>;
+}
+
 /// A classic-control environment: the parts in which the environments differ. The rest is shared, or in the core.
 pub(super) trait ClassicEnv:
     Env<State: Send + Sync, Action: BatchAction, Observation: BatchObservation + Sync>
+    + GymnasiumClass
     + Parameters
     + Copy
     + Send
@@ -93,22 +105,10 @@ pub(super) trait ClassicEnv:
         Ok(!Self::LAYOUT.calls_numpy_trigonometry || numpy_uses_libm(py)?)
     }
 
-    /// The reset of Gymnasium's class, with numbers from `generator`. Returns None, and draws nothing, if Gymnasium's
-    /// own code must do it.
-    fn reset_python<'py>(&self, generator: &Bound<'py, PyAny>) -> PyResult<Option<ResetResult<'py>>>;
-
-    /// One step of Gymnasium's class. Returns None, and changes nothing, if Gymnasium's own code must take it.
-    fn step_python<'py>(
-        &self,
-        env: &Bound<'py, PyAny>,
-        state: &StateArray,
-        action: &Bound<'py, PyAny>,
-    ) -> PyResult<Option<StepResult<'py>>>;
-
     /// Writes a state, and the action that led to it, into a dict of Gymnasium's attributes.
     fn snapshot(
+        &self,
         attributes: &Bound<'_, PyDict>,
-        env: &Self,
         state: &Self::State,
         last_action: Option<Self::Action>,
     ) -> PyResult<()>;
@@ -118,7 +118,7 @@ pub(super) trait ClassicEnv:
 }
 
 /// A [`ClassicEnv`] whose type is known only at run time.
-pub(super) trait DynClassicEnv: Send + Sync {
+pub(super) trait DynClassicEnv: GymnasiumClass + Send + Sync {
     fn layout(&self) -> &'static EnvLayout;
 
     fn matches_numpy(&self, py: Python<'_>) -> PyResult<bool>;
@@ -131,15 +131,6 @@ pub(super) trait DynClassicEnv: Send + Sync {
 
     /// This environment for training and vector environments. A parameter that Rust does not support is an error.
     fn native_env(&self, env: &Bound<'_, PyAny>, actions: Vec<f32>) -> PyResult<Arc<dyn NativeEnv>>;
-
-    fn reset_python<'py>(&self, generator: &Bound<'py, PyAny>) -> PyResult<Option<ResetResult<'py>>>;
-
-    fn step_python<'py>(
-        &self,
-        env: &Bound<'py, PyAny>,
-        state: &StateArray,
-        action: &Bound<'py, PyAny>,
-    ) -> PyResult<Option<StepResult<'py>>>;
 }
 
 /// Runs that choose from a finite set of an environment's continuous actions.

@@ -5,18 +5,27 @@ use std::sync::Arc;
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
-use qtab_core::Env;
-use qtab_core::envs::classic_control::{MountainCar, MountainCarState};
+use qtab_core::envs::classic_control::MountainCar;
 use qtab_core::numeric::Scalar;
-use qtab_core::random::NoRng;
 use qtab_core::vector::LaneStates;
 
 use super::reset::reset_f64;
-use super::step::set_state;
-use super::{ClassicEnv, EnvLayout, ResetResult, StepResult};
-use crate::convert::{StateArray, discrete_action, numpy_scalar};
+use super::step::{discrete_step, set_state};
+use super::{ClassicEnv, EnvLayout, GymnasiumClass, ResetOutcome, StepResult, Stepped};
+use crate::convert::{StateArray, numpy_scalar};
 use crate::runs::{OneStepBatching, RunFactory, specialized, tiled_box};
 use crate::spec::{DiscretizerSpec, RunSpec};
+
+impl GymnasiumClass for MountainCar {
+    fn py_reset<'py>(&self, generator: &Bound<'py, PyAny>) -> ResetOutcome<'py> {
+        reset_f64(self, 1, generator)
+    }
+
+    fn py_step<'py>(&self, env: &Bound<'py, PyAny>, state: &StateArray, action: &Bound<'py, PyAny>) -> Stepped<'py> {
+        let Some(step) = discrete_step::<_, 2>(self, state, action) else { return Ok(None) };
+        Ok(StepResult::new(env.py(), self, step).if_finite())
+    }
+}
 
 impl ClassicEnv for MountainCar {
     type States = LaneStates<2>;
@@ -24,28 +33,11 @@ impl ClassicEnv for MountainCar {
     const LAYOUT: EnvLayout = EnvLayout { state_is_tuple: true, num_actions: Some(3), ..EnvLayout::new(2) };
     const ENVS_PER_THREAD: usize = 32_768;
 
-    fn reset_python<'py>(&self, generator: &Bound<'py, PyAny>) -> PyResult<Option<ResetResult<'py>>> {
-        reset_f64(self, 1, generator).map(Some)
-    }
-
-    fn step_python<'py>(
-        &self,
-        env: &Bound<'py, PyAny>,
-        state: &StateArray,
-        action: &Bound<'py, PyAny>,
-    ) -> PyResult<Option<StepResult<'py>>> {
-        let Some((state, action)) = state.doubles().zip(discrete_action(action, self.num_actions())) else {
-            return Ok(None);
-        };
-        let step = self.step(<[f64; 2]>::into(state), action, &mut NoRng);
-        Ok(StepResult::new(env.py(), self, step).if_finite())
-    }
-
     /// The state is an array after a reset, a tuple after a step.
     fn snapshot(
+        &self,
         attributes: &Bound<'_, PyDict>,
-        _env: &Self,
-        state: &MountainCarState,
+        state: &Self::State,
         last_action: Option<usize>,
     ) -> PyResult<()> {
         if last_action.is_none() {

@@ -13,17 +13,19 @@ pub(crate) struct ResetResult<'py> {
     pub(crate) observation: Bound<'py, PyArray1<f32>>,
 }
 
+pub(super) type ResetOutcome<'py> = PyResult<Option<ResetResult<'py>>>;
+
 /// The reset of an environment whose initial state is float64 in Gymnasium and takes `draws` random floats.
 pub(super) fn reset_f64<'py, E, const N: usize, const M: usize>(
     env: &E,
     draws: usize,
     generator: &Bound<'py, PyAny>,
-) -> PyResult<ResetResult<'py>>
+) -> ResetOutcome<'py>
 where
     E: Env<Observation = [f32; M], State: Into<[f64; N]>>,
 {
     let (state, observation) = reset(env, draws, generator)?;
-    Ok(ResetResult { state: small_array(generator.py(), &state.into()).into_any(), observation })
+    Ok(Some(ResetResult { state: small_array(generator.py(), &state.into()).into_any(), observation }))
 }
 
 /// The initial state, and its observation.

@@ -6,7 +6,9 @@ use pyo3::types::{PyDict, PyFloat};
 use qtab_core::Env;
 use qtab_core::envs::Step;
 
-use crate::convert::{array_from, small_array};
+use qtab_core::random::NoRng;
+
+use crate::convert::{StateArray, array_from, discrete_action, small_array};
 
 /// The state of a Gymnasium class. After a step in Rust it stays in Rust until Python reads it.
 pub(crate) enum StoredState {
@@ -39,6 +41,8 @@ pub(crate) struct StepResult<'py> {
     finite: bool,
 }
 
+pub(super) type Stepped<'py> = PyResult<Option<StepResult<'py>>>;
+
 impl<'py> StepResult<'py> {
     /// The result of a step, for an environment with a float64 state in Gymnasium and a Python float as the reward.
     pub(super) fn new<E, const N: usize, const M: usize>(py: Python<'py>, env: &E, step: Step<E::State>) -> Self
@@ -61,6 +65,19 @@ impl<'py> StepResult<'py> {
     pub(super) fn if_finite(self) -> Option<Self> {
         self.finite.then_some(self)
     }
+}
+
+/// A step in which Gymnasium computes with float64 and checks the action; None for another state or action.
+pub(super) fn discrete_step<E, const N: usize>(
+    env: &E,
+    state: &StateArray,
+    action: &Bound<'_, PyAny>,
+) -> Option<Step<E::State>>
+where
+    E: Env<Action = usize, State: From<[f64; N]>>,
+{
+    let (state, action) = state.doubles().zip(discrete_action(action, env.num_actions()))?;
+    Some(env.step(state.into(), action, &mut NoRng))
 }
 
 /// Writes the attribute `state`, an array of float64.
