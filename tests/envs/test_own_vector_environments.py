@@ -4,22 +4,20 @@ import copy
 import logging
 import pickle
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import gymnasium as gym
 import numpy as np
 import pytest
 from gymnasium import spaces
-from gymnasium.vector import AutoresetMode, SyncVectorEnv
+from gymnasium.vector import AutoresetMode
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import qtab
 from support import own_environments
-from support.board import Board, board_library
-from support.libraries import needs_compiler
-from support.vector import MODES, assert_equal, position
+from support.own_vectors import in_lockstep, make, same_streams
+from support.vector import MODES, assert_equal
 
 pytest.importorskip("numba")
 
@@ -87,42 +85,6 @@ class Wide(qtab.FunctionalEnv):
 
     def observe(self, state: Any) -> Any:
         return state
-
-
-def make(name: str, num_envs: int, mode: AutoresetMode = AutoresetMode.NEXT_STEP, **kwargs: Any) -> tuple[Any, Any]:
-    """Returns ours, and Gymnasium's SyncVectorEnv of the same environments."""
-    own = {key: kwargs.pop(key) for key in ("threads", "copy") if key in kwargs}
-    ours = qtab.RustVectorEnv(name, num_envs, autoreset_mode=mode, **own, **kwargs)
-    return ours, SyncVectorEnv([lambda: gym.make(name, **kwargs)] * num_envs, autoreset_mode=mode)
-
-
-def available(space: Any, infos: dict[str, Any], rng: np.random.Generator, num_envs: int) -> Any:
-    """Returns a random available action for each sub-environment."""
-    masks = infos.get("action_mask", np.ones((num_envs, space.n), np.int8))
-    return np.array([int(space.start) + int(rng.choice(np.flatnonzero(row if row.any() else [1]))) for row in masks])
-
-
-def in_lockstep(ours: Any, theirs: Any, steps: int, seed: int) -> None:
-    rng, num_envs = np.random.default_rng(seed), ours.num_envs
-    result = theirs.reset(seed=seed)
-    assert_equal(ours.reset(seed=seed), result)
-    for _ in range(steps):
-        actions = available(theirs.single_action_space, result[-1], rng, num_envs)
-        result = theirs.step(actions)
-        assert_equal(ours.step(actions), result)
-        over = result[2] | result[3]
-        if ours.autoreset_mode is AutoresetMode.DISABLED and over.any():
-            masks = result[-1].get("action_mask")
-            again = theirs.reset(options={"reset_mask": over.copy()})
-            assert_equal(ours.reset(options={"reset_mask": over.copy()}), again)
-            if masks is not None:
-                masks[over] = again[-1]["action_mask"][over]
-
-
-def same_streams(ours: Any, theirs: Any) -> None:
-    assert ours.np_random_seed == theirs.np_random_seed
-    for one, other in zip(ours.np_random, theirs.np_random, strict=True):
-        assert position(one) == position(other)
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -304,76 +266,3 @@ def test_frames_of_a_class_are_drawn_in_python() -> None:
         assert all(frame.startswith("at ") for frame in ours.render())
     finally:
         del gym.registry["QtabOwn/Drawn-v0"]
-
-
-class NativeBoard(qtab.NativeEnv):
-    """The board of the tests in C."""
-
-    file: Path
-
-    def __init__(self) -> None:
-        super().__init__(self.file)
-
-
-@pytest.fixture(scope="module")
-def board(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    NativeBoard.file = board_library(tmp_path_factory.mktemp("board"))
-    gym.register("QtabOwn/Board-v0", lambda **_: NativeBoard())
-    yield "QtabOwn/Board-v0"
-    del gym.registry["QtabOwn/Board-v0"]
-
-
-@needs_compiler
-@settings(max_examples=12, deadline=None)
-@given(
-    num_envs=st.integers(1, 5), mode=st.sampled_from(MODES), limit=st.integers(1, 20) | st.none(), seed=st.integers(0)
-)
-def test_a_library_equals_sync_vector_env(
-    board: str, num_envs: int, mode: AutoresetMode, limit: int | None, seed: int
-) -> None:
-    ours, theirs = make(board, num_envs, mode, max_episode_steps=limit)
-    assert ours.is_native
-    in_lockstep(ours, theirs, 40, seed)
-    same_streams(ours, theirs)
-
-
-@needs_compiler
-def test_a_library_continues_in_python_and_in_copies(board: str) -> None:
-    ours, theirs = make(board, 3)
-    in_lockstep(ours, theirs, 7, 5)
-    again = copy.deepcopy(ours)
-    assert ours.call("_elapsed") == theirs.call("_elapsed")
-    for _ in range(30):
-        expected = theirs.step([2, 2, 2])
-        assert_equal(ours.step([2, 2, 2]), expected)
-        assert_equal(again.step([2, 2, 2]), expected)
-    assert again.is_native
-
-
-@needs_compiler
-def test_a_library_that_fails_and_a_class_with_a_capsule(
-    tmp_path: Path, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(NativeBoard, "file", board_library(tmp_path, REWARD=2), raising=False)
-    gym.register("QtabOwn/Failing-v0", lambda **_: NativeBoard())
-    gym.register("QtabOwn/Capsule-v0", lambda **_: CapsuleBoard())
-    try:
-        ours = qtab.RustVectorEnv("QtabOwn/Failing-v0", 2)
-        places, _ = ours.reset(seed=0)
-        for _ in range(int(places[:, 0].min()) + 2):  # to the edge of the board
-            ours.step([0, 0])
-        with pytest.raises(RuntimeError, match="it returned QTAB_FAILED for action 0"):
-            ours.step([0, 0])
-        other = qtab.RustVectorEnv("QtabOwn/Capsule-v0", 2)
-        assert not other.is_native
-        assert "the infos of its class are known to Python only" in caplog.text
-        assert other.reset(seed=0)[0].shape == (2, 2)
-    finally:
-        del gym.registry["QtabOwn/Failing-v0"], gym.registry["QtabOwn/Capsule-v0"]
-
-
-class CapsuleBoard(Board):
-    """A class that gives Rust its functions."""
-
-    def __qtab_env__(self) -> Any:
-        raise AssertionError("a vector environment does not use it")

@@ -9,8 +9,10 @@ from gymnasium.envs.registration import EnvSpec
 from gymnasium.error import Error, ResetNeeded
 from numpy.typing import NDArray
 
+from qtab import _core
 from qtab._utils import checks
 from qtab.envs.matching import NotInRustError, entry_for_env
+from qtab.envs.native import native_env
 from qtab.envs.registry import ENTRIES, PREFIX, EnvEntry, gymnasium_id
 
 
@@ -40,6 +42,19 @@ def entry_to_step(spec: EnvSpec, env: gym.Env[Any, Any]) -> EnvEntry:
     except NotInRustError as error:
         env.close()
         raise ValueError(f"name must be the id of an environment that Rust steps, got {spec.id!r}: {error}") from None
+
+
+def known_env(name: str, env: gym.Env[Any, Any]) -> _core.NativeEnv | None:
+    """Returns an environment of the registry as Rust steps it; None if Rust does not take its parameters or table.
+
+    Args:
+        name: The name of its entry.
+        env: The environment without wrappers.
+    """
+    try:
+        return native_env(name, env)
+    except (TypeError, ValueError):
+        return None
 
 
 def seeds_of(seed: Any, num_envs: int) -> list[int | None]:

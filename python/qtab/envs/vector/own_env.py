@@ -1,5 +1,6 @@
 """Environments of one's own in a vector environment: functions that Numba compiles, and native libraries."""
 
+import logging
 from collections.abc import Sequence
 from typing import Any
 
@@ -14,18 +15,29 @@ from qtab.envs.matching import NotInRustError
 from qtab.envs.vector.python_vector_env import Snapshot
 from qtab.envs.vector.spaces import VectorSpaces
 
+_LOGGER = logging.getLogger("qtab")
 
-def own_env(env: gym.Env[Any, Any], num_envs: int, copy: bool) -> _core.NativeEnv:
-    """Returns an environment of one's own as the extension module steps its copies.
+
+def own_env(env: gym.Env[Any, Any], num_envs: int, copy: bool) -> _core.NativeEnv | None:
+    """Returns an environment of one's own as the extension module steps its copies; None if Python must step it.
+
+    The reason is then logged.
 
     Args:
         env: A ``FunctionalEnv`` or a ``NativeEnv``, perhaps in the wrappers of ``gymnasium.make``.
         num_envs: The number of sub-environments.
         copy: Whether each step returns new arrays of observations.
-
-    Raises:
-        NotInRustError: if Python must step it; the message gives the reason.
     """
+    try:
+        return _in_rust(env, num_envs, copy)
+    except NotInRustError as error:
+        name = env.spec.id if env.spec is not None else type(env.unwrapped).__name__
+        message = "%s is stepped in Python, which is much slower than Rust: %s"
+        _LOGGER.warning(message, name, f"{error}; {error.remedy}" if error.remedy else error)
+        return None
+
+
+def _in_rust(env: gym.Env[Any, Any], num_envs: int, copy: bool) -> _core.NativeEnv:
     unwrapped: Any = env.unwrapped
     if not any(type(unwrapped).__qtab_env__ is cls.__qtab_env__ for cls in (FunctionalEnv, NativeEnv)):
         raise NotInRustError("the infos of its class are known to Python only", "derive it from qtab.FunctionalEnv")

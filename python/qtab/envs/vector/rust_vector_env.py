@@ -1,35 +1,25 @@
 """``gymnasium.make_vec("qtab/…")``: a vector environment that steps all sub-environments in one call of Rust."""
 
-import logging
 from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
 import gymnasium as gym
 import numpy as np
-from gymnasium.envs.toy_text.taxi import TaxiEnv
 from gymnasium.error import ResetNeeded
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
 from qtab import _core
 from qtab._utils import checks
-from qtab.envs.external.capsule import has_capsule
+from qtab.envs.external.capsule import generator_at, has_capsule
 from qtab.envs.functional import FunctionalEnv
-from qtab.envs.matching import NotInRustError
-from qtab.envs.native import native_env
-from qtab.envs.vector.arguments import check_reset_mask, entry_to_step, seeds_of, spec_to_step
+from qtab.envs.vector.arguments import check_reset_mask, entry_to_step, known_env, seeds_of, spec_to_step
 from qtab.envs.vector.own_env import in_python, own_env
-from qtab.envs.vector.python_vector_env import PythonVectorEnv, Snapshot, restore
+from qtab.envs.vector.python_vector_env import PythonVectorEnv, Snapshot, draws_its_state, restore
 
-_LOGGER = logging.getLogger("qtab")
 _MAX_RESET_BOUND = 1e6
 """First states beyond this may overflow. Gymnasium's code then decides what happens."""
-
-
-def _draws_its_state(env: gym.Env) -> bool:
-    """Returns whether a frame depends on nothing but the state."""
-    return type(env).__module__.startswith("qtab.") and not isinstance(env, TaxiEnv)
 
 
 class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
@@ -109,10 +99,11 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
         """Creates the sub-environments in Rust; returns False if Rust does not support them."""
         env = self.example.unwrapped
         # A frame of Taxi depends on the frames before it, and one of a user's class may.
-        can_render = self.render_mode in ("rgb_array", "ansi") and _draws_its_state(env)
+        can_render = self.render_mode in ("rgb_array", "ansi") and draws_its_state(env)
         if self.render_mode is not None and not can_render:
             return False
-        native = self._own_env() if self._is_own else self._known_env()
+        own = self._is_own
+        native = own_env(self.example, self.num_envs, self.copy) if own else known_env(self._entry_name, env)
         if native is None:
             return False
         limited = self.example.has_wrapper_attr("_max_episode_steps")
@@ -126,20 +117,6 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
             self.copy,
             self._threads,
         )
-
-    def _known_env(self) -> _core.NativeEnv | None:
-        try:
-            return native_env(self._entry_name, self.example.unwrapped)
-        except (TypeError, ValueError):  # parameters or a table that Gymnasium accepts and Rust does not
-            return None
-
-    def _own_env(self) -> _core.NativeEnv | None:
-        try:
-            return own_env(self.example, self.num_envs, self.copy)
-        except NotInRustError as error:
-            message = "%s is stepped in Python, which is much slower than Rust: %s"
-            _LOGGER.warning(message, self._entry_name, f"{error}; {error.remedy}" if error.remedy else error)
-            return None
 
     def reset(
         self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
@@ -218,21 +195,13 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
         return tuple(self.seed_of(index) for index in range(self.num_envs))
 
     def _generators(self) -> tuple[np.random.Generator, ...]:
+        """Returns the sub-environments' generators, which Rust uses from now on."""
         return tuple(self._generator(index) for index in range(self.num_envs))
 
     def _generator(self, index: int) -> np.random.Generator:
-        """Returns a sub-environment's generator, which Rust uses from now on."""
         source = self.rng(index)
         if isinstance(source, tuple):
-            words_drawn, buffered_uint32 = source
-            bit_generator = np.random.PCG64(np.random.SeedSequence(self.seed_of(index)))
-            bit_generator.advance(words_drawn)
-            bit_generator.state = {
-                **bit_generator.state,
-                "has_uint32": int(buffered_uint32 is not None),
-                "uinteger": buffered_uint32 or 0,
-            }
-            source = np.random.Generator(bit_generator)
+            source = generator_at(self.seed_of(index), *source)
             self.set_rng(index, source)
         return source
 

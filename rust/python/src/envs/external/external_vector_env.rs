@@ -85,7 +85,9 @@ impl ExternalVectorEnv {
         call: impl Fn(usize, &mut SubEnv, &mut Pcg64) + Sync,
     ) -> PyResult<()> {
         let mut selected = repeated(false, self.sub_envs.len())?;
-        indices.iter().for_each(|&index| selected[index] = true);
+        for &index in indices {
+            selected[index] = true;
+        }
         let mut generators = with_capacity(rngs.len()).map_err(allocation)?;
         for rng in rngs {
             let SubEnvRng::Native(rng) = rng else {

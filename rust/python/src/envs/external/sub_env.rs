@@ -19,7 +19,7 @@ pub(super) struct SubEnv {
     pub(super) truncated: bool,
     /// The state, the progress and the generator before the present call.
     before: (Vec<u8>, Progress, Option<Pcg64>),
-    failure: Option<Failure>,
+    failed: Option<Failed>,
 }
 
 /// How far an episode is.
@@ -34,7 +34,7 @@ pub(super) struct Progress {
 }
 
 /// A function that failed: the position of the generator before the call, and the action of a step.
-struct Failure {
+struct Failed {
     error: CallError,
     position: Position,
     action: Option<usize>,
@@ -50,7 +50,7 @@ impl SubEnv {
             terminated: false,
             truncated: false,
             before: (with_capacity(state_size)?, Progress::default(), None),
-            failure: None,
+            failed: None,
         })
     }
 
@@ -67,7 +67,7 @@ impl SubEnv {
         let (state, progress, Some(generator)) = &mut self.before else { return };
         rng.clone_from(generator);
         self.progress = *progress;
-        self.failure = None;
+        self.failed = None;
         if progress.has_state {
             self.episode.set_state(state);
             // It has written the observation of this state before, and does so again.
@@ -80,7 +80,7 @@ impl SubEnv {
         let position = (rng.words_drawn(), rng.buffered_u32());
         match self.episode.reset(&mut RandomBits::new(&mut EnvironmentBits(rng))) {
             Ok(()) => self.progress = Progress { has_state: true, elapsed: 0, done: false },
-            Err(error) => self.failure = Some(Failure { error, position, action: None }),
+            Err(error) => self.failed = Some(Failed { error, position, action: None }),
         }
     }
 
@@ -98,13 +98,13 @@ impl SubEnv {
                 self.progress.elapsed = elapsed;
                 self.progress.done = self.terminated || self.truncated;
             }
-            Err(error) => self.failure = Some(Failure { error, position, action: Some(action) }),
+            Err(error) => self.failed = Some(Failed { error, position, action: Some(action) }),
         }
     }
 
     /// The error of the call if it failed, for a generator that was seeded with `seed`.
     pub(super) fn error(&self, py: Python<'_>, seed: &Seed) -> Option<PyErr> {
-        let Failure { error, position, action } = self.failure.as_ref()?;
+        let Failed { error, position, action } = self.failed.as_ref()?;
         let state = action.map(|_| self.episode.state());
         let failed = FailedCall { state, before: *position, action: *action, seed, played: None };
         Some(self.episode.shared().0.error(py, *error, &failed))
