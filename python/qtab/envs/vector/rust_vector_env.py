@@ -12,7 +12,8 @@ from gymnasium.vector.utils import batch_space
 
 from qtab import _core
 from qtab._utils import checks
-from qtab.envs.external.capsule import generator_at, has_capsule
+from qtab.envs.external.capsule import has_capsule
+from qtab.envs.external.positions import generator_at
 from qtab.envs.functional import FunctionalEnv
 from qtab.envs.vector.arguments import check_reset_mask, entry_to_step, known_env, seeds_of, spec_to_step
 from qtab.envs.vector.own_env import in_python, own_env
@@ -201,7 +202,7 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
     def _generator(self, index: int) -> np.random.Generator:
         source = self.rng(index)
         if isinstance(source, tuple):
-            source = generator_at(self.seed_of(index), *source)
+            source = generator_at(self.seed_of(index), source)
             self.set_rng(index, source)
         return source
 
