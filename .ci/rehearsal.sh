@@ -5,7 +5,7 @@
 # end of its first command.
 rehearsal() {
     built_wheel
-    local tools=.venv-rehearsal/$bin version python
+    local tools=.venv-rehearsal/$bin version python tried=0
     [ -d .venv-rehearsal ] || "$host_python" -m venv .venv-rehearsal
     $tools/pip install --quiet twine==7.0.0 pypiserver==2.4.2
     $tools/twine check --strict "$work"/dist/*
@@ -15,11 +15,15 @@ rehearsal() {
     for version in 3.10 3.11 3.12 3.13 3.14; do
         if python=$(interpreter $version); then
             install_from_index "$python"
+            tried=$((tried + 1))
         else
             echo "skipped: python$version is not installed"
         fi
     done
+    [ "$tried" -gt 0 ] || { echo "no Python of 3.10 to 3.14 is installed" && exit 1; }
     kill "$server"
+    wait "$server" || true
+    trap 'rm -rf "$work"' EXIT
 }
 
 # Starts an index for everyone on this machine on a free port; sets $index, its address, and $server, its process.
@@ -29,7 +33,7 @@ start_index() {
     mkdir -p "$work/index"
     "$1" run --interface 127.0.0.1 --port "$port" --authenticate . --passwords . --disable-fallback "$work/index" &
     server=$!
-    trap 'kill $server 2>/dev/null; rm -rf "$work"' EXIT
+    trap 'kill "$server" 2>/dev/null || true; rm -rf "$work"' EXIT
     index=http://127.0.0.1:$port
     "$host_python" - "$port" <<'END'
 import socket, sys, time
@@ -44,25 +48,28 @@ else:
 END
 }
 
-# Installs qtab for one Python as a user does; only qtab comes from the index, so that nothing else is looked up there.
+# Installs qtab for one Python as a user does, without Rust; only qtab comes from the index, so that nothing else is looked up
+# there. A shell of its own, because bash does not stop at errors in a function or a subshell whose result is tested.
 install_from_index() {
-    local tried programs line began=$SECONDS
+    local tried programs line rust began=$SECONDS
     tried=$(mktemp -d "$work/rehearsal-XXXX")
     "$1" -m venv "$tried/.venv"
     programs=$tried/.venv/$bin
+    for rust in cargo rustc; do
+        printf '#!/bin/sh\nexit 1\n' >"$programs/$rust"
+        chmod +x "$programs/$rust"
+    done
     line=$(sed -n '/<!-- train -->/,/^```$/s/^python3 .* && \(.*\)$/\1/p' README.md)
-    line=${line//.venv\/bin\//.venv/$bin/}
     sed -n '/^```python$/,/^```$/p' README.md | sed -n '2,/^```$/{/^```$/!p;}' >"$tried/first.py"
-    (
-        export PATH="$programs:/usr/bin:/bin"
-        ! type -P cargo || { echo "Rust is in the way" && exit 1; }
-        pip install --quiet --no-deps --only-binary :all: --index-url "$index/simple/" qtab
-        pip install --quiet --only-binary :all: 'qtab[all]'
-        pip check
-        cd "$tried"
-        python first.py
-        echo "$line"
-        bash -euc "$line" | tail -n 3
-    ) || exit 1
+    cat >"$tried/steps.sh" <<END
+export PATH="$programs:\$PATH"
+cd "$tried"
+pip install --quiet --no-deps --only-binary :all: --index-url "$index/simple/" qtab
+pip install --quiet --only-binary :all: "qtab[all]==\$(python -c 'from importlib.metadata import version; print(version("qtab"))')"
+pip check
+python first.py
+${line//.venv\/bin\//.venv/$bin/}
+END
+    bash -euo pipefail "$tried/steps.sh"
     echo "installed from the index on $("$1" --version): $((SECONDS - began)) s"
 }

@@ -82,6 +82,8 @@ class Experiment(Description, ABC):
 class ComputedExperiment(Experiment):
     """An experiment whose lines are computed once: the number of runs has no effect."""
 
+    names: Sequence[str]
+    """The names of the lines."""
     text: Callable[[Sequence[Line]], str] | None = None
     """Returns the table as text; None lists the points of the lines."""
     runs: int = 1
