@@ -166,7 +166,7 @@ def test_an_environment_in_python_is_stepped_there() -> None:
     random = qtab.estimate_values(Corridor(), "random", learning_rate=0.5, episodes=5)
     assert verify_values(random, None, None, gym.wrappers.TimeLimit(Corridor(), 10_000)).equal
     with pytest.raises(ValueError, match="seeds must be one seed for an environment that is stepped in Python, got 2"):
-        qtab.estimate_values(Corridor, "random", seeds=2, episodes=5)
+        qtab.estimate_values(Corridor, "random", seeds=2)
 
 
 def test_a_run_brings_its_discretizer() -> None:

@@ -151,7 +151,7 @@ TOUCHED: dict[str, tuple[Any, str]] = {
     ),
     "a class of the user's": (
         lambda: TimeLimit(Walk(), 30),
-        "Rust does not implement Walk, and it is compiled only for runs that may take 100,000 steps or more",
+        "Rust does not implement Walk; an environment whose transition table is known can be a qtab.TabularEnv",
     ),
 }
 

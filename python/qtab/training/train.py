@@ -55,8 +55,8 @@ def train(
     Args:
         env: An environment's id, its EnvSpec, or an environment, which is not closed. None takes the environment of
             ``config``. If Rust implements an environment and it is unchanged since ``gymnasium.make``, Rust trains
-            with the same numbers and leaves the object untouched, and also if Numba compiles its class. Any other
-            environment is stepped in Python; the logger ``qtab`` gives the reason once, unless ``progress`` is False.
+            with the same numbers and leaves the object untouched. Any other environment is stepped in Python; the
+            logger ``qtab`` gives the reason once, unless ``progress`` is False.
         config: The settings to start from. ``qtab.train(config=run.config)`` repeats a run exactly, in the environment
             that it was trained on, with its wrappers. Settings of a Config that do not apply together with the
             keywords are ignored; with another environment, so are its ``env_kwargs``, its ``preset`` and settings

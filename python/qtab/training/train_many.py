@@ -5,7 +5,6 @@ import os
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import closing, suppress
-from functools import partial
 from typing import Any, TypeAlias
 
 import gymnasium as gym
@@ -95,9 +94,7 @@ def train_many(
     env, base = collect(train_many, env, config, settings)
     # The bit generator may reject the largest seed.
     largest = numbers[-1] if isinstance(numbers, range) else max(numbers)
-    template, env, overrides = resolve_over(
-        env, base, {**settings, "seed": largest}, partial(resolve_template, runs=len(numbers))
-    )
+    template, env, overrides = resolve_over(env, base, {**settings, "seed": largest}, resolve_template)
     resolved = template.with_seed(numbers[0])
     log_default_limit(resolved)
     log_python_stepping(resolved)
@@ -180,8 +177,8 @@ def thread_count(threads: int | None) -> int:
     return os.cpu_count() or 1
 
 
-def resolve_template(env: str | EnvSpec | MakeEnv, settings: Mapping[str, Any], runs: int = 1) -> ResolvedRun:
-    """Resolves one of many runs that differ only by their seed; its environment is closed again.
+def resolve_template(env: str | EnvSpec | MakeEnv, settings: Mapping[str, Any]) -> ResolvedRun:
+    """Resolves a run that the others differ from only by their seed; its environment is closed again.
 
     Raises:
         TypeError: for a single environment, which several runs cannot share.
@@ -195,7 +192,7 @@ def resolve_template(env: str | EnvSpec | MakeEnv, settings: Mapping[str, Any], 
         made = env()
         if not isinstance(made, gym.Env):
             raise TypeError(f"env must make an environment, got {shown(made)}")
-    resolved = resolve(made, settings, owns_env=True, runs=runs)
+    resolved = resolve(made, settings, owns_env=True)
     resolved.close()
     if callable(env) and resolved.is_native and not _makes_equals(env, made):
         if (backend := settings.get("backend")) in INSISTING:

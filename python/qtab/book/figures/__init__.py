@@ -1,1 +1,4 @@
-"""The experiments of the book, by chapter; figures that differ only in a few settings share a module, those of several chapters beside the folders."""
+"""The experiments of the book, by chapter; figures that differ only in a few settings share a module.
+
+Those of several chapters are beside the folders of the chapters.
+"""

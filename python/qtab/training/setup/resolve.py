@@ -85,7 +85,7 @@ class _Request:
 
 
 def resolve(
-    env: str | EnvSpec | gym.Env | partial[gym.Env], *layers: Mapping[str, Any], owns_env: bool = False, runs: int = 1
+    env: str | EnvSpec | gym.Env | partial[gym.Env], *layers: Mapping[str, Any], owns_env: bool = False
 ) -> ResolvedRun:
     """Finds the environment and fills in all defaults.
 
@@ -94,7 +94,6 @@ def resolve(
         *layers: Settings by field name; later layers override earlier ones, and all override the preset.
         owns_env: Whether to close an environment that is given, with the run, or at once if it is not needed. An
             environment made here is always closed.
-        runs: The number of runs with these settings; for more of them, compiling the environment is more worthwhile.
 
     Raises:
         gymnasium.error.Error: raised by Gymnasium for an unknown environment id.
@@ -110,9 +109,9 @@ def resolve(
         if isinstance(env, gym.Env):
             if owns_env:
                 on_exit.callback(env.close)
-            request = _from_env(env, asked, runs)
+            request = _from_env(env, asked)
         elif isinstance(env, str | EnvSpec):
-            request = _from_spec(env, asked, runs)
+            request = _from_spec(env, asked)
             owns_env = True
             on_exit.callback(request.env.close)
         else:
@@ -123,7 +122,7 @@ def resolve(
     return run
 
 
-def _from_spec(env: str | EnvSpec, asked: Mapping[str, Any], runs: int) -> _Request:
+def _from_spec(env: str | EnvSpec, asked: Mapping[str, Any]) -> _Request:
     # The id keeps its package, so that the config can make the environment anywhere.
     name, spec = (env.id, env) if isinstance(env, EnvSpec) else named_spec(env)
     asked = {"env_kwargs": dict(spec.kwargs), **asked}
@@ -135,7 +134,7 @@ def _from_spec(env: str | EnvSpec, asked: Mapping[str, Any], runs: int) -> _Requ
     made = _make(spec, config) if known is None else known
     if entry is None:
         try:
-            entry, python_reason = _match(made, config, runs, is_made=True)
+            entry, python_reason = _match(made, config, is_made=True)
         except ValueError:
             made.close()
             raise
@@ -151,13 +150,12 @@ def _within_limit(config: Config, limit: int | None) -> tuple[Config, int | None
     return config, limit
 
 
-def _match(env: gym.Env, config: Config, runs: int, *, is_made: bool) -> tuple[InRust | None, str | None]:
+def _match(env: gym.Env, config: Config, *, is_made: bool) -> tuple[InRust | None, str | None]:
     """Returns the entry, or the capsule, of an environment that Rust can step; else None, and the reason with a remedy.
 
     Args:
         env: The environment.
         config: The settings given.
-        runs: The number of runs.
         is_made: Whether the environment was made from an id. A render mode then requests frames, which Rust cannot
             draw.
 
@@ -175,9 +173,7 @@ def _match(env: gym.Env, config: Config, runs: int, *, is_made: bool) -> tuple[I
     except NotInRustError as error:
         if config.backend in INSISTING:
             raise rust_unavailable(error, config.backend) from None
-        from qtab.training.setup.ordinary_class import compiled_if_worthwhile
-
-        return compiled_if_worthwhile(env, config, runs, error)
+        return None, f"{error}; {error.remedy}" if error.remedy else str(error)
     return entry, None
 
 
@@ -188,14 +184,14 @@ def _make(spec: EnvSpec, config: Config) -> gym.Env:
     return make_env(spec, config.env_kwargs, **limit)
 
 
-def _from_env(env: gym.Env, asked: Mapping[str, Any], runs: int) -> _Request:
+def _from_env(env: gym.Env, asked: Mapping[str, Any]) -> _Request:
     name = env.spec.id if env.spec is not None else type(env.unwrapped).__name__
     kwargs = dict(env.spec.kwargs) if env.spec is not None else {}
     if asked.get("env_kwargs"):
         raise ValueError(f"env_kwargs must be left out with an environment object, got {shown(asked['env_kwargs'])}")
     asked = {**asked, "env_kwargs": kwargs}
     config = config_of(name, asked)
-    entry, python_reason = _match(env, config, runs, is_made=False)
+    entry, python_reason = _match(env, config, is_made=False)
     config, limit = _within_limit(config, time_limit(env))
     return _Request(env, entry, config, asked, limit, python_reason)
 

@@ -9,11 +9,10 @@ import numpy as np
 import pytest
 
 import qtab
-from qtab.training.setup import ordinary_class
 
 pytest.importorskip("numba")
 
-SHORT: dict[str, Any] = {"episodes": 40, "max_episode_steps": 50, "seed": 4, "progress": False}
+SHORT: dict[str, Any] = {"episodes": 40, "max_episode_steps": 50, "seed": 4, "progress": False, "backend": "numba"}
 
 
 @pytest.fixture(autouse=True)
@@ -21,44 +20,10 @@ def _files_of_code(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
 
 
-@pytest.fixture
-def compiles(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Compiles for short runs, too."""
-    monkeypatch.setattr(ordinary_class, "LEAST_STEPS", 1)
-
-
 def assert_equal(one: Any, other: Any) -> None:
     assert one.episode_returns.tobytes() == other.episode_returns.tobytes()
     assert one.episode_lengths.tobytes() == other.episode_lengths.tobytes()
     assert one.tables.tobytes() == other.tables.tobytes()
-
-
-class Balance(gym.Env):
-    """A balance that is doubled, and may need more than 64 bits or, in a float, more than 53."""
-
-    observation_space = gym.spaces.Discrete(8)
-    action_space = gym.spaces.Discrete(2)
-
-    def __init__(self, fails: bool = False) -> None:
-        self.fails = fails
-
-    def reset(self, *, seed=None, options=None):
-        super().reset(seed=seed)
-        self.balance = 1
-        self.total: float = 0
-        return 0, {}
-
-    def step(self, action):
-        draw = self.np_random.random()
-        if action == 1 and draw < 0.9:
-            self.balance = self.balance * 128
-            self.total = self.total + self.balance * 3
-        elif draw < 0.1:
-            self.total = self.total + 0.5
-        if self.fails and self.balance > 2**70:
-            raise ArithmeticError(f"a balance of {self.balance}")
-        reward = float(self.balance % 1000003) + self.total % 7
-        return self.balance.bit_length() % 8, reward, bool(self.np_random.random() < 0.02), False, {}
 
 
 class Large(gym.Env):
@@ -94,12 +59,11 @@ class Large(gym.Env):
 
 
 LEARNING: dict[str, Any] = {
-    **{"episodes": 60, "max_episode_steps": 300, "seed": 1, "epsilon": 0.02},
+    **{"episodes": 60, "max_episode_steps": 300, "seed": 1, "epsilon": 0.02, "backend": "numba"},
     **{"initial_q": np.tile([0.0, 1000.0], (200, 1)), "progress": False},
 }
 
 
-@pytest.mark.usefixtures("compiles")
 @pytest.mark.parametrize("keeps", [False, True])
 def test_a_step_that_fails_in_compiled_code_only_is_taken_in_python(
     keeps: bool, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
@@ -108,10 +72,9 @@ def test_a_step_that_fails_in_compiled_code_only_is_taken_in_python(
     run = qtab.train(Large(keeps=keeps), **LEARNING)
     assert run.config.backend == "numba"
     assert caplog.text.count("an episode of Large goes on in Python") == 1
-    assert_equal(run, qtab.train(Large(keeps=keeps), backend="python", **LEARNING))
+    assert_equal(run, qtab.train(Large(keeps=keeps), **{**LEARNING, "backend": "python"}))
 
 
-@pytest.mark.usefixtures("compiles")
 def test_many_runs_and_evaluations_go_on_in_python() -> None:
     settings = {name: value for name, value in LEARNING.items() if name != "seed"}
     many = qtab.train_many(lambda: Large(keeps=True), seeds=3, threads=2, tables=True, **settings)
@@ -125,20 +88,13 @@ def test_many_runs_and_evaluations_go_on_in_python() -> None:
     assert evaluation.returns.tobytes() == qtab.evaluate(in_python, 3, env=Large(keeps=True), seed=5).returns.tobytes()
 
 
-@pytest.mark.usefixtures("compiles")
 def test_an_error_after_such_a_step_is_the_users() -> None:
     with pytest.raises(ArithmeticError, match="a product of 12089258196") as caught:
         qtab.train(Large(fails=True), **LEARNING)
     compiled: qtab.Run = caught.value.run  # type: ignore[attr-defined]
     with pytest.raises(ArithmeticError) as again:
-        qtab.train(Large(fails=True), backend="python", **LEARNING)
+        qtab.train(Large(fails=True), **{**LEARNING, "backend": "python"})
     assert_equal(compiled, again.value.run)  # type: ignore[attr-defined]
-
-
-@pytest.mark.usefixtures("compiles")
-def test_a_class_that_fails_often_is_stepped_in_python() -> None:
-    run = qtab.train(Balance(), **SHORT)
-    assert run.config.backend == "gymnasium"
 
 
 class Outside(Large):
@@ -155,11 +111,10 @@ class Outside(Large):
         return np.array([float(cell)]), rest[0], rest[1], False, {}
 
 
-@pytest.mark.usefixtures("compiles")
 def test_observations_outside_the_space_are_those_of_python() -> None:
     settings = {**LEARNING, "discretizer": "bins", "bins": 10, "initial_q": np.tile([0.0, 1000.0], (10, 1))}
     run = qtab.train(Outside(), **settings)
-    assert_equal(run, qtab.train(Outside(), backend="python", **settings))
+    assert_equal(run, qtab.train(Outside(), **{**settings, "backend": "python"}))
 
 
 CELL = """
@@ -180,30 +135,20 @@ class Walk(gym.Env):
 """
 
 
-def defined(text: str, name: str, keeps_source: bool = True) -> Any:
+def defined(text: str, name: str) -> Any:
     """The class that a cell of a notebook defines."""
-    if keeps_source:
-        linecache.cache[name] = (len(text), None, text.splitlines(keepends=True), name)
+    linecache.cache[name] = (len(text), None, text.splitlines(keepends=True), name)
     scope: dict[str, Any] = {"__name__": "__main__"}
     exec(compile(text, name, "exec"), scope)  # noqa: S102 - made here
     return scope["Walk"]
 
 
-@pytest.mark.usefixtures("compiles")
 def test_a_class_that_is_edited_in_a_notebook_is_compiled_again() -> None:
     returns = []
     for stride in (1, 3):
         made = defined(CELL.format(stride=stride), f"<ipython-input-{stride}>")
         run = qtab.train(made(), **SHORT)
         assert run.config.backend == "numba"
-        assert_equal(run, qtab.train(made(), backend="python", **SHORT))
+        assert_equal(run, qtab.train(made(), **{**SHORT, "backend": "python"}))
         returns.append(run.episode_returns.tobytes())
     assert returns[0] != returns[1]
-
-
-@pytest.mark.usefixtures("compiles")
-def test_a_class_without_source_code_is_stepped_in_python(caplog: pytest.LogCaptureFixture) -> None:
-    made = defined(CELL.format(stride=2), "<string>", keeps_source=False)
-    run = qtab.train(made(), **{**SHORT, "progress": None})
-    assert run.config.backend == "gymnasium"
-    assert "<string>:8: the source code of Walk.reset is not available; define the class in a file" in caplog.text
