@@ -18,6 +18,7 @@ from qtab.compilation.not_compilable import NotCompilable, NotNow
 from qtab.compilation.proof import prove
 from qtab.compilation.rewriting import Rewritten, rewrite
 from qtab.compilation.twins.class_twin import ClassTwin, restored, twin_of
+from qtab.compilation.twins.plain_data import shared_attributes
 from qtab.compilation.twins.repetition import Repetition, Result
 from qtab.compilation.twins.side_effects import refuse_effects
 from qtab.envs.external.positions import Position
@@ -42,7 +43,7 @@ class OrdinaryEnv:
         shared = refuse_effects(env)
         self.env = twin_of(env)
         with restored(shared):
-            self.rewritten = rewrite(self.env)
+            self.rewritten = rewrite(self.env, shared_attributes(env, shared))
         _check_episodes(env, self.rewritten)
         self.record = with_observation(self.rewritten.dtype, observation)
         first = np.zeros(1, self.record)

@@ -209,6 +209,10 @@ class Config(WithOrigin):
         # For type checkers, which would otherwise expect the stored types, not the types that may be given.
         def __init__(self, env: str = ..., **settings: Unpack[Settings]) -> None: ...
 
+    def __post_init__(self) -> None:
+        """Checks the values and converts NumPy's numbers to Python's."""
+        vars(self).update(validated(vars(self), DEFAULTS))
+
     def __eq__(self, other: object) -> bool:
         """Whether all settings are equal; arrays are compared byte by byte."""
         if not isinstance(other, Config):
@@ -268,9 +272,9 @@ def _comparable(value: Any) -> Any:
 
 
 def _checking(init: Callable[..., None]) -> Callable[..., None]:
-    """Makes the generated constructor check the settings, and convert NumPy's numbers to Python's.
+    """Makes the generated constructor suggest the nearest setting for an unknown keyword.
 
-    It suggests the nearest setting for an unknown keyword, and adds settings that follow from those given.
+    It also adds the settings that follow from those given.
     """
 
     @wraps(init)
@@ -284,7 +288,6 @@ def _checking(init: Callable[..., None]) -> Callable[..., None]:
             settings.setdefault("on_truncation", "terminate")
         settings.update(implied_schedules(settings, {**DEFAULTS, **settings}))
         init(self, *args, **settings)
-        vars(self).update(validated(vars(self), DEFAULTS))
 
     return checked
 

@@ -220,12 +220,12 @@ def _of_key(name: str, given: Any) -> dict[str, Any]:
 LARGEST_MT19937_SEED = 2**32 - 1
 
 
-def validated(fields: Mapping[str, Any], defaults: Mapping[str, Any]) -> dict[str, Any]:
+def validated(fields: Mapping[str, Any], standard: Mapping[str, Any]) -> dict[str, Any]:
     """Returns the checked fields of a config. None stays None if it means "not given".
 
     Args:
         fields: The fields.
-        defaults: The defaults of the fields, which are valid.
+        standard: The defaults of the fields, which are valid.
 
     Raises:
         TypeError: for a value of the wrong type.
@@ -236,7 +236,8 @@ def validated(fields: Mapping[str, Any], defaults: Mapping[str, Any]) -> dict[st
         checks.integer("seed", fields["seed"], least=0, most=LARGEST_MT19937_SEED)
     for name, setting in SETTINGS.items():
         value = fields[name]
-        if value is not defaults[name] and (value is not None or not setting.may_be_none):
+        is_default = value is standard[name] and not isinstance(value, dict)  # of which the config gets its own
+        if not is_default and (value is not None or not setting.may_be_none):
             checked[name] = setting.check(name, value)
     checked["discretizer"] = checked_discretizer("discretizer", fields["discretizer"])
     for name in (*OPTIONS, *_CHECKED):

@@ -29,4 +29,25 @@ def restore(config: Config, arrays: Mapping[str, NDArray[Any]], n_rows: int) -> 
     return named.restore(config, arrays, n_rows)
 
 
-__all__ = ["DISCRETIZERS", "Discretizer", "build", "is_plain", "restore"]
+_CLASSES = {
+    "AssignedRows": "assigned_rows:AssignedRows",
+    "Bins": "bins:Bins",
+    "Composite": "composite:Composite",
+    "Edges": "edges:Edges",
+    "Function": "function:Function",
+    "Identity": "identity:Identity",
+    "Rounding": "rounding:Rounding",
+    "Sparse": "assigned_rows:AssignedRows",  # the name of AssignedRows in earlier versions
+    "TileCoding": "tile_coding:TileCoding",
+    "TimeAware": "time_aware:TimeAware",
+}
+
+
+def __getattr__(name: str) -> type[Discretizer]:
+    """Imports a class of this package when it is asked for."""
+    if name not in _CLASSES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return named.class_at(_CLASSES[name])
+
+
+__all__ = ["DISCRETIZERS", "Discretizer", *_CLASSES, "build", "is_plain", "restore"]

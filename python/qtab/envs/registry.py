@@ -45,6 +45,10 @@ class EnvEntry:
         """Whether all transition probabilities are known, from which :func:`qtab.optimum` computes the optimum."""
         return self.name in (_TABLE, "Blackjack", "Taxi")
 
+    def makes(self, spec: EnvSpec) -> bool:
+        """Returns whether a spec makes one of the two classes, without wrappers of its own."""
+        return spec.entry_point in (self.gymnasium_entry_point, self.entry_point) and not spec.additional_wrappers
+
 
 def _classic_control(name: str, gymnasium_class: str, *supported_kwargs: str, vector_entry_point: str = "") -> EnvEntry:
     return EnvEntry(
@@ -146,12 +150,10 @@ def entry_for_id(env: str) -> EnvEntry | None:
 def entry_for_spec(spec: EnvSpec, kwargs: Mapping[str, Any]) -> EnvEntry | None:
     """Returns the entry that computes the numbers of ``gymnasium.make(spec, **kwargs)``; None if there is none.
 
-    There is none either if the code of the environment's class was replaced.
+    Also None if the code of the environment's class was replaced.
     """
     entry = entry_for_id(spec.id)
-    if entry is None or spec.additional_wrappers:
-        return None
-    if spec.entry_point not in (entry.gymnasium_entry_point, entry.entry_point):
+    if entry is None or not entry.makes(spec):
         return None
     for name, value in {**spec.kwargs, **kwargs}.items():
         if name == "render_mode":
@@ -160,7 +162,7 @@ def entry_for_spec(spec: EnvSpec, kwargs: Mapping[str, Any]) -> EnvEntry | None:
         # NumPy scalars would promote to other dtypes than Python numbers do.
         elif not entry.has_table and (name not in entry.supported_kwargs or type(value) not in (int, float, bool)):
             return None
-    return None if changed_entry_point(spec.entry_point) else entry
+    return None if changed_entry_point(str(spec.entry_point)) else entry
 
 
 def versioned(env: str) -> str:

@@ -209,4 +209,4 @@ class TrainingOptions:
         checks.count("record", self.record, least=0)
         checks.boolean("visits", self.visits)
         bytes_limit(self.memory_limit)
-        as_tuple(self.callback)
+        CallbackList(self.callback, self.callback_every)

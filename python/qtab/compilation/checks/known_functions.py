@@ -64,7 +64,7 @@ DRAWS: dict[str, tuple[str, str]] = {
     "standard_normal": ("", _ANY),
     "standard_exponential": ("", _ANY),
     "standard_cauchy": ("", _ANY),
-    "uniform": ("low=0.0, high=1.0", "0.0 <= high - low < math.inf"),
+    "uniform": ("low=0.0, high=1.0", f"high - low < math.inf and {_NOT_NEGATIVE.format('(high - low)')}"),
     "normal": ("loc=0.0, scale=1.0", _NOT_NEGATIVE.format("scale")),
     "lognormal": ("mean=0.0, sigma=1.0", _NOT_NEGATIVE.format("sigma")),
     "logistic": ("loc=0.0, scale=1.0", _NOT_NEGATIVE.format("scale")),
@@ -78,9 +78,9 @@ DRAWS: dict[str, tuple[str, str]] = {
     "standard_t": ("df", _POSITIVE.format("df")),
     "chisquare": ("df", _POSITIVE.format("df")),
     "f": ("dfnum, dfden", "dfnum > 0.0 and dfden > 0.0"),
-    "noncentral_chisquare": ("df, nonc", "df > 0.0 and nonc >= 0.0"),
-    "noncentral_f": ("dfnum, dfden, nonc", "dfnum > 0.0 and dfden > 0.0 and nonc >= 0.0"),
-    "beta": ("a, b", "a > 0.0 and b > 0.0"),
+    "noncentral_chisquare": ("df, nonc", f"df > 0.0 and {_NOT_NEGATIVE.format('nonc')}"),
+    "noncentral_f": ("dfnum, dfden, nonc", f"dfnum > 0.0 and dfden > 0.0 and {_NOT_NEGATIVE.format('nonc')}"),
+    "beta": ("a, b", "a > 0.0 and b > 0.0 and (a > 0.06 or b > 0.06)"),
     "triangular": ("left, mode, right", "left <= mode <= right and left < right"),
     "poisson": ("lam=1.0", "0.0 <= lam < 10.0"),  # beyond that, Numba's own algorithm differs
     "geometric": ("p", "1e-9 <= p <= 1.0"),  # below, the numbers may not fit 64 bits

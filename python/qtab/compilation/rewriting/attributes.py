@@ -2,7 +2,7 @@
 
 import ast
 import inspect
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from types import FunctionType
 from typing import Any
 
@@ -31,10 +31,11 @@ class Attributes:
     Args:
         env: The environment, from which constants are read.
         twin: A copy of it that was reset, from which the kinds of the other attributes are read.
+        sharing: The attributes that share memory before they were copied, and what with.
     """
 
-    def __init__(self, env: gym.Env, twin: gym.Env) -> None:
-        self.env, self.twin = env, twin
+    def __init__(self, env: gym.Env, twin: gym.Env, sharing: Mapping[str, str] | None = None) -> None:
+        self.env, self.twin, self.sharing = env, twin, sharing or {}
         self.cls = type(env)
         self.kinds: dict[str, Kind] = {}
         self.assigned: set[str] = set()
@@ -132,6 +133,9 @@ class Attributes:
             if names & self.changed_in_place:
                 raise error()
         for name in sorted(self.changed_in_place):
+            if name in self.sharing:
+                reason = f"self.{name} is changed in place, and shares memory with {self.sharing[name]}"
+                raise NotCompilable(reason, advice=f"copy it where it is assigned, as in self.{name} = array.copy()")
             for other in self._same_memory(name):
                 advice = f"copy it where it is assigned: self.{name} = self.{other}.copy()"
                 raise NotCompilable(

@@ -1,7 +1,7 @@
 """From an environment to functions over a record of its attributes."""
 
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from types import FunctionType
 from typing import Any
@@ -62,13 +62,14 @@ class Rewritten:
     """The globals of the functions."""
 
 
-def rewrite(env: gym.Env) -> Rewritten:
+def rewrite(env: gym.Env, sharing: Mapping[str, str] | None = None) -> Rewritten:
     """Returns an ordinary Gymnasium class as functions over a record of its attributes.
 
     ``env`` is not changed: a copy of it is reset to see the types of its attributes.
 
     Args:
         env: The environment, without wrappers.
+        sharing: The attributes that share memory in the environment of which ``env`` is a copy, and what with.
 
     Raises:
         NotCompilable: for what cannot be compiled, with the file, the line and what to write instead.
@@ -79,7 +80,7 @@ def rewrite(env: gym.Env) -> Rewritten:
     except Exception as error:
         kind = type(error).__name__
         raise NotCompilable(f"a copy of the environment cannot be reset ({kind}: {error})") from error
-    attributes = Attributes(env, twin)
+    attributes = Attributes(env, twin, sharing)
     for _ in range(MAX_ATTEMPTS):
         try:
             return _attempt(env, attributes)

@@ -2,6 +2,7 @@
 
 import copy
 import warnings
+from collections import deque
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
@@ -29,7 +30,7 @@ def twin_of(env: gym.Env) -> Any:
 
 @contextmanager
 def restored(shared: Sequence[Any]) -> Iterator[None]:
-    """Restores lists, dicts, sets and arrays that are changed meanwhile.
+    """Restores lists, dicts, sets, deques and arrays that are changed meanwhile.
 
     Args:
         shared: The values, which are data.
@@ -54,6 +55,9 @@ def _restore(value: Any, old: Any) -> None:
         value[...] = old
     elif isinstance(value, list):
         value[:] = old
+    elif isinstance(value, deque):
+        value.clear()
+        value.extend(old)
     else:
         value.clear()
         value.update(old)

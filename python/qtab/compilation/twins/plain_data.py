@@ -3,13 +3,13 @@
 import dataclasses
 import enum
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
 from gymnasium import spaces
 
-_SIMPLE = (bool, int, float, complex, str, bytes, type(None), range, slice, np.generic, np.dtype, enum.Enum)
+_SIMPLE = (bool, int, float, complex, str, bytes, type(None), range, slice)
 _COLLECTIONS = (list, tuple, set, frozenset, deque)
 
 
@@ -22,12 +22,12 @@ def is_plain(value: Any) -> bool:
 
 
 def _is_plain(value: Any, seen: set[int]) -> bool:
-    if isinstance(value, _SIMPLE):
+    if type(value) in _SIMPLE or isinstance(value, np.generic | np.dtype | enum.Enum):
         return True
     if id(value) in seen:
         return True
     seen.add(id(value))
-    if isinstance(value, np.ndarray):
+    if type(value) is np.ndarray:
         return not value.dtype.hasobject
     if type(value) in _COLLECTIONS or (isinstance(value, tuple) and hasattr(value, "_fields")):
         return all(_is_plain(item, seen) for item in value)
@@ -36,8 +36,57 @@ def _is_plain(value: Any, seen: set[int]) -> bool:
     if isinstance(value, np.random.Generator) or _is_of_gymnasium(value):
         return True
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
-        return "__deepcopy__" not in vars(type(value)) and _are_plain(vars(value), seen)
+        members = [member for cls in type(value).__mro__[:-1] for member in vars(cls).items()]
+        if any(name == "__deepcopy__" or isinstance(member, property) for name, member in members):
+            return False
+        return _are_plain(_fields_of(value), seen)
     return False
+
+
+def mutable_parts(value: Any) -> Iterator[Any]:
+    """Yields the arrays, lists, dicts, sets and deques in data, outer ones first."""
+    if isinstance(value, np.ndarray | list | dict | set | deque):
+        yield value
+    inner: list[Any] = []
+    if isinstance(value, dict):
+        inner = list(value.values())
+    elif isinstance(value, list | tuple | deque):
+        inner = list(value)
+    elif dataclasses.is_dataclass(value) and not isinstance(value, type):
+        inner = list(_fields_of(value).values())
+    for one in inner:
+        yield from mutable_parts(one)
+
+
+def shared_attributes(env: Any, outside: list[Any]) -> dict[str, str]:
+    """Returns the attributes of an environment that share memory, and what with: an attribute, or a value outside.
+
+    Args:
+        env: The environment.
+        outside: The arrays and collections of its class and of modules that its methods read.
+    """
+    parts = [(f"self.{name}", part) for name, value in vars(env).items() for part in mutable_parts(value)]
+    for name, value in vars(env).items():
+        if not is_plain(value):  # such as an object of a class of one's own
+            inner = getattr(value, "__dict__", {}).values()
+            parts += [(f"self.{name}", part) for one in inner for part in mutable_parts(one)]
+    others = [*parts, *(("a value outside of the environment", one) for one in outside)]
+    found: dict[str, str] = {}
+    for name, one in parts:
+        for other, part in others:
+            if other != name and (one is part or _overlap(one, part)):
+                found.setdefault(name.removeprefix("self."), other)
+    return found
+
+
+def _overlap(one: Any, other: Any) -> bool:
+    return isinstance(one, np.ndarray) and isinstance(other, np.ndarray) and np.may_share_memory(one, other)
+
+
+def _fields_of(value: Any) -> dict[str, Any]:
+    """Returns the values of the fields of a dataclass, also of one with slots, and those beside them."""
+    fields = {one.name: getattr(value, one.name) for one in dataclasses.fields(value) if hasattr(value, one.name)}
+    return {**fields, **getattr(value, "__dict__", {})}
 
 
 def _are_plain(values: Mapping[Any, Any], seen: set[int]) -> bool:
@@ -60,6 +109,8 @@ def same(one: Any, other: Any) -> bool:
         return len(one) == len(other) and all(map(same, one, other))
     if isinstance(one, set | frozenset):
         return bool(one == other)
-    if dataclasses.is_dataclass(one) or _is_of_gymnasium(one):
+    if dataclasses.is_dataclass(one):
+        return same(_fields_of(one), _fields_of(other))
+    if _is_of_gymnasium(one):
         return same(vars(one), vars(other))
     return repr(one) == repr(other)

@@ -2,6 +2,7 @@
 
 import ast
 import builtins
+import dataclasses
 import sys
 from types import BuiltinFunctionType, FunctionType, ModuleType
 from typing import Any
@@ -17,7 +18,7 @@ from qtab.compilation.rewriting.source.sources import Source, source_of
 from qtab.compilation.rewriting.source.syntax import CHANGING
 from qtab.compilation.rewriting.statements.effects import PURE_BUILTINS, PURE_METHODS
 from qtab.compilation.twins.known_values import KnownValues
-from qtab.compilation.twins.plain_data import is_plain
+from qtab.compilation.twins.plain_data import is_plain, mutable_parts
 
 METHODS = ("reset", "step", "action_masks", "action_mask")
 """The methods that are run in Python before they are compiled."""
@@ -47,7 +48,7 @@ def refuse_effects(env: gym.Env) -> list[Any]:
         env: The environment, without wrappers. Nothing of it is run.
 
     Returns:
-        The lists, dicts, sets and arrays of its class and of modules that its methods read.
+        The lists, dicts, sets, deques and arrays that its methods read: of its class, of modules, of default arguments.
 
     Raises:
         NotCompilable: if they may; it names the line. Also if the source code is not available.
@@ -110,6 +111,9 @@ class _Body(KnownValues):
         Raises:
             NotCompilable: for the first statement that may have effects.
         """
+        function = self._source.function
+        for default in (*(function.__defaults__ or ()), *(function.__kwdefaults__ or {}).values()):
+            self._data(self._source.node, default)
         for statement in self._source.node.body:
             self._visit(statement)
 
@@ -187,6 +191,8 @@ class _Body(KnownValues):
     def _member(self, node: ast.Attribute, stores: bool) -> None:
         """Checks an attribute of the environment."""
         known, name = self._all.known, node.attr
+        if name.startswith("__") and not name.endswith("__"):
+            raise self._refuse(node, f"self.{name} is a private name", f"name it self.{name[1:]}")
         member, owner = known.find(name, self._owner if self._is_super(node.value) else None)
         if name in ("np_random", "_np_random", "unwrapped", "np_random_seed") and owner is gym.Env:
             return
@@ -200,20 +206,23 @@ class _Body(KnownValues):
         elif isinstance(member, staticmethod | classmethod):
             if isinstance(member.__func__, FunctionType):
                 self._all.add(member.__func__, owner, "class" if isinstance(member, classmethod) else "")
+        elif hasattr(type(member), "__get__") or hasattr(type(member), "__set__"):
+            raise self._refuse(node, f"self.{name} is a descriptor of its class", "use an ordinary attribute")
         elif not stores and name in vars(self._all.env):
             self._data(node, vars(self._all.env)[name], is_copied=True)
         elif not stores and member is not MISSING:
             self._data(node, member)
 
-    def _data(self, node: ast.expr, value: Any, is_copied: bool = False) -> None:
+    def _data(self, node: ast.AST, value: Any, is_copied: bool = False) -> None:
         """Checks a value that is no local variable; ``is_copied`` if it is an attribute that a copy has of its own."""
         if isinstance(value, FunctionType | type) or callable(value):
             self._callable(node, value)
         elif not isinstance(value, ModuleType) and not is_plain(value):
             kind = type(value).__name__
-            raise self._refuse(node, f"`{ast.unparse(node)}` is an object of type {kind}", "use numbers and arrays")
-        elif isinstance(value, list | dict | set | np.ndarray) and not is_copied:
-            self._all.shared[id(value)] = value
+            what = f"`{ast.unparse(node)}`" if isinstance(node, ast.expr) else "a default argument"
+            raise self._refuse(node, f"{what} is an object of type {kind}", "use numbers and arrays")
+        elif not is_copied and not isinstance(value, ModuleType):
+            self._all.shared.update((id(part), part) for part in mutable_parts(value))
 
     def _call(self, node: ast.Call) -> None:
         function, passes_self = node.func, self._is_super(node)
@@ -254,11 +263,11 @@ class _Body(KnownValues):
             raise self._refuse(node, "a space has a random generator of its own", "draw from self.np_random")
         if isinstance(owner, np.random.Generator):
             raise self._refuse(node, "a second random generator", "draw from self.np_random")
-        if function.attr not in SAFE_METHODS:
+        if function.attr not in SAFE_METHODS or dataclasses.is_dataclass(owner):
             raise self._refuse(node, f"`{ast.unparse(function)}` is called")
         self._visit(function.value)
 
-    def _callable(self, node: ast.expr, value: Any) -> None:
+    def _callable(self, node: ast.AST, value: Any) -> None:
         """Checks a function or a class that is used."""
         name, module = getattr(value, "__name__", type(value).__name__), str(getattr(value, "__module__", None) or "")
         root = module.partition(".")[0]
@@ -278,7 +287,8 @@ class _Body(KnownValues):
                 return
             if hasattr(value, "__members__") or hasattr(value, "_fields") or module == "collections":
                 return
-            if getattr(value, "__dataclass_params__", None) is not None and not hasattr(value, "__post_init__"):
+            is_record = dataclasses.is_dataclass(value) and not hasattr(value, "__post_init__")
+            if is_record and all(one.default_factory is dataclasses.MISSING for one in dataclasses.fields(value)):
                 return
             raise self._refuse(node, f"an object of type {name} is made", "use numbers, tuples and NumPy arrays")
         elif isinstance(value, FunctionType) and root not in sys.stdlib_module_names - {"__main__"}:

@@ -49,7 +49,8 @@ def external_env(env: gym.Env, backend: str, *, needs_masks: bool = False) -> _c
         base, name = found
         raise NotInRustError(f"its class {base.__name__} overrides {name}", "leave reset and step as they are")
     failed = getattr(unwrapped, "__qtab_env_failed__", None)
-    external = _core.ExternalEnv(unwrapped.__qtab_env__(), None if failed is None else _failure_handler(failed))
+    capsule = unwrapped.__qtab_env__()  # kept here: it must not end while an error is raised
+    external = _core.ExternalEnv(capsule, None if failed is None else _failure_handler(failed))
     limit = external.max_episode_steps
     if limit is not None and (own := getattr(unwrapped, "max_episode_steps", None)) != limit:
         raise ValueError(f"max_episode_steps of the environment must be {limit}, as in its capsule, got {own}")
@@ -78,7 +79,8 @@ def compiled_class(env: gym.Env, needs_masks: bool) -> _core.ExternalEnv:
             raise compiled.rewritten.mask_refusal
     except NotCompilable as refusal:
         raise NotInRustError(refusal.place_and_reason, refusal.advice) from None
-    return _core.ExternalEnv(compiled.capsule(), compiled.repeat, repeats_episodes=True)
+    capsule = compiled.capsule()  # kept here: it must not end while an error is raised
+    return _core.ExternalEnv(capsule, compiled.repeat, repeats_episodes=True)
 
 
 def _unwrapped(env: gym.Env) -> Any:

@@ -71,7 +71,7 @@ class _Request:
     def description(self) -> EnvironmentDescription:
         """Describes the environment, before anything steps it."""
         entry, spec, kwargs = self.entry, self.spec, self.config.env_kwargs
-        if isinstance(entry, EnvEntry) and spec is not None and not spec.additional_wrappers:
+        if isinstance(entry, EnvEntry) and spec is not None and entry.makes(spec):
             if isinstance(self.env, KnownTable):
                 return describe_entry(entry, spec, kwargs, self.env, spec.max_episode_steps)
             if not entry.has_table:
@@ -132,15 +132,16 @@ def _from_spec(env: str | EnvSpec, asked: Mapping[str, Any]) -> _Request:
     if entry is not None and config.backend not in IN_PYTHON and config.action_mask is False:
         known = known_table(spec, config.env_kwargs)
     made = _make(spec, config) if known is None else known
+    own_limit = spec.max_episode_steps
     if entry is None:
         try:
             entry, python_reason = _match(made, config, is_made=True)
         except ValueError:
             made.close()
             raise
-    of_capsule = isinstance(entry, _core.ExternalEnv)
-    config, limit = _within_limit(config, time_limit(made)) if of_capsule else (config, spec.max_episode_steps)
-    return _Request(made, entry, config, asked, limit, python_reason, spec)
+        if entry is not None:  # its class, or the function that makes it, may have a limit of its own
+            config, own_limit = _within_limit(config, time_limit(made))
+    return _Request(made, entry, config, asked, own_limit, python_reason, spec)
 
 
 def _within_limit(config: Config, limit: int | None) -> tuple[Config, int | None]:

@@ -83,7 +83,7 @@ def _scalars(symbol: str, left: Value, right: Value) -> Result:
         return "arithmetic with two booleans", "convert them: int(...)"
     if symbol == "**":
         return _power(left, right)
-    if MIXED in (one, other) and symbol in ("*", "/"):
+    if MIXED in (one, other) and symbol in ("*", "/", "//", "%"):
         which = "a number that is sometimes an integer: the sign of a zero would differ"
         return which, "write a float in every assignment, such as 0.0 for 0"
     if symbol == "/":

@@ -26,10 +26,10 @@ def _function(name: str) -> Handler:
         if any(value.kind not in WIDE for value in lifted):
             wrong = next(value for value in lifted if value.kind not in WIDE)
             raise scope.refuse(node, f"math.{name} of {in_words(wrong.kind)}", "convert it: float(...)")
-        if name in MATH_ROUNDED and lifted[0].kind == INT:
-            return lifted[0]
-        codes = [as_float(value) for value in lifted]
-        kind = BOOL if name in MATH_TESTS else INT if name in MATH_ROUNDED else FLOAT
+        # Integers are rounded as they are. NumPy's become floats, so that a check allows them up to 2**53.
+        rounds = name in MATH_ROUNDED
+        codes = [str(value.code) if rounds and value.kind == INT else as_float(value) for value in lifted]
+        kind = BOOL if name in MATH_TESTS else INT if rounds else FLOAT
         return Value(kind, f"math.{name}({', '.join(codes)})")
 
     return handler
