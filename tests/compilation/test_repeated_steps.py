@@ -107,13 +107,14 @@ class Outside(Large):
         return np.array([float(cell)]), info
 
     def step(self, action):
-        cell, *rest = super().step(action)
-        return np.array([float(cell)]), rest[0], rest[1], False, {}
+        cell, reward, terminated, _, _ = super().step(action)
+        return np.array([float(cell)]), reward, terminated, False, {}
 
 
 def test_observations_outside_the_space_are_those_of_python() -> None:
     settings = {**LEARNING, "discretizer": "bins", "bins": 10, "initial_q": np.tile([0.0, 1000.0], (10, 1))}
     run = qtab.train(Outside(), **settings)
+    assert run.config.backend == "numba"
     assert_equal(run, qtab.train(Outside(), **{**settings, "backend": "python"}))
 
 

@@ -2,6 +2,7 @@
 
 import inspect
 import os
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -118,12 +119,10 @@ def test_copies_are_made_without_the_constructor_and_keep_changed_attributes() -
     assert not RAN
 
 
-def test_training_steps_such_a_class_in_python_and_names_the_line(
-    caplog: pytest.LogCaptureFixture, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("qtab.training.setup.ordinary_class.LEAST_STEPS", 1)
+def test_training_steps_such_a_class_in_python_or_names_the_line(capsys: pytest.CaptureFixture[str]) -> None:
     run = qtab.train(StepPrints(), episodes=2, max_episode_steps=10, seed=0, progress=False)
     assert run.config.backend == "gymnasium"
     assert capsys.readouterr().out.count("step") == run.episode_lengths.sum()
-    qtab.train(StepPrints(), episodes=2, max_episode_steps=10, seed=0)
-    assert f"{effects.__file__}:{line_of(StepPrints)}: print is called; log in a wrapper or a callback" in caplog.text
+    place = f"{effects.__file__}:{line_of(StepPrints)}: print is called; log in a wrapper or a callback"
+    with pytest.raises(ValueError, match=re.escape(place)):
+        qtab.train(StepPrints(), episodes=2, max_episode_steps=10, seed=0, backend="numba")

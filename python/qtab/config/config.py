@@ -272,10 +272,7 @@ def _comparable(value: Any) -> Any:
 
 
 def _checking(init: Callable[..., None]) -> Callable[..., None]:
-    """Makes the generated constructor suggest the nearest setting for an unknown keyword.
-
-    It also adds the settings that follow from those given.
-    """
+    """Makes the generated constructor suggest the nearest name, and add the settings that follow from those given."""
 
     @wraps(init)
     def checked(self: Config, *args: Any, **settings: Any) -> None:

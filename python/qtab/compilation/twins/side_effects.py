@@ -51,7 +51,7 @@ def refuse_effects(env: gym.Env) -> list[Any]:
         The lists, dicts, sets, deques and arrays that its methods read: of its class, of modules, of default arguments.
 
     Raises:
-        NotCompilable: if they may; it names the line. Also if the source code is not available.
+        NotCompilable: if they may, with the line, or if the source code is not available.
     """
     if (base := next((one for one in type(env).__mro__ if "__del__" in vars(one)), None)) is not None:
         raise NotCompilable(f"{base.__name__} defines __del__, which would be called for a copy", advice="use close")
@@ -218,9 +218,8 @@ class _Body(KnownValues):
         if isinstance(value, FunctionType | type) or callable(value):
             self._callable(node, value)
         elif not isinstance(value, ModuleType) and not is_plain(value):
-            kind = type(value).__name__
             what = f"`{ast.unparse(node)}`" if isinstance(node, ast.expr) else "a default argument"
-            raise self._refuse(node, f"{what} is an object of type {kind}", "use numbers and arrays")
+            raise self._refuse(node, f"{what} is an object of type {type(value).__name__}", "use numbers and arrays")
         elif not is_copied and not isinstance(value, ModuleType):
             self._all.shared.update((id(part), part) for part in mutable_parts(value))
 
@@ -236,13 +235,10 @@ class _Body(KnownValues):
                 passes_self = True  # Base.method(self, ...)
                 if value is not gym.Env.reset:
                     self._all.add(value, next(one for one in owner.__mro__ if function.attr in vars(one)))
-            elif isinstance(value, FunctionType | type) or isinstance(owner, ModuleType | type):
+            elif isinstance(value, FunctionType | type) or (owner is not MISSING and not is_plain(owner)):
                 self._load(function)
-            elif owner is MISSING or is_plain(owner):
-                if not self._draws(function.value):
-                    self._method(node, function)
-            else:
-                self._load(function)
+            elif not self._draws(function.value):
+                self._method(node, function)
         elif isinstance(function, ast.Name) and self.names.is_local(function.id) and function.id not in self.imported:
             raise self._refuse(node, f"{function.id} is called, a variable", "call functions by name")
         elif not isinstance(function, ast.Name | ast.Attribute):

@@ -88,8 +88,7 @@ impl<T: Number, F: Features<[T]>> ExternalTask<T, F> {
     /// Repeats a call that failed in Python. The generator is moved back to its position before the call.
     #[cold]
     fn repeat(&mut self, error: CallError, before: Position, action: Option<usize>) -> Result<(f64, Ending), RunError> {
-        let (words_drawn, buffered_u32) = before;
-        self.bits.0.move_to(words_drawn, buffered_u32);
+        self.bits.0.move_to(before.0, before.1);
         let failed = FailedCall {
             state: action.map(|_| self.episode.state()),
             before,
@@ -108,16 +107,15 @@ impl<T: Number, F: Features<[T]>> ExternalTask<T, F> {
         let (observation, mask, reward, code, (words_drawn, buffered_u32)) = result;
         self.bits.0.move_to(words_drawn, buffered_u32);
         self.episode.set_observation(&observation, &mask);
+        if !reward.is_finite() {
+            return Err(PyValueError::new_err(CallError::Reward(reward).to_string()).into());
+        }
         let ending = match code {
             CONTINUES => Ending::Continues,
             TRUNCATED => Ending::Truncated,
             _ => Ending::Terminated,
         };
-        if reward.is_finite() {
-            Ok((reward, ending))
-        } else {
-            Err(PyValueError::new_err(CallError::Reward(reward).to_string()).into())
-        }
+        Ok((reward, ending))
     }
 
     /// Notes the action of a step, for an environment that repeats episodes.
