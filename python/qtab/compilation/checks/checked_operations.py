@@ -164,6 +164,21 @@ RANGE_CHECKS: dict[Any, Any] = {
 """Functions that raise an error for integers outside the range of a type."""
 
 
+def _float_range_check(name: str) -> Any:
+    low, high = int(np.iinfo(name).min) - 1, min(int(np.iinfo(name).max), 2**63 - 1) + 1
+    source = f"def check(value):\n    if not ({float(low)!r} < value < {float(high)!r}):\n        raise OverflowError\n"
+    scope: dict[str, Any] = {}
+    exec(source, scope)  # noqa: S102 - code of this module
+    return _compiled(scope["check"])
+
+
+FLOAT_RANGE_CHECKS: dict[Any, Any] = {
+    numba.from_dtype(np.dtype(name)): _float_range_check(name)
+    for name in ("int8", "int16", "int32", "int64", "uint8", "uint16", "uint32", "uint64")
+}
+"""Functions that raise an error for floats whose integer part is outside the range of a type, and for NaN."""
+
+
 def _to_int(value: Any) -> Any:
     if not (-9.2e18 < value < 9.2e18):
         raise ValueError

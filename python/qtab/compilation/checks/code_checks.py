@@ -10,6 +10,7 @@ from numba.core import ir, types
 
 from qtab.compilation.checks.checked_operations import (
     DRAW_CHECKS,
+    FLOAT_RANGE_CHECKS,
     INPLACE,
     INTEGER_OPERATIONS,
     MATH,
@@ -25,6 +26,8 @@ from qtab.compilation.checks.known_functions import (
     MATH_ADVICE,
     MATH_ROUNDED,
     NUMPY_DIFFERENT,
+    NUMPY_EXTREMES,
+    NUMPY_OPERATORS,
     NUMPY_SUMS,
     NUMPY_WRITES,
     OTHER_MATH,
@@ -60,6 +63,8 @@ class Checks(TypedCode):
             self.refuse(statement, "array.flat changes an array of self", "copy the array first")
         elif isinstance(of, types.Array) and is_narrow(of.dtype) and isinstance(value, types.Integer):
             return self.check(RANGE_CHECKS[of.dtype], scope, [statement.value], statement.loc)
+        elif isinstance(of, types.Array) and of.dtype in FLOAT_RANGE_CHECKS and isinstance(value, types.Float):
+            return self.check(FLOAT_RANGE_CHECKS[of.dtype], scope, [statement.value], statement.loc)
         return []
 
     def _widening(self, statement: Any, sources: list[Any]) -> None:
@@ -153,11 +158,14 @@ class Checks(TypedCode):
         if isinstance(function, types.BoundFunction):
             return self._method_call(statement, scope, given)
         if isinstance(function, types.NumberClass):
-            if function.instance_type == types.int64 and given and isinstance(types.unliteral(given[0]), types.Float):
+            of, value = function.instance_type, types.unliteral(given[0]) if given else None
+            if of == types.int64 and isinstance(value, types.Float):
                 return self.replace(statement, scope, to_int, expression.args, [types.float64])
-            if is_narrow(function.instance_type) and given and isinstance(types.unliteral(given[0]), types.Integer):
-                return self.check_arguments(expression, scope, RANGE_CHECKS[function.instance_type])
-            if function.instance_type == types.int64 and given and given[0] == types.uint64:
+            if of in FLOAT_RANGE_CHECKS and isinstance(value, types.Float):
+                return self.check_arguments(expression, scope, FLOAT_RANGE_CHECKS[of])
+            if is_narrow(of) and isinstance(value, types.Integer):
+                return self.check_arguments(expression, scope, RANGE_CHECKS[of])
+            if of == types.int64 and value == types.uint64:
                 return self.check_arguments(expression, scope, RANGE_CHECKS[types.uint64])
             return []
         if not isinstance(function, types.Function):
@@ -205,7 +213,11 @@ class Checks(TypedCode):
 
     def _numpy_call(self, expression: Any, key: Any, name: str, given: list[Any]) -> None:
         kinds = [kind for kind in map(leaf, given) if isinstance(kind, NUMBERS)]
-        if name in NUMPY_DIFFERENT:
+        if name in NUMPY_OPERATORS:
+            self.refuse(expression, f"np.{name} differs for some numbers", NUMPY_OPERATORS[name])
+        elif name in NUMPY_EXTREMES and not all(isinstance(kind, types.Integer) for kind in kinds):
+            self.refuse(expression, f"np.{name}: zeros may differ in sign", NUMPY_EXTREMES[name])
+        elif name in NUMPY_DIFFERENT:
             self.refuse(expression, f"np.{name} rounds differently in compiled code", NUMPY_DIFFERENT[name])
         elif name in NUMPY_WRITES:
             self.refuse(expression, f"np.{name} can change an array of self", "assign to the elements in a loop")
@@ -231,6 +243,8 @@ class Checks(TypedCode):
         elif isinstance(of, types.Array):
             if name in NUMPY_SUMS and not of_integers(of):
                 self.refuse(expression, f"array.{name}() may add in another order", "add in a loop")
+            elif name in ("min", "max") and not of_integers(of):
+                self.refuse(expression, f"array.{name}(): zeros may differ in sign", NUMPY_EXTREMES[name])
             elif name in ("sort", "fill", "partition", "put", "itemset") and not of.mutable:
                 self.refuse(expression, f"array.{name}() changes an array of self", "copy the array first")
         return []

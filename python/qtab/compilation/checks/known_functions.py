@@ -47,6 +47,21 @@ NUMPY_DIFFERENT = {
 }
 """Functions of NumPy that round differently in compiled code, and what to write instead."""
 
+NUMPY_OPERATORS = {
+    **dict.fromkeys(("mod", "remainder"), "write a % b"),
+    "floor_divide": "write a // b",
+    "left_shift": "write a << b",
+    "right_shift": "write a >> b",
+    "sign": "compare the number with 0",
+}
+"""Functions of NumPy that differ for zeros, infinities or large shifts, and what to write instead."""
+
+NUMPY_EXTREMES = {
+    **{name: f"write {name[:3]}(x, y)" for name in ("minimum", "maximum")},
+    **{name: f"write a loop with {name[-3:]}(x, y)" for name in ("min", "max", "amin", "amax")},
+}
+"""Functions of NumPy whose zeros may differ in sign for floats, and what to write instead."""
+
 NUMPY_SUMS = {"sum", "mean", "std", "var", "dot", "matmul", "prod", "cumsum", "cumprod", "vdot", "inner", "average",
               "median", "percentile", "quantile", "nansum", "nanmean", "nanstd", "nanvar", "nanprod", "nancumsum",
               "nancumprod", "nanmedian", "trapz", "trapezoid", "norm", "convolve", "correlate", "cov",

@@ -10,7 +10,6 @@ from qtab.compilation.rewriting.program import converted
 from qtab.compilation.rewriting.values import (
     BOOL,
     INT,
-    WIDE,
     Array,
     Scalar,
     TupleKind,
@@ -97,8 +96,8 @@ def reduced(scope: "Expressions", node: ast.AST, name: str, value: Value) -> Val
         if scalar not in (INT, BOOL):
             raise scope.refuse(node, f"the sum of {in_words(kind)} may round differently", "add the elements in a loop")
         return Value(INT, f"int(np.sum({code}))")
-    if name in ("min", "max") and scalar in WIDE and scalar != BOOL:
-        return Value(scalar, converted(f"np.{name}({code})", scalar))
+    if name in ("min", "max") and scalar == INT:
+        return Value(INT, converted(f"np.{name}({code})", INT))
     if name in ("argmax", "argmin") and kind.ndim == 1 and scalar in (INT, BOOL):
         scope.compiled.uses.add(f"h_{name}")
         return Value(INT, f"h_{name}({code})")

@@ -1,0 +1,120 @@
+"""NumPy functions that give other numbers in compiled code are refused, and conversions out of range are repeated."""
+
+import re
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import pytest
+
+import qtab
+
+pytest.importorskip("numba")
+
+
+class Base(qtab.FunctionalEnv):
+    observation_space: gym.Space[Any] = gym.spaces.Discrete(10)
+    action_space: gym.Space[Any] = gym.spaces.Discrete(2)
+
+    def initial_state(self, rng: np.random.Generator) -> Any:
+        return 0, 0.5
+
+    def transition(self, state: Any, action: int, rng: np.random.Generator) -> Any:
+        time, x = state
+        return (time + 1, 3.0 * x), float(self.reward(time, x)), time > 8
+
+    def reward(self, time: int, x: float) -> Any:
+        raise NotImplementedError
+
+    def observe(self, state: Any) -> Any:
+        return min(state[0], 9)
+
+
+class Mod(Base):
+    def reward(self, time: int, x: float) -> Any:
+        return np.mod(x, -3.0)
+
+
+class FloorDivide(Base):
+    def reward(self, time: int, x: float) -> Any:
+        return np.floor_divide(x, -3.0)
+
+
+class Sign(Base):
+    def reward(self, time: int, x: float) -> Any:
+        return np.sign(x)
+
+
+class Shift(Base):
+    def reward(self, time: int, x: float) -> Any:
+        return np.right_shift(8, time)
+
+
+class Maximum(Base):
+    def reward(self, time: int, x: float) -> Any:
+        return np.maximum(x, 0.0)
+
+
+class Smallest(Base):
+    def reward(self, time: int, x: float) -> Any:
+        return np.min(np.array([x, 0.0]))
+
+
+class Largest(Base):
+    def reward(self, time: int, x: float) -> Any:
+        return np.array([x, 0.0]).max()
+
+
+@pytest.mark.parametrize(
+    ("cls", "message"),
+    [
+        (Mod, "write a % b"),
+        (FloorDivide, "write a // b"),
+        (Sign, "compare the number with 0"),
+        (Shift, "write a >> b"),
+        (Maximum, "write max(x, y)"),
+        (Smallest, "write a loop with min(x, y)"),
+        (Largest, "write a loop with max(x, y)"),
+    ],
+)
+def test_the_message_gives_the_line_and_what_to_write(cls: Any, message: str) -> None:
+    with pytest.raises(ValueError, match=rf"{re.escape(__file__)}:\d+: .*{re.escape(message)}"):
+        qtab.train(cls(), episodes=3, max_episode_steps=20, seed=0, backend="numba")
+
+
+class LargestOfIntegers(Base):
+    def reward(self, time: int, x: float) -> Any:
+        return np.maximum(time, 3) + np.min(np.array([time, 5]))
+
+
+def test_those_of_integers_are_compiled() -> None:
+    settings: dict[str, Any] = {"episodes": 5, "max_episode_steps": 20, "seed": 0}
+    compiled = qtab.train(LargestOfIntegers(), backend="numba", **settings)
+    in_python = qtab.train(LargestOfIntegers(), backend="python", **settings)
+    assert compiled.tables.tobytes() == in_python.tables.tobytes()
+
+
+class SmallInteger(Base):
+    def reward(self, time: int, x: float) -> Any:
+        return np.uint8(x)
+
+
+class ElementOfSmallIntegers(Base):
+    def reward(self, time: int, x: float) -> Any:
+        small = np.zeros(2, np.int8)
+        small[0] = x
+        return small[0]
+
+
+@pytest.mark.parametrize("cls", [SmallInteger, ElementOfSmallIntegers])
+def test_a_float_outside_the_range_of_an_integer_is_not_wrapped(cls: Any) -> None:
+    settings: dict[str, Any] = {"episodes": 3, "max_episode_steps": 20, "seed": 0}
+    outcomes = []
+    for backend in ("numba", "python"):
+        try:
+            outcomes.append(qtab.train(cls(), backend=backend, **settings).tables.tobytes())
+        except (OverflowError, RuntimeError, ValueError) as error:
+            outcomes.append(error)
+    compiled, in_python = outcomes
+    assert isinstance(compiled, Exception) or compiled == in_python
+    assert isinstance(in_python, OverflowError) <= isinstance(compiled, OverflowError)
