@@ -109,7 +109,7 @@ class ElementOfSmallIntegers(Base):
 @pytest.mark.parametrize("cls", [SmallInteger, ElementOfSmallIntegers])
 def test_a_float_outside_the_range_of_an_integer_is_not_wrapped(cls: Any) -> None:
     settings: dict[str, Any] = {"episodes": 3, "max_episode_steps": 20, "seed": 0}
-    outcomes = []
+    outcomes: list[Any] = []
     for backend in ("numba", "python"):
         try:
             outcomes.append(qtab.train(cls(), backend=backend, **settings).tables.tobytes())
