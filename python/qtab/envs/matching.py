@@ -8,7 +8,7 @@ import numpy as np
 from gymnasium import spaces
 from gymnasium.wrappers import OrderEnforcing, PassiveEnvChecker, TimeLimit
 
-from qtab.envs.class_code import changed_library_code
+from qtab.envs.class_code import changed_library_code, is_of_library
 from qtab.envs.registry import TABULAR, TABULATED, EnvEntry, entry_for_id
 
 # The wrappers of gymnasium.make, none of which changes an observation or a reward.
@@ -83,12 +83,12 @@ def _entry_for_class(unwrapped: Any) -> EnvEntry:
         if _is_tabular(unwrapped):
             return _table_entry(unwrapped)
         made = " without an id of Gymnasium's" if spec is None and type(unwrapped).__module__.startswith("gym") else ""
-        raise NotInRustError(
-            f"Rust does not implement {name}{made}",
-            "pass the environment that gymnasium.make returns for the id"
-            if made
-            else "an environment whose transition table is known can be a qtab.TabularEnv, others a qtab.FunctionalEnv",
-        )
+        remedy = "an environment whose transition table is known can be a qtab.TabularEnv, others a qtab.FunctionalEnv"
+        if made:
+            remedy = "pass the environment that gymnasium.make returns for the id"
+        elif not is_of_library(type(unwrapped)):
+            remedy += "; backend='numba' compiles many classes as they are"
+        raise NotInRustError(f"Rust does not implement {name}{made}", remedy)
     return entry
 
 

@@ -123,7 +123,8 @@ def _optimum_for_env(
     if on_grid is None and not has_transition_table(unwrapped):
         raise ValueError(
             "env must have a transition table P and an initial_state_distrib, or be Blackjack, MountainCar, CartPole, "
-            f"Acrobot or Pendulum: the optimum of {name} is not known"
+            f"Acrobot or Pendulum: the optimum of {name} is not known; qtab.tabulate(env) makes the table of an "
+            "environment with few states"
         )
     methods = METHODS if on_grid is None else (SEARCH,)
     method = methods[0] if method is None else checks.choice("method", method, methods)

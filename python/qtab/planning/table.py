@@ -102,7 +102,7 @@ def table_of(env: gym.Env) -> Table:
     if not has_transition_table(env.unwrapped):
         raise ValueError(
             f"env must have a transition table P and an initial_state_distrib, or be Blackjack: the values of {name} "
-            "cannot be computed"
+            "cannot be computed; qtab.tabulate(env) makes the table of an environment with few states"
         )
     actions = choose_actions(env.action_space, None)
     cells = Identity.of_space(env.observation_space, len(actions))

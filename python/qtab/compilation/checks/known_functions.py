@@ -112,7 +112,7 @@ DRAWS_DIFFERENT = ("wald", "power", "negative_binomial")
 """Draws whose numbers can differ from NumPy's."""
 
 DRAWS_MISSING = {
-    "choice": "draw an index with rng.integers(0, n)",
+    "choice": "draw an index with rng.integers(0, n); with p=, compare rng.random() with the cumulative probabilities",
     "hypergeometric": "count the successes of single draws with rng.random()",
     "multinomial": "compare rng.random() with cumulative probabilities",
     "multivariate_normal": "combine draws of rng.normal(0.0, 1.0)",

@@ -65,7 +65,8 @@ def tabulate(env: gym.Env[Any, Any], *, max_states: int = 100_000) -> TabulatedE
             action spaces, or wrappers that may change a number. The message names the state, the action and the draw.
     """
     if not isinstance(env, gym.Env):
-        raise TypeError(f"env must be an environment, got {shown(env)}")
+        hint = f"; pass gymnasium.make({env!r})" if isinstance(env, str) else ""
+        raise TypeError(f"env must be an environment, got {shown(env)}{hint}")
     max_states = checks.count("max_states", max_states, least=1)
     for layer in layers(env):
         if isinstance(layer, gym.Wrapper) and type(layer) not in NEUTRAL:
