@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import qtab
-from qtab.envs.goals import BEST_KNOWN_MOUNTAIN_CAR
+from qtab.envs.metadata.goals import BEST_KNOWN_MOUNTAIN_CAR
 from support.repository import ROOT, tracked_files
 
 nbformat = pytest.importorskip("nbformat")

@@ -42,7 +42,7 @@ def test_the_articles_run_has_its_faults(article: qtab.Run, diagnosis: qtab.Diag
 @pytest.mark.slow
 def test_the_numbers_of_mountain_car_are_those_of_the_search(article: qtab.Run) -> None:
     from qtab.diagnosis import facts
-    from qtab.envs.goals import BEST_KNOWN_MOUNTAIN_CAR
+    from qtab.envs.metadata.goals import BEST_KNOWN_MOUNTAIN_CAR
 
     optimum = qtab.optimum(article)
     assert optimum.search is not None

@@ -10,7 +10,7 @@ import pytest
 from gymnasium.envs.classic_control import MountainCarEnv
 
 import qtab
-from qtab.envs.goals import reward_threshold, threshold_of
+from qtab.envs.metadata.goals import reward_threshold, threshold_of
 from qtab.training.verdict import judge
 from support.command import qtab_here
 from support.repository import PACKAGE
@@ -233,7 +233,7 @@ def test_what_if_counts_by_the_same_definition() -> None:
 
 def test_only_one_function_reads_the_threshold_of_a_spec() -> None:
     # The second registers environments with it; the third describes those of the page, which cannot be changed.
-    allowed = {"envs/goals.py", "envs/__init__.py", "playground/definitions.py"}
+    allowed = {"envs/metadata/goals.py", "envs/__init__.py", "playground/definitions.py"}
     reading = {
         path.relative_to(PACKAGE).as_posix()
         for path in PACKAGE.rglob("*.py")

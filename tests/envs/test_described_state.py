@@ -10,7 +10,7 @@ import pytest
 
 import qtab
 from qtab.config.origin import trained_on
-from qtab.envs.class_code import class_code
+from qtab.envs.origin.class_code import class_code
 from qtab.envs.origin.describe import describe
 from qtab.envs.origin.description import differences
 from qtab.envs.origin.values import describe_value, with_types

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 import qtab
 from qtab import _core
-from qtab.envs import native
-from qtab.envs.native import known_table
+from qtab.envs.in_rust import native
+from qtab.envs.in_rust.native import known_table
 from support.parity import assert_same_run
 
 IDS = ("CliffWalking-v1", "CliffWalkingSlippery-v1", "FrozenLake-v1", "FrozenLake8x8-v1", "Taxi-v4")

@@ -12,7 +12,7 @@ import qtab
 from qtab.config.origin import copied
 from qtab.discretizers import Discretizer
 from qtab.discretizers.identity import Identity
-from qtab.envs.quantities import QUANTITIES, UNKNOWN, quantities_of
+from qtab.envs.metadata.quantities import QUANTITIES, UNKNOWN, quantities_of
 from qtab.envs.registry import ENTRIES, EXTRA
 from qtab.results.axes import run_quantities
 

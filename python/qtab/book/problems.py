@@ -9,7 +9,7 @@ import numpy as np
 from qtab import _core
 from qtab.book.prediction_experiment import Measure, PredictionTask
 from qtab.book.runner import FloatArray
-from qtab.envs.native import table_env
+from qtab.envs.in_rust.native import table_env
 from qtab.envs.tabular import TabularEnv
 from qtab.planning.policy_values import PolicyValues, policy_values
 from qtab.prediction.estimates import ValueEstimates

@@ -11,7 +11,7 @@ from qtab.cli.outputs import Outputs, last_episodes
 from qtab.cli.reporting import Report
 from qtab.config import Config
 from qtab.config.presets import presets
-from qtab.envs.goals import BEST_KNOWN_MOUNTAIN_CAR, has_quick_optimum, is_usual_mountain_car
+from qtab.envs.metadata.goals import BEST_KNOWN_MOUNTAIN_CAR, has_quick_optimum, is_usual_mountain_car
 from qtab.results.run import Run
 from qtab.results.summary import FINAL_EPISODES, SOLVED_EPISODES, best_mean_returns, default_block, summarize
 from qtab.training.callbacks import TrainingOptions

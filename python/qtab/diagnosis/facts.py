@@ -11,7 +11,7 @@ from qtab.config import Config
 from qtab.config.choices import IN_PYTHON
 from qtab.config.options import AVERAGE_REWARD, MONTE_CARLO, PREFERENCES
 from qtab.diagnosis.sample import Sample, repeat, sample_steps, shortest_best_episode
-from qtab.envs.goals import BEST_KNOWN_MOUNTAIN_CAR, is_usual_mountain_car
+from qtab.envs.metadata.goals import BEST_KNOWN_MOUNTAIN_CAR, is_usual_mountain_car
 from qtab.planning.optimum import Optimum
 from qtab.planning.solve import quick_optimum
 from qtab.results.action_values import are_finite, initial_tables

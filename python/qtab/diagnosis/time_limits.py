@@ -5,7 +5,7 @@ import numpy as np
 from qtab.config.options import FIXED, fixed_settings
 from qtab.diagnosis.facts import LONGEST_MOUNTAIN_CAR, Facts
 from qtab.diagnosis.finding import Finding, Unchecked, as_keywords, changes, percent
-from qtab.envs.goals import own_time_limit
+from qtab.envs.metadata.goals import own_time_limit
 
 LEAST_WEIGHT = 0.05
 """A smaller weight of the goal at the start is reported: with it, a goal is hard to tell from no goal."""

@@ -13,7 +13,7 @@ import gymnasium as gym
 from gymnasium.envs.registration import EnvSpec, find_highest_version, get_env_id, parse_env_id
 
 from qtab._utils.shown import shown
-from qtab.envs.class_code import changed_entry_point
+from qtab.envs.origin.class_code import changed_entry_point
 
 PACKAGE = "qtab"
 PREFIX = "qtab/"

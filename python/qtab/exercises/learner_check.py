@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab.config import Config
-from qtab.envs.quantities import quantities_of
+from qtab.envs.metadata.quantities import quantities_of
 from qtab.exercises.exercise import Solution, parameters
 from qtab.exercises.guard import guarded
 from qtab.exercises.record import Misuse, Record

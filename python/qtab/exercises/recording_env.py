@@ -9,7 +9,7 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab.envs.quantities import Quantities
+from qtab.envs.metadata.quantities import Quantities
 from qtab.exercises.record import Event, Misuse, Record
 from qtab.results.words import map_columns, state_in_words
 

@@ -15,8 +15,8 @@ from qtab._utils.shown import shown
 from qtab.config import Config
 from qtab.config.origin import trained_on
 from qtab.config.unknown import suggesting
-from qtab.envs.goals import has_quick_optimum, reward_threshold
-from qtab.envs.matching import time_limit
+from qtab.envs.in_rust.matching import time_limit
+from qtab.envs.metadata.goals import has_quick_optimum, reward_threshold
 from qtab.envs.origin.describe import describe
 from qtab.envs.origin.description import EnvironmentDescription
 from qtab.envs.registry import UNLIMITED_MAX_EPISODE_STEPS, spec_of_run

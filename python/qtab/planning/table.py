@@ -13,8 +13,8 @@ from qtab import _core
 from qtab._utils.shown import shown
 from qtab.discretizers.identity import Identity
 from qtab.envs.actions import Actions, choose_actions
-from qtab.envs.matching import unknown_wrapper
-from qtab.envs.native import table_env
+from qtab.envs.in_rust.matching import unknown_wrapper
+from qtab.envs.in_rust.native import table_env
 from qtab.envs.registry import make_env, named_spec
 
 

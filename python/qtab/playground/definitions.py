@@ -13,7 +13,7 @@ from qtab.config.options import n_tables
 from qtab.config.preset_settings import CLIFF_WALKING
 from qtab.config.presets import presets
 from qtab.envs.grid_worlds import ACTION_NAMES
-from qtab.envs.quantities import quantities_of
+from qtab.envs.metadata.quantities import quantities_of
 from qtab.explanation.equations import bootstrap_symbol
 from qtab.playground.environments import ENVIRONMENTS, Entry
 from qtab.playground.settings import LEFT_OUT, OFFERED, rules, settings

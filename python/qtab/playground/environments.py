@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal, TypeAlias
 
-from qtab.envs.goals import BEST_KNOWN_MOUNTAIN_CAR
 from qtab.envs.grid_worlds import DYNA_MAZE, WIND, WINDY_GRID_WORLD
+from qtab.envs.metadata.goals import BEST_KNOWN_MOUNTAIN_CAR
 
 Drawing: TypeAlias = Literal["mountain_car", "cart_pole", "frozen_lake", "cliff", "grid"]
 

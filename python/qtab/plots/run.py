@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from qtab._utils import checks
 from qtab._utils.shown import counted
-from qtab.envs.goals import threshold_of
+from qtab.envs.metadata.goals import threshold_of
 from qtab.plots.parts.axes import axes_or_new, check_axes, new_figure, save_figure
 from qtab.plots.parts.colors import palette
 from qtab.plots.parts.labels import earlier_limits, episode_ticks, finish, set_x_limits

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab.envs.quantities import observation_quantities, observed_quantities, quantities_of
+from qtab.envs.metadata.quantities import observation_quantities, observed_quantities, quantities_of
 from qtab.plots.parts.axes import axes_or_new
 from qtab.plots.parts.labels import finish
 from qtab.plots.parts.subject import Subject

@@ -17,7 +17,7 @@ from qtab.config import Config
 from qtab.config.choices import ALGORITHM_NAMES, IN_PYTHON
 from qtab.diagnosis.diagnose import diagnose
 from qtab.diagnosis.diagnosis import Diagnosis
-from qtab.envs.goals import threshold_of
+from qtab.envs.metadata.goals import threshold_of
 from qtab.planning.optimum import Optimum
 from qtab.plots.arrangements.grid_map import Layout
 from qtab.plots.parts.axes import new_figure, png

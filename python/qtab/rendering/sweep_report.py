@@ -13,7 +13,7 @@ import numpy as np
 
 from qtab._utils.files import replacing
 from qtab._utils.page import page, paragraph, picture, section, table
-from qtab.envs.goals import what_changes_returns
+from qtab.envs.metadata.goals import what_changes_returns
 from qtab.plots.parts.axes import not_shown, png
 from qtab.sweeps.environments import environments_of, sweep_threshold
 from qtab.sweeps.results import Sweep

@@ -11,7 +11,7 @@ from qtab._utils.shown import counted
 from qtab.config import Config
 from qtab.config.origin import trained_on
 from qtab.envs.actions import Actions
-from qtab.envs.quantities import (
+from qtab.envs.metadata.quantities import (
     UNKNOWN,
     Quantities,
     Quantity,

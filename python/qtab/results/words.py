@@ -8,7 +8,7 @@ import gymnasium as gym
 import numpy as np
 
 from qtab._utils.shown import shown
-from qtab.envs.quantities import Quantities
+from qtab.envs.metadata.quantities import Quantities
 from qtab.results.axes import Axis, run_quantities
 from qtab.results.run import Run
 

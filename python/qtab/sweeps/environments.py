@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import gymnasium as gym
 
 from qtab.config import Config
-from qtab.envs.class_code import LIBRARY
-from qtab.envs.goals import reward_threshold
+from qtab.envs.metadata.goals import reward_threshold
+from qtab.envs.origin.class_code import LIBRARY
 from qtab.envs.origin.description import EnvironmentDescription, differences, from_json
 from qtab.envs.origin.values import with_types
 from qtab.envs.registry import entry_for_id, make_env, spec_of
@@ -125,7 +125,7 @@ def _made(env: Any, config: Config) -> gym.Env:
 
 
 def sweep_threshold(sweep: "Sweep", setting: int | None = None) -> float | None:
-    """Returns the threshold of a setting, or None; see :func:`qtab.envs.goals.reward_threshold`.
+    """Returns the threshold of a setting, or None; see :func:`qtab.envs.metadata.goals.reward_threshold`.
 
     Args:
         sweep: The sweep.

@@ -21,8 +21,8 @@ from qtab.config.config import replace_checked
 from qtab.config.merge import over
 from qtab.config.unknown import suggesting
 from qtab.discretizers.assigned_rows import AssignedRows
-from qtab.envs.goals import threshold_of
-from qtab.envs.matching import time_limit
+from qtab.envs.in_rust.matching import time_limit
+from qtab.envs.metadata.goals import threshold_of
 from qtab.envs.registry import make_env, spec_of, spec_of_run
 from qtab.results.action_values import greedy_table
 from qtab.results.run import Run

@@ -27,7 +27,7 @@ from qtab.config.help import with_settings
 from qtab.config.merge import collect
 from qtab.config.settings import SharedSettings
 from qtab.discretizers.assigned_rows import AssignedRows
-from qtab.envs.matching import equal_environments
+from qtab.envs.in_rust.matching import equal_environments
 from qtab.results.runs import Runs
 from qtab.training.runs_progress import RunsCallback, RunsReporter, train_in_parts
 from qtab.training.setup.environment import mask_bytes

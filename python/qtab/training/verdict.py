@@ -9,7 +9,7 @@ import numpy as np
 from qtab.config import Config
 from qtab.config.choices import IN_PYTHON
 from qtab.config.options import PREFERENCES
-from qtab.envs.goals import (
+from qtab.envs.metadata.goals import (
     BEST_KNOWN_MOUNTAIN_CAR,
     is_usual_mountain_car,
     registered_threshold,

@@ -9,7 +9,7 @@ import pytest
 
 import qtab
 from qtab import _core
-from qtab.envs.matching import NotInRustError
+from qtab.envs.in_rust.matching import NotInRustError
 from support.board import SETTINGS, Board, board_library
 from support.libraries import capsule_of, needs_compiler
 

@@ -6,9 +6,9 @@ from typing import Any
 import gymnasium as gym
 
 from qtab import _core
-from qtab.envs.class_code import is_of_library
 from qtab.envs.external.positions import Position, generator_at
-from qtab.envs.matching import NotInRustError, layers, overridden, unknown_wrapper
+from qtab.envs.in_rust.matching import NotInRustError, layers, overridden, unknown_wrapper
+from qtab.envs.origin.class_code import is_of_library
 
 
 def has_capsule(env: gym.Env) -> bool:

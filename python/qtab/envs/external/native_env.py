@@ -12,8 +12,8 @@ from gymnasium import spaces
 from gymnasium.error import ResetNeeded
 
 from qtab import _core
-from qtab.envs.class_code import LIBRARY, class_code
 from qtab.envs.external.library import load, load_again
+from qtab.envs.origin.class_code import LIBRARY, class_code
 
 
 class NativeEnv(gym.Env[Any, Any]):

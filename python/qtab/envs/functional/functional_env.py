@@ -14,7 +14,7 @@ from qtab._utils.shown import shown
 from qtab.config.functions import checked_mask
 from qtab.envs.functional.observations import observation_in
 from qtab.envs.functional.structure import in_words, structure_of
-from qtab.envs.matching import NotInRustError
+from qtab.envs.in_rust.matching import NotInRustError
 
 UNSET: Any = object()
 """Sentinel: there is no state before the first reset."""

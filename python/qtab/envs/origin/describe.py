@@ -22,8 +22,8 @@ from gymnasium.wrappers import (
 )
 from gymnasium.wrappers import TimeLimit as TimeLimitWrapper
 
-from qtab.envs.class_code import class_code, is_of_library, state_attributes
-from qtab.envs.matching import layers, time_limit
+from qtab.envs.in_rust.matching import layers, time_limit
+from qtab.envs.origin.class_code import class_code, is_of_library, state_attributes
 from qtab.envs.origin.description import (
     UNIMPORTANT,
     EnvironmentDescription,

@@ -9,7 +9,7 @@ import gymnasium as gym
 from gymnasium.envs.registration import EnvSpec
 
 from qtab._core import parameter_names
-from qtab.envs.class_code import LIBRARY
+from qtab.envs.origin.class_code import LIBRARY
 from qtab.envs.origin.values import comparable, describe_values, in_words, same, space_text, without_digest
 from qtab.envs.registry import EnvEntry, gymnasium_id
 

@@ -13,7 +13,7 @@ import gymnasium as gym
 import numpy as np
 from gymnasium import spaces
 
-from qtab.envs.class_code import function_code
+from qtab.envs.origin.class_code import function_code
 
 _MOST_CHARACTERS = 200
 _MOST_TEXTS = 1000

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils.shown import shown
-from qtab.envs.class_code import changed_library_code, is_of_library
-from qtab.envs.quantities import quantities_of
+from qtab.envs.metadata.quantities import quantities_of
+from qtab.envs.origin.class_code import changed_library_code, is_of_library
 from qtab.envs.tabular import TabularEnv
 from qtab.envs.tabulation.tabulated_env import TabulatedEnv
 

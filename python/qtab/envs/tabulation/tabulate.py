@@ -10,9 +10,9 @@ import numpy as np
 
 from qtab._utils import checks
 from qtab._utils.shown import shown
-from qtab.envs.class_code import is_of_library
 from qtab.envs.functional import FunctionalEnv
-from qtab.envs.matching import layers, overridden, time_limit
+from qtab.envs.in_rust.matching import layers, overridden, time_limit
+from qtab.envs.origin.class_code import is_of_library
 from qtab.envs.origin.describe import NEUTRAL
 from qtab.envs.tabulation.branches import CannotListError
 from qtab.envs.tabulation.copied_outcomes import CopiedOutcomes

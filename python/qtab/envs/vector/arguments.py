@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from qtab import _core
 from qtab._utils import checks
-from qtab.envs.matching import NotInRustError, entry_for_env
-from qtab.envs.native import native_env
+from qtab.envs.in_rust.matching import NotInRustError, entry_for_env
+from qtab.envs.in_rust.native import native_env
 from qtab.envs.registry import ENTRIES, PREFIX, EnvEntry, gymnasium_id
 
 

@@ -11,7 +11,7 @@ from qtab import _core
 from qtab.envs.external.capsule import external_env
 from qtab.envs.external.native_env import NativeEnv, space_of
 from qtab.envs.functional import FunctionalEnv
-from qtab.envs.matching import NotInRustError
+from qtab.envs.in_rust.matching import NotInRustError
 from qtab.envs.vector.python_vector_env import Snapshot
 from qtab.envs.vector.spaces import VectorSpaces
 

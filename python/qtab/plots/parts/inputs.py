@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils import arrays, checks
-from qtab.envs.goals import threshold_of
+from qtab.envs.metadata.goals import threshold_of
 from qtab.plots.parts.labels import joined
 from qtab.results.run import Run
 from qtab.results.runs import Runs

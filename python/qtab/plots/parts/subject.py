@@ -15,7 +15,7 @@ from qtab.config.options import PREFERENCES, WITH_STATE_VALUES
 from qtab.discretizers import Discretizer
 from qtab.discretizers.edges import Edges
 from qtab.envs.actions import Actions
-from qtab.envs.quantities import Quantities, quantities_of
+from qtab.envs.metadata.quantities import Quantities, quantities_of
 from qtab.planning.optimum import Optimum
 from qtab.results.action_values import read_by_policy
 from qtab.results.axes import Axis, action_names, axes_of, run_quantities

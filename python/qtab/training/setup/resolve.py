@@ -20,9 +20,9 @@ from qtab.config.origin import Origin, copied
 from qtab.config.presets import preset
 from qtab.config.validation import defaults
 from qtab.envs.actions import Actions, choose_actions
-from qtab.envs.class_code import LIBRARY, is_of_library
-from qtab.envs.matching import NotInRustError, entry_for_env, rust_unavailable, time_limit
-from qtab.envs.native import KnownTable, check_not_shown, known_table, native_env
+from qtab.envs.in_rust.matching import NotInRustError, entry_for_env, rust_unavailable, time_limit
+from qtab.envs.in_rust.native import KnownTable, check_not_shown, known_table, native_env
+from qtab.envs.origin.class_code import LIBRARY, is_of_library
 from qtab.envs.origin.description import EnvironmentDescription, describe_entry
 from qtab.envs.registry import (
     UNLIMITED_MAX_EPISODE_STEPS,

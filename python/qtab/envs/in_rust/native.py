@@ -16,8 +16,8 @@ from gymnasium.envs.toy_text.blackjack import BlackjackEnv
 
 from qtab import _core
 from qtab.envs.actions import Actions
-from qtab.envs.class_code import changed_entry_point
-from qtab.envs.matching import NotInRustError
+from qtab.envs.in_rust.matching import NotInRustError
+from qtab.envs.origin.class_code import changed_entry_point
 from qtab.envs.registry import ENTRIES, TABULAR, gymnasium_id
 
 VERSION = "1.4."

@@ -8,7 +8,7 @@ import numpy as np
 from gymnasium import spaces
 from gymnasium.wrappers import OrderEnforcing, PassiveEnvChecker, TimeLimit
 
-from qtab.envs.class_code import changed_library_code, is_of_library
+from qtab.envs.origin.class_code import changed_library_code, is_of_library
 from qtab.envs.registry import TABULAR, TABULATED, EnvEntry, entry_for_id
 
 # The wrappers of gymnasium.make, none of which changes an observation or a reward.

@@ -11,7 +11,7 @@ from gymnasium.envs.registration import EnvSpec, load_env_creator
 from qtab.config import Config
 from qtab.config.choices import IN_PYTHON
 from qtab.config.origin import trained_on
-from qtab.envs.class_code import LIBRARY
+from qtab.envs.origin.class_code import LIBRARY
 from qtab.envs.origin.describe import describe
 from qtab.envs.origin.description import EnvironmentDescription, WrapperDescription
 from qtab.envs.origin.values import comparable, same
