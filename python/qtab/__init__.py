@@ -52,8 +52,8 @@ _MODULES = {
     "exercises": "qtab.exercises",
     "explain": "qtab.explanation.explain",
     "get_include": "qtab.envs.external.include",
-    "load": "qtab.results.loading",
-    "load_runs": "qtab.results.loading",
+    "load": "qtab.results.files.loading",
+    "load_runs": "qtab.results.files.loading",
     "load_sweep": "qtab.sweeps.sweep",
     "optimum": "qtab.planning.solve",
     "planning": "qtab.planning",
@@ -112,8 +112,8 @@ if TYPE_CHECKING:
     from qtab.rendering.play import Playback as Playback
     from qtab.rendering.play import play as play
     from qtab.results.axes import Axis as Axis
-    from qtab.results.loading import load as load
-    from qtab.results.loading import load_runs as load_runs
+    from qtab.results.files.loading import load as load
+    from qtab.results.files.loading import load_runs as load_runs
     from qtab.results.recording import Recording as Recording
     from qtab.results.recording import Snapshots as Snapshots
     from qtab.results.run import Run as Run

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from hypothesis import strategies as st
 
-from qtab.results.run_file import digest
+from qtab.results.files.run_file import digest
 
 Members = dict[str, Any]
 

@@ -104,7 +104,7 @@ class Checkpoint(BaseCallback):
 
 def first_part(path: Path, run: "Run") -> "Run | None":
     """Returns the run in a file if it holds the first episodes of a run; None for any other file."""
-    from qtab.results.loading import load
+    from qtab.results.files.loading import load
 
     # A file does not store the functions of its run.
     functions: dict[str, Any] = {

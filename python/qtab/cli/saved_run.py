@@ -4,7 +4,7 @@ from argparse import Namespace
 
 from qtab.cli.errors import reading
 from qtab.cli.parser import Parser
-from qtab.results.loading import load
+from qtab.results.files.loading import load
 from qtab.results.run import Run
 
 ENV_OF_RUN = (

@@ -17,7 +17,7 @@ from qtab.config import DEFAULTS, Config
 from qtab.config.choices import CHOICES
 from qtab.config.help import applicability, explanations, groups
 from qtab.config.unknown import check_names
-from qtab.results.loading import load
+from qtab.results.files.loading import load
 
 _READERS: Mapping[Any, tuple[Callable[[Any], Any], str, bool]] = {
     "env_kwargs": (values.pairs, "KEY VALUE", True),

@@ -269,7 +269,7 @@ class Run(WithPage):
 
         Raises the exceptions of :meth:`save`.
         """
-        from qtab.results import plain_data
+        from qtab.results.files import plain_data
 
         plain_data.write(self, checks.file_path("path", path))
 
@@ -286,6 +286,6 @@ class Run(WithPage):
             ValueError: if they hold a number that JSON cannot represent, or the run is not one that training returns,
                 such as one whose values overflowed.
         """
-        from qtab.results.file_parts import write_run
+        from qtab.results.files.file_parts import write_run
 
         write_run(self, path)

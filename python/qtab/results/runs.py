@@ -18,8 +18,8 @@ from qtab.config.origin import trained_on
 from qtab.discretizers import Discretizer
 from qtab.envs.actions import Actions
 from qtab.envs.origin.description import EnvironmentDescription
-from qtab.results import file_parts, run_file
-from qtab.results.consistency import check_consistent_runs
+from qtab.results.files import file_parts, run_file
+from qtab.results.files.consistency import check_consistent_runs
 from qtab.results.run import Run
 from qtab.results.summary import FINAL_EPISODES, block_means, default_block, summarize
 

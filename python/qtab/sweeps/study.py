@@ -19,7 +19,7 @@ from qtab.config.merge import Base, over
 from qtab.config.unknown import check_names
 from qtab.envs.origin.description import EnvironmentDescription
 from qtab.envs.registry import stored_id
-from qtab.results.file_parts import corrected_settings, stored_settings
+from qtab.results.files.file_parts import corrected_settings, stored_settings
 from qtab.sweeps import designs
 from qtab.training.setup.resolved_run import ResolvedRun
 from qtab.training.setup.run_env import environment_of

@@ -21,7 +21,7 @@ from qtab.config.origin import copied, trained_on
 from qtab.discretizers.assigned_rows import AssignedRows
 from qtab.envs.origin.description import differences
 from qtab.envs.registry import versioned
-from qtab.results.loading import load, with_action_mask
+from qtab.results.files.loading import load, with_action_mask
 from qtab.results.rates import extensions
 from qtab.results.recording import resumed_snapshot_episodes
 from qtab.results.run import Run

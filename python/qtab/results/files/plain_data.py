@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from qtab._utils.files import replacing
 from qtab.results.action_values import masked_tables
-from qtab.results.consistency import check_consistent
+from qtab.results.files.consistency import check_consistent
 
 if TYPE_CHECKING:
     from qtab.results.run import Run

@@ -20,9 +20,9 @@ from qtab.discretizers.base import MAX_TABLE_SIZE
 from qtab.envs.origin.description import from_json
 from qtab.envs.origin.values import with_types
 from qtab.envs.registry import stored_id
-from qtab.results import run_file
-from qtab.results.consistency import check_consistent, check_consistent_runs
-from qtab.results.file_parts import (
+from qtab.results.files import run_file
+from qtab.results.files.consistency import check_consistent, check_consistent_runs
+from qtab.results.files.file_parts import (
     checked_masks,
     corrected_settings,
     implied_settings,

@@ -18,8 +18,8 @@ from qtab.config.options import OPTIONS, SETTINGS, fixed_settings
 from qtab.config.validation import kind
 from qtab.config.value_checks import MAX_ACTIONS
 from qtab.envs.actions import ActionParts, Actions
-from qtab.results import run_file
-from qtab.results.consistency import check_consistent
+from qtab.results.files import run_file
+from qtab.results.files.consistency import check_consistent
 from qtab.results.recording import Snapshots
 
 if TYPE_CHECKING:

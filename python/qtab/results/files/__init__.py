@@ -1,0 +1,1 @@
+"""The files of runs: their format, writing, loading and checking, and policies as plain JSON."""
