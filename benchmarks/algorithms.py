@@ -4,9 +4,9 @@ from typing import Any
 
 import numpy as np
 
-import numba_loops
 import qtab
-from numba_loops import TILES, TILINGS
+from loops import numba_loops
+from loops.numba_loops import TILES, TILINGS
 from qtab.book.testbed import GREEDY, SAMPLE_AVERAGES, run_testbeds
 from qtab.prediction.estimate import estimate_values
 from tables import Benchmark, Column, Table, relative_time, relative_to

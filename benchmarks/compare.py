@@ -11,11 +11,11 @@ import algorithms
 import environment_presets
 import idle_env
 import mountain_car
-import numba_loops
 import own_functions
 import own_library
 import own_start
 import vector_envs
+from loops import numba_loops
 from qtab._utils.versions import versions
 from tables import Table
 

@@ -1,9 +1,7 @@
 """Training with the default presets of other environments than MountainCar."""
 
-import numba_loops
-import plain_loop
 import qtab
-import table_loop
+from loops import numba_loops, plain_loop, table_loop
 from qtab.config.presets import preset
 from tables import Benchmark, Column, Table, relative_to
 

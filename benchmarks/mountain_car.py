@@ -5,9 +5,8 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 
-import c_loop
-import numba_loops
 import qtab
+from loops import c_loop, numba_loops
 from qtab.cli.commands import bench
 from tables import Benchmark, Column, Table, relative_to
 

@@ -6,9 +6,9 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 
-import numba_loops
 import qtab
 import vector_envs
+from loops import numba_loops
 from own_cars import SETTINGS, limited, limited_class
 from tables import Benchmark, Column, Table, relative_time, relative_to
 

@@ -7,8 +7,8 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-import c_loop
 import qtab
+from loops import c_loop
 from qtab.cli.commands import bench
 from tables import Benchmark, Column, Table, relative_time, relative_to
 

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-import numba_loops
+from loops import numba_loops
 from tables import line, number
 
 CORE = "MountainCar-v0 of the package"

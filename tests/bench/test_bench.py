@@ -12,18 +12,17 @@ import numpy as np
 import pytest
 
 import algorithms
-import c_loop
 import compare
 import environment_presets
 import footprint
 import idle_env
 import mountain_car
-import numba_loops
 import own_library
 import own_start
 import qtab as package
 import tables
 import vector_envs
+from loops import c_loop, numba_loops
 from qtab._utils.versions import versions
 from qtab.cli.commands import bench
 from support.command import environment, qtab_here, refused

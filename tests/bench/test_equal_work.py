@@ -9,16 +9,13 @@ import gymnasium as gym
 import numpy as np
 import pytest
 
-import c_loop
 import environment_presets
 import idle_env
-import numba_loops
 import own_cars
 import own_functions
-import plain_loop
 import qtab
-import table_loop
 from algorithms import CUT, CUTOFF, LEARNERS
+from loops import c_loop, numba_loops, plain_loop, table_loop
 from qtab.cli.commands import bench
 from support.repository import ROOT
 
@@ -48,7 +45,8 @@ def test_many_runs_under_numba_are_runs_with_different_seeds(monkeypatch: pytest
 
 
 _COMPILED = """
-import numba_loops, numpy as np, table_loop
+import numpy as np
+from loops import numba_loops, table_loop
 numba_loops.EPISODES = 30
 starts = np.random.default_rng(4).uniform(-0.6, -0.4, 30)
 arguments = table_loop.arguments("FrozenLake-v1", 30)(4)

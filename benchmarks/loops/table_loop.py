@@ -7,7 +7,7 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
-from numba_loops import compiled
+from loops.numba_loops import compiled
 from qtab.config.presets import preset
 from qtab.reference import agent_stream
 
