@@ -43,14 +43,15 @@ CRATE_ORDERS = {
     "core": (
         {"checkpoint", "simd", "stop_flag"},
         {"memory", "numeric"},
-        {"build_error", "random", "schedules", "training_error"},
+        {"errors", "random", "schedules"},
         {"features", "policies", "q_table"},
         {"envs"},
         {"planning", "vector"},
         {"tasks"},
         {"learners"},
-        {"prediction", "settings", "trainer"},
-        {"batch", "builder"},
+        {"prediction", "settings"},
+        {"trainer"},
+        {"batch"},
     ),
     "python": (
         {"locks"},

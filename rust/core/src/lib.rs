@@ -55,10 +55,9 @@
 #![expect(clippy::inline_always, reason = "code compiled per instruction set must be inlined into its dispatcher")]
 
 pub mod batch;
-mod build_error;
-mod builder;
 pub mod checkpoint;
 pub mod envs;
+mod errors;
 pub mod features;
 pub mod learners;
 pub mod memory;
@@ -74,18 +73,15 @@ pub mod simd;
 mod stop_flag;
 pub mod tasks;
 mod trainer;
-mod training_error;
 pub mod vector;
 
-pub use build_error::BuildError;
-pub use builder::{AnyTrainer, TrainerBuilder};
 pub use envs::Env;
+pub use errors::{BuildError, TrainingError};
 pub use features::Features;
 pub use learners::Learner;
 pub use q_table::QTable;
 pub use rand_core;
 pub use stop_flag::StopFlag;
 pub use tasks::Task;
-pub use trainer::{Budget, EpisodeLog, EvaluationError, LoadError, Trainer, evaluate};
-pub use training_error::TrainingError;
+pub use trainer::{AnyTrainer, Budget, EpisodeLog, EvaluationError, LoadError, Trainer, TrainerBuilder, evaluate};
 pub use vector::VectorEnv;

@@ -3,6 +3,7 @@
 use super::BatchRule;
 use super::batch_loop::BatchLoop;
 use crate::envs::{Env, SimdEnv};
+use crate::errors::TrainingError;
 use crate::features::{BatchFeatures, Features, OutOfBounds};
 use crate::learners::{Agent, Learner, TdLearner, UpdateRule};
 use crate::policies::EpsilonGreedy;
@@ -11,7 +12,6 @@ use crate::schedules::StepSize;
 use crate::simd::SimdLevel;
 use crate::tasks::{NativeTask, Task};
 use crate::trainer::{Budget, Trainer};
-use crate::training_error::TrainingError;
 
 /// With rewards of at most 1 per step, the values of single rows below this bound cannot reach infinity. Sums over
 /// several rows can, so a batch checks the errors of those.

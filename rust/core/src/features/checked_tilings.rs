@@ -1,7 +1,7 @@
 //! Tile coding with checked arguments.
 
 use super::TileCoding;
-use crate::build_error::BuildError;
+use crate::errors::BuildError;
 use crate::numeric::Float;
 
 impl<T: Float> TileCoding<T> {

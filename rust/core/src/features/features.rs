@@ -4,8 +4,8 @@ use std::error::Error;
 use std::fmt;
 
 use super::{LaneRows, MAX_TILINGS};
-use crate::build_error::BuildError;
 use crate::checkpoint::{Checkpoint, CheckpointError};
+use crate::errors::BuildError;
 use crate::simd::{F32s, Simd};
 
 /// The active rows of an observation, which are stored and passed by value.

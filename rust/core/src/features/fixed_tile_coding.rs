@@ -5,7 +5,7 @@ use std::array::TryFromSliceError;
 use super::checked_tilings::check_bounds;
 use super::tile_coding::TiledAxis;
 use super::{BatchFeatures, Features, OutOfBounds, TileCoding};
-use crate::build_error::BuildError;
+use crate::errors::BuildError;
 use crate::numeric::Float;
 use crate::simd::{F32s, Simd};
 

@@ -3,7 +3,7 @@
 use std::marker::PhantomData;
 
 use super::{BatchFeatures, Features, OutOfBounds};
-use crate::build_error::BuildError;
+use crate::errors::BuildError;
 use crate::numeric::Float;
 use crate::simd::{F32s, Mask, Simd, U64s};
 

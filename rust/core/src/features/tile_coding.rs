@@ -5,7 +5,7 @@ use std::marker::PhantomData;
 use super::checked_tilings::check_bounds;
 use super::hashing::{HashTable, mix};
 use super::{Features, OutOfBounds};
-use crate::build_error::BuildError;
+use crate::errors::BuildError;
 use crate::numeric::Float;
 
 /// The maximum number of tilings.

@@ -1,6 +1,7 @@
 //! A training run, and the only training loop.
 
 mod advance_loop;
+mod builder;
 mod checkpoint;
 mod episode_log;
 mod evaluate;
@@ -11,15 +12,16 @@ mod tests;
 mod train;
 
 use self::advance_loop::AdvanceLoop;
+pub use self::builder::{AnyTrainer, TrainerBuilder};
 pub use self::episode_log::EpisodeLog;
 pub use self::evaluate::{EvaluationError, evaluate};
 pub use self::load_error::LoadError;
 use crate::checkpoint::RunIdentity;
+use crate::errors::TrainingError;
 use crate::learners::Learner;
 use crate::memory::{AllocationError, MemoryRoom, RunMemory};
 use crate::random::Rng;
 use crate::tasks::{Next, Task, Transition};
-use crate::training_error::TrainingError;
 
 /// The largest size in bytes of active rows that are copied in registers.
 const IN_REGISTERS: usize = 32;

@@ -1,12 +1,11 @@
 //! Training by numbers of episodes, and what was learned.
 
 use super::{Budget, Trainer};
-use crate::build_error::BuildError;
+use crate::errors::{BuildError, TrainingError};
 use crate::learners::Learner;
 use crate::policies::GreedyPolicy;
 use crate::random::Rng;
 use crate::tasks::Task;
-use crate::training_error::TrainingError;
 
 /// The work of a part of training: learners that store every step reserve memory for as many.
 const WORK_OF_A_PART: u64 = 1 << 16;

@@ -7,6 +7,7 @@ mod saving_tests;
 #[cfg(test)]
 mod tests;
 
+use super::Trainer;
 use crate::envs::Env;
 use crate::features::Features;
 use crate::learners::{AnyAlgorithm, AnyLearner};
@@ -15,7 +16,6 @@ use crate::q_table::{QTable, TerminalUpdate};
 use crate::random::AgentRng;
 use crate::settings::{LearningRateSpec, PolicySpec, ScheduleSpec};
 use crate::tasks::NativeTask;
-use crate::trainer::Trainer;
 
 /// A run of any algorithm in an environment `E` with features `F`: what [`Trainer::builder`] builds.
 pub type AnyTrainer<E, F> =

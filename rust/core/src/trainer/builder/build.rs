@@ -2,9 +2,9 @@
 
 use super::checks::Shape;
 use super::{AnyTrainer, InitialValues, TrainerBuilder};
-use crate::build_error::BuildError;
 use crate::checkpoint::RunIdentity;
 use crate::envs::Env;
+use crate::errors::BuildError;
 use crate::features::Features;
 use crate::learners::{Agent, AnyAlgorithm, AnyLearner};
 use crate::memory::{filled, from_fn};

@@ -1,7 +1,7 @@
 //! The checks of a run's settings, alone and together.
 
 use super::{InitialValues, TrainerBuilder};
-use crate::build_error::BuildError;
+use crate::errors::BuildError;
 use crate::learners::{AnyAlgorithm, TraceOptions};
 use crate::q_table::TerminalUpdate;
 use crate::settings::{LearningRateSpec, PolicySpec, ScheduleSpec, range_of};
