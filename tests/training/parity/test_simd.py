@@ -12,7 +12,7 @@ import numpy as np
 import qtab
 from support.repository import ROOT
 
-PROGRAM = "from training.test_simd import digest; print(digest())"
+PROGRAM = "from training.parity.test_simd import digest; print(digest())"
 
 
 def digest() -> str:
