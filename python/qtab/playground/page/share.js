@@ -1,6 +1,6 @@
 // The state in the fragment of the address. The parts of an address are used only as values of controls, all checked.
 
-import { EXAMPLES, exampleState } from "./controls/examples.js";
+import { EXAMPLES, exampleOf, exampleState } from "./controls/examples.js";
 import { HIGHEST_RATE, readNumber } from "./format.js";
 import { MANY_SEEDS, MAX_SIDE, PAINTED, REWARD_LIMITS, SEED_LIMITS } from "./store.js";
 
@@ -10,14 +10,16 @@ const GRID_NAMES = ["layout", "wind", "step_reward", "goal_reward", "rewards"];
 const NAMES = new Set(["env", "example", "seed", "seeds", ...GRID_NAMES]);
 
 /** The fragment of a state, without "#". */
-export function fragment({ state, definitions }) {
+export function fragment(store) {
+  const { state, definitions } = store;
+  const example = exampleOf(store);
   const base = new URLSearchParams();
   base.set("env", state.environment);
-  if (state.example !== null) base.set("example", String(state.example));
+  if (example !== null) base.set("example", String(example));
   else for (const [name, value] of Object.entries(state.settings)) if (definitions.settings[name]) base.set(name, String(value));
   if (state.seed) base.set("seed", String(state.seed));
   if (state.seeds > 1) base.set("seeds", String(state.seeds));
-  if (state.environment === PAINTED && state.example === null) {
+  if (state.environment === PAINTED && example === null) {
     const { layout, wind, step_reward, goal_reward, rewards } = state.grid;
     base.set("layout", layout.join("/").replaceAll("#", "W"));
     if (wind.some(Boolean)) base.set("wind", wind.join(","));
@@ -39,7 +41,7 @@ export function restore(store, text) {
   const asked = given.get("env");
   if (asked !== null && Object.hasOwn(environments, asked)) environment = asked;
   else if (asked !== null) left.push("env");
-  let state = { ...store.initial(environment), example: null };
+  let state = store.initial(environment);
   const { value: example } = whole(given.get("example") ?? "", 0, (EXAMPLES[environment]?.length ?? 0) - 1);
   if (example !== undefined) state = exampleState(store, environment, example);
   else if (given.has("example")) left.push("example");
@@ -78,7 +80,6 @@ function readSettings(store, given, state, left) {
     if (impossible) left.push(name);
     else asks.set(name, value);
   }
-  if (asks.size) state.example = null;
   state.settings = { ...state.settings, ...Object.fromEntries(asks) };
   return asks;
 }
@@ -125,7 +126,6 @@ function readGrid(given, state, left) {
   }
   if (given.has("rewards")) readRewards(given.get("rewards"), grid, columns, left);
   state.grid = grid;
-  state.example = null;
 }
 
 function readRewards(text, grid, columns, left) {

@@ -55,7 +55,6 @@ export class Store {
     const name = preset ?? Object.keys(entry.presets)[0];
     return {
       environment,
-      example: null,
       settings: complete(environment, entry.presets[name]),
       seed: 0,
       seeds: 1,
@@ -82,7 +81,7 @@ export class Store {
 
   /** Changes one setting. */
   set(name, value) {
-    this.update({ settings: { ...this.state.settings, [name]: value }, example: null });
+    this.update({ settings: { ...this.state.settings, [name]: value } });
   }
 
   /** The reason why a choice is impossible with the others; null if it is possible. */
@@ -104,12 +103,6 @@ export class Store {
       if (isReverse && isChosen("algorithm", rule.value)) return notWith("algorithm", rule.value);
     }
     return null;
-  }
-
-  /** Changes the environment, starting from its first preset. */
-  choose(environment) {
-    const { seed, seeds } = this.state;
-    this.update({ ...this.initial(environment), seed, seeds });
   }
 
   /** The request for the engine. */

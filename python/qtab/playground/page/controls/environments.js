@@ -1,6 +1,7 @@
 // The environments to choose from, each with a small drawing.
 
 import { radioButtons } from "./elements.js";
+import { exampleState } from "./examples.js";
 
 const STROKE = 'fill="none" stroke="currentColor" stroke-width="2" stroke-linecap="round" stroke-linejoin="round"';
 const cell = (x, y, opacity) =>
@@ -27,7 +28,7 @@ function drawing(key, entry) {
 /** Shows the environments as radio buttons, and the title and sentence of the chosen one. */
 export function setUpEnvironments(store, group, title, sentence) {
   const choices = Object.entries(store.definitions.environments).map(([key, entry]) => [key, drawing(key, entry), entry.title]);
-  const mark = radioButtons(group, "environment", choices, (key) => store.choose(key));
+  const mark = radioButtons(group, "environment", choices, (key) => store.update(exampleState(store, key, 0)));
   const show = ({ environment }) => {
     const chosen = mark(environment);
     group.scrollLeft = Math.max(chosen.offsetLeft - group.offsetLeft - group.clientWidth / 3, 0);

@@ -1,7 +1,9 @@
 // Examples: settings that fail and settings that learn, each with a sentence on what to look at.
 
 import { make } from "./elements.js";
-import { copyGrid, fit } from "../store.js";
+import { copyGrid, fit, PAINTED } from "../store.js";
+
+const OWN_SETTINGS = "These are settings of your own. Choose an example to return to it.";
 
 const NEVER_REACHED = "Without exploration or optimism the goal is never reached, and all values stay 0.";
 
@@ -145,12 +147,35 @@ export function exampleState(store, environment, index) {
   const state = store.initial(environment, preset);
   const entry = store.definitions.environments[environment];
   if (grid) state.grid = copyGrid(entry.grids[grid]);
-  return { ...state, settings: fit(store.definitions, environment, { ...state.settings, ...settings }), example: index, seed: store.state.seed, seeds: store.state.seeds };
+  return { ...state, settings: fit(store.definitions, environment, { ...state.settings, ...settings }), seed: store.state.seed, seeds: store.state.seeds };
+}
+
+/** What two states must share to be the same example. One number of tiles or bins means the same as a list of it. */
+function identity({ definitions }, { environment, settings, grid }) {
+  const plain = (name, value) => {
+    const ofComponents = ["integers", "numbers"].includes(definitions.settings[name].type) && Array.isArray(value);
+    return ofComponents && value.every((each) => each === value[0]) ? value[0] : value;
+  };
+  const values = Object.keys(settings).sort().map((name) => [name, plain(name, settings[name])]);
+  return JSON.stringify([values, environment === PAINTED ? grid : null]);
+}
+
+const identities = new Map(); // of the examples of each environment
+
+/** The index of the example whose settings a store has, however it came to have them; null if they are the reader's own. */
+export function exampleOf(store) {
+  const { environment } = store.state;
+  if (!identities.has(environment)) {
+    identities.set(environment, EXAMPLES[environment].map((_, index) => identity(store, exampleState(store, environment, index))));
+  }
+  const index = identities.get(environment).indexOf(identity(store, store.state));
+  return index < 0 ? null : index;
 }
 
 /** Shows the examples of the environment as buttons, and the sentence of the chosen one. */
 export function setUpExamples(store, buttons, look) {
-  const show = ({ environment, example }) => {
+  const show = ({ environment }) => {
+    const example = exampleOf(store);
     const examples = EXAMPLES[environment];
     if (buttons.dataset.environment !== environment) {
       buttons.dataset.environment = environment;
@@ -159,7 +184,7 @@ export function setUpExamples(store, buttons, look) {
       buttons.replaceChildren(...made);
     }
     [...buttons.children].forEach((button, index) => button.setAttribute("aria-pressed", index === example));
-    const chosen = examples[example]?.look ?? "You have changed the settings. Choose an example to return to it.";
+    const chosen = examples[example]?.look ?? OWN_SETTINGS;
     if (look.textContent !== chosen) look.textContent = chosen;
   };
   store.subscribe(show);

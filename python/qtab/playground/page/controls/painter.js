@@ -114,7 +114,7 @@ export class Painter {
   }
 
   change(grid) {
-    this.store.update({ grid, example: null });
+    this.store.update({ grid });
   }
 
   /** Paints a cell. `how`: "press" begins a stroke of the pointer, "drag" continues it, "key" is a single cell. */
