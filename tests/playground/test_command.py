@@ -1,5 +1,7 @@
 """``qtab playground`` and the files that it writes."""
 
+import base64
+import gzip
 import json
 import posixpath
 import re
@@ -15,6 +17,8 @@ from qtab.cli import main
 from qtab.playground.bundle import bundle
 
 MODULE = Path(qtab.playground.assemble.__file__).parent / "page/qtab.wasm"
+# Of the page in one file, and of what a server that compresses it sends.
+MOST_BYTES, MOST_BYTES_SENT = 500_000, 300_000
 needs_module = pytest.mark.skipif(not MODULE.exists(), reason="needs qtab.wasm: python rust/web/build_backend.py")
 
 
@@ -39,8 +43,17 @@ def test_the_command_writes_one_file_and_opens_it(tmp_path, opened, capsys):
     assert capsys.readouterr().out == f"Saved the playground to {path}\n"
     html = path.read_text(encoding="utf-8")
     assert html == playground.page()
-    assert "AGFzbQ" in html, "the WebAssembly module is not inside"
+    module = re.search(r'"wasm":"([^"]*)"', html)
+    assert module is not None
+    assert gzip.decompress(base64.b64decode(module[1])) == MODULE.read_bytes()
     assert not [line for line in html.splitlines() if 'src="' in line or '<link rel="stylesheet' in line]
+
+
+@needs_module
+def test_the_page_is_small():
+    html = playground.page().encode()
+    assert len(html) < MOST_BYTES
+    assert len(gzip.compress(html)) < MOST_BYTES_SENT
 
 
 @needs_module
@@ -139,6 +152,21 @@ def test_an_import_is_relative_to_the_folder_of_its_module():
     script = bundle(sources, "a/b.js")
     assert script.index("modules['a/d.js'] =") < script.index("const { d } = modules['a/d.js'];")
     assert script.index("modules['c.js'] =") < script.index("const { c } = modules['c.js'];")
+
+
+def test_lines_of_comments_are_left_out_and_no_others():
+    code = [
+        'const url = "http://a"; // kept',
+        "const product = 2 /* kept */ * 3;",
+        "let [a, b] = [1, 2];",
+        "a /** b */ * b;",
+    ]
+    comments = ["// one", "  // two", "/** three */", "  /**\n   * four * five\n   */"]
+    lines = [line for pair in zip(comments, code, strict=True) for line in pair]
+    script = bundle({"main.js": "\n".join(lines) + "\n"}, "main.js")
+    assert "\n".join(code) in script
+    assert "one" not in script
+    assert "four" not in script
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,7 @@
 """Assembles the playground: one self-contained HTML file, or the files of a site."""
 
 import base64
+import gzip
 import json
 from collections.abc import Iterator
 from importlib.resources import files
@@ -42,10 +43,13 @@ def page() -> str:
 
 
 def data_script(sources: dict[str, str] | None = None) -> str:
-    """Returns the script with the data that engine.js would otherwise load: the module, the worker, the definitions."""
+    """Returns the script with the data that engine.js would otherwise load: module, worker and definitions.
+
+    The module is compressed by gzip, which makes the page in one file much smaller.
+    """
     sources = _sources() if sources is None else sources
     data = {
-        "wasm": base64.b64encode(wasm()).decode(),
+        "wasm": base64.b64encode(gzip.compress(wasm(), mtime=0)).decode(),
         "worker": bundle(sources, "worker.js"),
         "definitions": definitions(),
     }

@@ -10,10 +10,11 @@ _IMPORT = re.compile(
 )
 _DECLARED = re.compile(r"^export\s+(?=(?:async\s+)?(?:function\*?|class|const)\s+(?P<name>\w+))", re.MULTILINE)
 _OTHER = re.compile(r"^(?:import|export)\b.*$", re.MULTILINE)
+_COMMENT_LINES = re.compile(r"^[ \t]*(?://.*|/\*\*(?:[^*]|\*(?!/))*\*/[ \t]*)\n", re.MULTILINE)
 
 
 def bundle(sources: Mapping[str, str], entry: str) -> str:
-    """Returns one script equivalent to the module ``entry``.
+    """Returns one script equivalent to the module ``entry``, without the lines that only hold a comment.
 
     Args:
         sources: The text of each module by its path. The modules may use ``import { a, b as c } from "./a.js"``,
@@ -48,7 +49,7 @@ def _imported(name: str, found: re.Match[str]) -> str:
 def _wrapped(name: str, source: str) -> str:
     """A module as a function that returns what the module exports."""
     exported = [found["name"] for found in _DECLARED.finditer(source)]
-    body = _DECLARED.sub("", _IMPORT.sub(lambda found: _destructured(name, found), source))
+    body = _DECLARED.sub("", _IMPORT.sub(lambda found: _destructured(name, found), _COMMENT_LINES.sub("", source)))
     if other := _OTHER.search(body):
         raise ValueError(f"{name}: {other[0]!r} is not a form of import or export that can be bundled")
     return f"modules[{name!r}] = (() => {{\n{body}\nreturn {{ {', '.join(exported)} }};\n}})();"

@@ -5,7 +5,7 @@ const FIRST_REPORT = 100; // milliseconds of training before a result is sent: d
 const REPORT_EVERY = 45; // milliseconds between two results while training
 const EPISODE_EVERY = 250; // milliseconds between two greedy episodes while training
 
-let source = null; // the bytes of the module, or its address
+let source = null; // the bytes of the module, compressed by gzip, or its address
 let version = null; // the page's version, which the module's must equal
 let wasm = null; // the exports of the module
 let pending = null; // the newest request, not yet begun
@@ -22,7 +22,8 @@ function pause() {
 }
 
 async function load() {
-  const module = typeof source === "string" ? await fetch(source).then((answer) => answer.arrayBuffer()) : source;
+  const packed = () => new Response(new Blob([source]).stream().pipeThrough(new DecompressionStream("gzip")));
+  const module = await (typeof source === "string" ? await fetch(source) : packed()).arrayBuffer();
   const { instance } = await WebAssembly.instantiate(module);
   wasm = instance.exports;
   let built = "of an earlier version";
