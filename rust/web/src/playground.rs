@@ -3,11 +3,11 @@
 use serde::Serialize;
 use serde_json::Value;
 
-use crate::best::Planner;
 use crate::failure::Failure;
 use crate::json::{integer, written};
+use crate::map::best::Planner;
 use crate::report::{Arrays, inspection, report, table};
-use crate::training::{Position, State, Training};
+use crate::runs::{Position, State, Training};
 
 /// The largest amount of work per call: a tenth of a second or less.
 const MAX_WORK: u32 = 10_000_000;

@@ -4,10 +4,11 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::best::Best;
-use crate::episode::{Episode, mean_action_value};
-use crate::run::Progress;
-use crate::training::{State, Training};
+use crate::map::Cells;
+use crate::map::best::Best;
+use crate::runs::episode::{Episode, mean_action_value};
+use crate::runs::run::Progress;
+use crate::runs::{State, Training};
 use crate::updates::{Update, Watch};
 
 /// The longest greedy episode that a page shows, in steps.
@@ -144,20 +145,18 @@ fn add_returns(training: &Training, done: usize, arrays: &mut Arrays) {
     arrays.add("lengths", Array::I32(lengths));
 }
 
-/// The action values, visits and greedy actions of the cells in the first run. With two tables the values are their
-/// mean, which has the scale of a return and the same greedy actions as their sum.
+/// The values, visits and greedy actions of the cells in the first run. With two tables the values are their mean, which
+/// has the scale of a return and the same greedy actions as their sum.
 fn add_map(training: &Training, arrays: &mut Arrays) {
     let run = &training.runs[0].run;
     let (tables, num_actions) = (run.tables(), training.subject.num_actions());
-    let (mut action_values, mut visits) = (Vec::new(), Vec::new());
-    let (mut values, mut greedy) = (Vec::new(), Vec::new());
+    let (mut values, mut visits, mut greedy) = (Vec::new(), Vec::new(), Vec::new());
     for cell in 0..training.cells.count() {
         let rows = training.cells.observation(cell).and_then(|observation| training.subject.active_rows(&observation));
         let rows = rows.unwrap_or_default();
         let mut best = (NO_ACTION, f64::NAN);
         for action in 0..num_actions {
             let value = mean_action_value(&tables, &rows, num_actions, action).filter(|_| !rows.is_empty());
-            action_values.push(value.unwrap_or(f64::NAN));
             if let Some(value) = value
                 && (best.0 == NO_ACTION || value > best.1)
             {
@@ -169,11 +168,10 @@ fn add_map(training: &Training, arrays: &mut Arrays) {
         let counts = run.visits().map(|counts| count_of(counts, &rows, num_actions));
         visits.push(counts.map_or(f64::NAN, |counts| counts.iter().sum()));
     }
-    arrays.add("actionValues", Array::F64(action_values));
     arrays.add("visits", Array::F64(visits));
     arrays.add("values", Array::F64(values));
     arrays.add("greedy", Array::U8(greedy));
-    if let crate::plane::Cells::Plane(plane) = &training.cells {
+    if let Cells::Plane(plane) = &training.cells {
         arrays.add("xEdges", Array::F64(plane.x_edges.clone()));
         arrays.add("yEdges", Array::F64(plane.y_edges.clone()));
     }

@@ -8,8 +8,8 @@ use qtab_core::schedules::LoggedUpdate;
 use qtab_core::tasks::Next;
 use qtab_core::{Learner, delegate_learner};
 
-use crate::any_learner::AnyLearner;
-use crate::step_terms::StepTerms;
+use crate::runs::any_learner::AnyLearner;
+use crate::updates::step_terms::StepTerms;
 use crate::updates::{Update, UpdateKind, Watch};
 
 /// A learner, and the state whose updates are watched, if any.

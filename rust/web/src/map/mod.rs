@@ -1,5 +1,7 @@
 //! The cells of a value map: those of a table's map, or of a plane through the observations.
 
+pub(crate) mod best;
+
 use serde_json::Value;
 
 use crate::environment::{Bounds, Environment};

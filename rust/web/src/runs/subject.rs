@@ -9,14 +9,14 @@ use qtab_core::random::{Pcg64, SeedSequence};
 use qtab_core::tasks::{BoxedTask, NativeTask, TimedState, Transition, VisitCounter};
 use qtab_core::{Env, StopFlag, Task, Trainer};
 
-use crate::any_learner::AnyLearner;
 use crate::environment::Environment;
-use crate::episode::{Episode, greedy_action};
 use crate::failure::Failure;
-use crate::run::Run;
+use crate::runs::any_learner::AnyLearner;
+use crate::runs::episode::{Episode, greedy_action};
+use crate::runs::run::Run;
 use crate::settings::{Discretizer, Settings};
-use crate::update_recorder::UpdateRecorder;
 use crate::updates::Watch;
+use crate::updates::recorder::UpdateRecorder;
 
 /// Observations as numbers.
 pub(crate) trait Numbers: Sized {

@@ -1,16 +1,21 @@
 //! Runs that differ only in their seeds, advanced in turn so that all of them have about the same number of episodes.
 
+pub(crate) mod any_learner;
+pub(crate) mod episode;
+mod memory;
+pub(crate) mod run;
+mod subject;
+
 use serde::Serialize;
 use serde_json::Value;
 
+use self::run::Run;
+use self::subject::{StartedRun, Subject, subject};
 use crate::environment::Environment;
 use crate::failure::Failure;
 use crate::json::integer;
-use crate::memory;
-use crate::plane::Cells;
-use crate::run::Run;
+use crate::map::Cells;
 use crate::settings::Settings;
-use crate::subject::{StartedRun, Subject, subject};
 use crate::updates::Watch;
 
 const MAX_SEEDS: usize = 64;

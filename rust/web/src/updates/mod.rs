@@ -1,5 +1,8 @@
 //! The last updates of a state, with the numbers that the learner used.
 
+pub(crate) mod recorder;
+mod step_terms;
+
 use std::collections::VecDeque;
 
 use serde::Serialize;

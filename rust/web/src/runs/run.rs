@@ -6,8 +6,8 @@ use qtab_core::tasks::BoxedTask;
 use qtab_core::{Budget, EpisodeLog, Learner, Task, Trainer, TrainingError};
 
 use crate::failure::Failure;
-use crate::update_recorder::UpdateRecorder;
 use crate::updates::Watch;
+use crate::updates::recorder::UpdateRecorder;
 
 /// The unfinished episode of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,8 @@
 //! The learners of the algorithms that the page offers.
 //!
-//! [`AnyAlgorithm::learner`] would link the learners of all algorithms, and a training loop for each. A single loop for
-//! all of them keeps the module, which a page must load, small.
+//! The core's `AnyLearner` would link the learners of all algorithms, of which the page offers ten, and hides what an
+//! inspection reads: traces, the second table, the logs of the learning rates. A page must load this module, so it stays
+//! small.
 
 use qtab_core::features::ActiveRows;
 use qtab_core::learners::{

@@ -1,10 +1,12 @@
 //! The environment of a request.
 
+mod grid_world;
+
 use qtab_core::envs::classic_control::{CartPole, MountainCar};
 use qtab_core::envs::tabular::{Outcome, TabularMdp};
 use serde_json::Value;
 
-use crate::grid_world::{GridWorld, MAX_SIDE};
+use self::grid_world::{GridWorld, MAX_SIDE};
 use crate::json::{integer, numbers};
 
 /// The largest number of outcomes in a transition table.

@@ -9,9 +9,9 @@ use qtab_core::planning::grid::GridValues;
 use qtab_core::{Env, StopFlag};
 
 use crate::environment::{Environment, TableMap};
-use crate::plane::Cells;
+use crate::map::Cells;
+use crate::runs::Training;
 use crate::settings::Settings;
-use crate::training::Training;
 
 /// The largest number of backups: about a tenth of a second.
 const MAX_BACKUPS: u64 = 20_000_000;
