@@ -102,7 +102,7 @@ def test_a_long_greedy_episode_is_not_said_to_end(playground: Playground) -> Non
     caption = playground.text("motion-caption")
     assert caption == "Greedy episode: return 0 in its first 2,000 steps; the rest is not shown."
     playground.open(f"{stuck}&max_episode_steps=1500")
-    assert playground.text("motion-caption").endswith("in 1,500 steps; the time limit ends it.")
+    assert playground.text("motion-caption").endswith("in 1,500 steps: time is up.")
 
 
 @pytest.mark.parametrize(

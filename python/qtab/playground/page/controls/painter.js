@@ -13,6 +13,33 @@ const TOOLS = [
   ["reward", "Reward"],
 ];
 
+const MOVES = [[-1, 0], [0, 1], [1, 0], [0, -1]];
+
+/** Why an agent cannot reach a goal of a grid world; empty if it can from each start. */
+export function unreachable({ layout, wind }) {
+  if (!layout.join("").includes("G")) return "There is no goal: every episode lasts until time is up.";
+  const [rows, columns] = [layout.length, layout[0].length];
+  const within = (index, count) => Math.min(Math.max(index, 0), count - 1);
+  const reaches = (start) => {
+    const seen = new Set([start]);
+    for (const cell of seen) {
+      const [row, column] = [Math.floor(cell / columns), cell % columns];
+      if (layout[row][column] === "G") return true;
+      for (const [down, right] of MOVES) {
+        const [to, across] = [within(row + down - wind[column], rows), within(column + right, columns)];
+        if (layout[to][across] !== "#") seen.add(to * columns + across);
+      }
+    }
+    return false;
+  };
+  const starts = [...layout.join("")].flatMap((letter, cell) => (letter === "S" ? [cell] : []));
+  const cut = starts.filter((start) => !reaches(start)).length;
+  if (!cut) return "";
+  const from = starts.length === 1 ? "the start" : cut === starts.length ? "any start" : "some starts";
+  const obstacles = wind.some(Boolean) ? "Walls or wind" : "Walls";
+  return `${obstacles} cut the goal off from ${from}: such an episode lasts until time is up.`;
+}
+
 /** The tools of the painted grid. `paint(cell)` applies the chosen tool to a cell. */
 export class Painter {
   constructor(place, store, announce) {
@@ -22,12 +49,14 @@ export class Painter {
     this.stroke = null;
     this.fields = [];
     this.refused = refusalPlace();
+    this.warning = make("p", { className: "warning", hidden: true, role: "status" });
     place.append(
       make("h3", { textContent: "Paint the grid world" }),
       make("p", { textContent: "Choose a tool and draw on the first map, with the pointer or with the arrow keys and Enter. Every change trains the agent again." }),
       make("div", { className: "tools-row" }, this.toolButtons(), this.number("reward to paint", "reward", () => this.reward, (value) => { this.reward = value; })),
       make("div", { className: "tools-row" }, ...this.sizes(), ...this.rewards(), this.starts()),
       this.refused,
+      this.warning,
     );
     store.subscribe(() => this.refresh());
     this.refresh();
@@ -40,7 +69,11 @@ export class Painter {
   refresh() {
     const { environment, grid } = this.store.state;
     this.place.hidden = environment !== PAINTED;
-    if (grid) for (const show of this.fields) show();
+    if (!grid) return;
+    for (const show of this.fields) show();
+    const problem = unreachable(grid);
+    this.warning.hidden = !problem;
+    if (this.warning.textContent !== problem) this.warning.textContent = problem;
   }
 
   toolButtons() {

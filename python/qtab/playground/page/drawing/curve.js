@@ -10,6 +10,15 @@ import { meanAndInterval, movingMeans, quantile, windowEnds, windowOf } from "..
 const POINTS = 400;
 const MAX_DOTS = 6000;
 const LABEL_SPACE = 26;
+/** Lines to compare with that are closer than this many pixels look like one. */
+const SAME_LINE = 2;
+
+/** The end of the axis of episodes: that of the run, or of its beginning as long as only that is finished. */
+function axisEnd(finished, episodes) {
+  const power = 10 ** Math.floor(Math.log10(Math.max(finished, 1)));
+  const end = [1, 2, 3, 5, 10].map((factor) => factor * power).find((each) => each >= finished);
+  return Math.min(end, episodes);
+}
 
 /** Shows learning curves on a canvas, with a summary below and the numbers under the pointer. */
 export class LearningCurve {
@@ -83,12 +92,13 @@ export class LearningCurve {
   draw() {
     if (!this.shown) return;
     const { g, width, height } = surface(this.canvas);
-    const { returns, episodes, marks, means, over, ends } = this.shown;
+    const { returns, episodes, finished, marks, means, over, ends } = this.shown;
     const [low, high] = this.range();
     const box = { left: 52, right: width - 14, top: 22, bottom: height - 42 };
-    const x = scale(0, episodes, box.left, box.right);
+    const end = (this.shown.end = axisEnd(finished, episodes));
+    const x = scale(0, end, box.left, box.right);
     const y = scale(low, high, box.bottom, box.top);
-    axes(g, box, x, y, ticks(0, episodes, width < 420 ? 4 : 5), ticks(low, high, 6), { x: "episode", y: this.shown.word });
+    axes(g, box, x, y, ticks(0, end, width < 420 ? 4 : 5).filter(Number.isInteger), ticks(low, high, 6), { x: "episode", y: this.shown.word });
     g.save();
     g.beginPath();
     g.rect(box.left, box.top - 4, box.right - box.left, box.bottom - box.top + 8);
@@ -107,15 +117,15 @@ export class LearningCurve {
     }
     line(g, points(over.mean), colors.warm, 2.5);
     g.restore();
-    drawMarks(g, box, marks, y, colors);
+    this.labels = markLabels(marks, y);
+    drawMarks(g, box, this.labels, y, colors);
     this.drawPointer(g, box, x, y, colors);
   }
 
   drawPointer(g, box, x, y, colors) {
-    const { ends, over, episodes } = this.shown;
+    const { ends, over } = this.shown;
     if (this.pointer === null || !ends.length || this.pointer < box.left) return;
-    const episode = ((this.pointer - box.left) / (box.right - box.left)) * episodes;
-    const index = ends.findIndex((end) => end >= episode);
+    const index = ends.findIndex((end) => x(end) >= this.pointer);
     const at = index < 0 ? ends.length - 1 : index;
     const left = x(ends[at]);
     line(g, [[left, box.top], [left, box.bottom]], colors.muted, 1);
@@ -145,16 +155,25 @@ function drawDots(g, returns, x, y, colors) {
   g.globalAlpha = 1;
 }
 
+/** The labels of the lines to compare with, from the lowest: lines that coincide have one label. */
+function markLabels(marks, y) {
+  const labels = [];
+  for (const { name, value, dash } of marks.filter((mark) => Number.isFinite(mark.value)).sort((left, right) => left.value - right.value)) {
+    const last = labels.at(-1);
+    if (!last || y(last.value) - y(value) >= SAME_LINE) labels.push({ value, dash, label: `${name} ${number(value)}` });
+    else last.label = last.value === value ? last.label.replace(" ", ` and ${name} `) : `${last.label}, ${name} ${number(value)}`;
+  }
+  return labels;
+}
+
 /** Draws the lines to compare with. A label that would be too close to the one above is drawn below its line. */
-function drawMarks(g, box, marks, y, colors) {
-  const shown = marks.filter(({ value }) => Number.isFinite(value)).sort((left, right) => left.value - right.value);
-  shown.forEach(({ name, value, dash }, index) => {
+function drawMarks(g, box, shown, y, colors) {
+  shown.forEach(({ value, dash, label }, index) => {
     g.setLineDash(dash);
     line(g, [[box.left, y(value)], [box.right, y(value)]], colors.good, 1.5);
     g.setLineDash([]);
     const isClose = index + 1 < shown.length && y(value) - y(shown[index + 1].value) < LABEL_SPACE;
     const at = y(value) + (isClose ? 9 : -9);
-    const label = `${name} ${number(value)}`;
     const wide = g.measureText(label).width;
     g.fillStyle = colors.card;
     g.globalAlpha = 0.82;

@@ -75,7 +75,7 @@ function named({ name, unit }) {
 const DIRECTIONS = { left: [-1, 0], right: [1, 0], up: [0, -1], down: [0, 1] };
 const NO_ACTION = 255;
 const MIN_ARROW_CELL = 13;
-const UNVISITED_ALPHA = 0.28;
+const HATCH = 6; // pixels between the lines of cells that were never visited
 
 /** The direction of an action by the last word of its name; null without one, as for "no push". */
 function direction(action) {
@@ -89,41 +89,56 @@ export function isEnd(layout, cell) {
   return columns !== undefined && "GHC".includes(layout[Math.floor(cell / columns)][cell % columns]);
 }
 
-/** Fills the cells: `share` gives a number from 0 to 1, NaN for a wall; those with `isFaint` are pale, `isBlank` empty. */
-export function drawCells(g, frame, cells, palette, { share, isFaint, layout }) {
+/** Fills the cells: `share` gives a number from 0 to 1, NaN for a wall; those with `isUnvisited` are hatched. */
+export function drawCells(g, frame, cells, palette, { share, isUnvisited, layout }) {
   const colors = themeColors();
+  const hatched = new Path2D();
   for (let index = 0; index < cells; index++) {
     const { x, y, width, height } = frame.cell(index);
     const part = share(index);
     const isBlank = isEnd(layout, index);
-    g.globalAlpha = !Number.isNaN(part) && !isBlank && isFaint(index) ? UNVISITED_ALPHA : 1;
-    g.fillStyle = isBlank ? colors.line : Number.isNaN(part) ? colors.wall : css(shade(palette, part));
+    const isHatched = !Number.isNaN(part) && !isBlank && isUnvisited(index);
+    g.fillStyle = isBlank ? colors.line : Number.isNaN(part) ? colors.wall : isHatched ? colors.card : css(shade(palette, part));
     const gap = frame.plane ? 0 : 1;
     const [left, top] = frame.plane ? [Math.floor(x), Math.floor(y)] : [x, y];
     const wide = frame.plane ? Math.ceil(x + width) - left : width - gap;
     const tall = frame.plane ? Math.ceil(y + height) - top : height - gap;
-    g.clearRect(left, top, wide, tall);
     g.fillRect(left, top, wide, tall);
+    if (isHatched) hatched.rect(left, top, wide, tall);
   }
-  g.globalAlpha = 1;
+  hatch(g, hatched, frame.box, colors);
 }
 
-/** Draws the greedy actions as arrows, or a dot for an action without a direction; only some if cells are small. */
-export function drawPolicy(g, frame, map, palette, { actions, greedy, share, isFaint, layout }) {
+/** Draws diagonal lines within a path. */
+function hatch(g, path, { left, top, right, bottom }, colors) {
+  g.save();
+  g.clip(path);
+  g.globalAlpha = 0.45;
+  g.strokeStyle = colors.muted;
+  g.lineWidth = 1;
+  g.beginPath();
+  for (let x = left - (bottom - top); x < right; x += HATCH) {
+    g.moveTo(x, bottom);
+    g.lineTo(x + bottom - top, top);
+  }
+  g.stroke();
+  g.restore();
+}
+
+/** Draws the greedy actions of visited states as arrows, or a dot for an action without a direction; only some if cells are small. */
+export function drawPolicy(g, frame, map, palette, { actions, greedy, share, isUnvisited, layout }) {
   const sample = frame.cell(0);
   const everyColumn = Math.max(Math.ceil(MIN_ARROW_CELL / sample.width), 1);
   const everyRow = Math.max(Math.ceil(MIN_ARROW_CELL / sample.height), 1);
   const directions = actions.map(direction);
+  g.globalAlpha = 0.9;
   for (let row = Math.floor(everyRow / 2); row < map.rows; row += everyRow) {
     for (let column = Math.floor(everyColumn / 2); column < map.columns; column += everyColumn) {
       const index = row * map.columns + column;
-      if (greedy[index] === NO_ACTION || Number.isNaN(share(index)) || isEnd(layout, index)) continue;
+      if (greedy[index] === NO_ACTION || Number.isNaN(share(index)) || isEnd(layout, index) || isUnvisited(index)) continue;
       const { x, y, width, height } = frame.cell(index);
       const size = Math.min(width * everyColumn, height * everyRow, 40) * 0.3;
-      const faint = isFaint(index);
-      const ink = faint ? themeColors().ink : inkOn(shade(palette, share(index)));
-      g.globalAlpha = faint ? 0.3 : 0.9;
-      arrow(g, x + width / 2, y + height / 2, size, directions[greedy[index]], ink, 1.4);
+      arrow(g, x + width / 2, y + height / 2, size, directions[greedy[index]], inkOn(shade(palette, share(index))), 1.4);
     }
   }
   g.globalAlpha = 1;

@@ -48,9 +48,9 @@ export class Motion {
     this.slider.max = episode.actions.length;
     if (!same) this.time = 0;
     const steps = counted(episode.actions.length, "step");
-    const end = episode.terminated ? "it ends in a terminal state" : "the time limit ends it";
+    const end = episode.terminated ? this.scene.outcome(this.momentAt(episode.actions.length)) : "time is up";
     this.caption.textContent = episode.terminated || episode.truncated
-      ? `Greedy episode: return ${number(episode.return)} in ${steps}; ${end}.`
+      ? `Greedy episode: return ${number(episode.return)} in ${steps}: ${end}.`
       : `Greedy episode: return ${number(episode.return)} in its first ${steps}; the rest is not shown.`;
     this.draw();
   }
@@ -95,7 +95,7 @@ export class Motion {
   draw() {
     if (!this.world) return;
     const { g, width, height } = surface(this.canvas);
-    const moment = this.moment();
+    const moment = this.momentAt(this.time);
     if (!moment) return;
     this.scene.draw(g, width, height, moment);
     if (!this.episode || this.episode.current) {
@@ -116,12 +116,12 @@ export class Motion {
     this.canvas.setAttribute("aria-label", `The agent: ${this.scene.alternative(moment)}.`);
   }
 
-  /** The content of the scene at this time: an observation and the action, and the cells on a grid. */
-  moment() {
+  /** The content of the scene at a time: an observation and the action, and the cells on a grid. */
+  momentAt(shownTime) {
     const { layout, wind, rewards, drawing } = this.world;
     if (!this.episode) return layout ? { layout, wind, rewards, drawing, cell: null, from: null, share: 1, trail: [] } : null;
     const { observations, components, actions, cells } = this.episode;
-    const time = Math.min(this.time, actions.length);
+    const time = Math.min(shownTime, actions.length);
     const step = this.episode.current ? 0 : Math.floor(time);
     const action = step < actions.length ? actions[step] : null;
     const observation = observations.slice(step * components, (step + 1) * components);

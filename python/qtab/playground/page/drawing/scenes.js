@@ -30,6 +30,8 @@ export const mountainCar = {
     arrow(g, x(position), y(hill(position)) - width / 10, width / 40, [[-1, 0], null, [1, 0]][action], colors.warm, 3);
   },
 
+  outcome: () => "it reached the flag",
+
   alternative: ({ observation }) => `the car is at position ${observation[0].toFixed(2)}`,
 };
 
@@ -88,6 +90,8 @@ export const cartPole = {
     arrow(g, pivot[0] + side * length * 0.85, ground - tall * 0.62, width / 45, [side, 0], colors.warm, 3);
   },
 
+  outcome: ({ observation }) => (Math.abs(observation[0]) > LIMIT ? "the cart left the track" : "the pole fell"),
+
   alternative: ({ observation }) =>
     `the cart is at ${observation[0].toFixed(2)} m, the pole leans by ${((observation[2] * 180) / Math.PI).toFixed(1)} degrees`,
 };
@@ -124,6 +128,11 @@ export const gridWorld = {
     const [fromX, fromY] = center(from ?? cell);
     const [toX, toY] = center(cell);
     dot(g, [fromX + (toX - fromX) * share, fromY + (toY - fromY) * share], size * 0.24, colors.accent);
+  },
+
+  outcome: ({ layout, cell }) => {
+    const columns = layout[0].length;
+    return layout[Math.floor(cell / columns)][cell % columns] === "H" ? "it fell into a hole" : "it reached the goal";
   },
 
   alternative: ({ layout, cell }) => {

@@ -29,7 +29,7 @@ export class StateMap {
   }
 
   /**
-   * Shows a map: {map, plane, layout, actions, greedy, palette, share, isFaint, path, label}. `share(cell)` is the color
+   * Shows a map: {map, plane, layout, actions, greedy, palette, share, isUnvisited, path, label}. `share(cell)` is the color
    * from 0 to 1; `plane` {x, y} or null; `path` a list of [x, y] in the plane's units, or of cells.
    */
   show(content) {

@@ -78,13 +78,13 @@ export function showInspection(title, place, inspection, actions, bootstraps) {
 }
 
 function valueTable({ actionValues, visits }, actions) {
-  const largest = Math.max(...actionValues);
-  const widest = Math.max(...Array.from(actionValues, Math.abs), 1e-300);
-  const head = make("tr", {}, ...["Action", "Value", "Visits", "Size"].map((textContent) => make("th", { scope: "col", textContent })));
+  const [lowest, largest] = [Math.min(...actionValues), Math.max(...actionValues)];
+  const head = make("tr", {}, ...["Action", "Value", "Visits", "Above worst"].map((textContent) => make("th", { scope: "col", textContent })));
   const texts = distinguished(actionValues);
   const rows = actions.map((action, index) => {
     const bar = make("span", { className: "bar" });
-    const share = Math.abs(actionValues[index]) / widest;
+    // From the worst action's value, so that the greedy action has the longest bar even if all values are negative.
+    const share = (actionValues[index] - lowest) / (largest - lowest);
     bar.style.width = `${Number.isFinite(share) ? 100 * share : 0}%`;
     const name = make("th", { scope: "row", textContent: action });
     const cells = [texts[index], count(Math.round(visits[index]))].map((text) => make("td", { textContent: text }));

@@ -51,10 +51,10 @@ export function learnedContent(result, frame, path) {
   const { map } = result;
   const [low, high] = valueRange(map, result.best, frame.layout);
   const share = shareOf(map.values, low, high);
-  const isFaint = frame.hasCells ? (cell) => !(map.visits[cell] > 0) : () => false;
+  const isUnvisited = (cell) => !(map.visits[cell] > 0);
   const visited = map.visits.reduce((sum, visits) => sum + (visits > 0), 0);
   const label = `Map of the learned values, ${describeSize(map)}: values from ${number(low)} to ${number(high)}; ${count(visited)} cells visited.`;
-  return { ...frame, map, greedy: map.greedy, palette: "values", share, isFaint, path, label };
+  return { ...frame, map, greedy: map.greedy, palette: "values", share, isUnvisited, path, label };
 }
 
 /** The content of the map of visits. */
@@ -65,7 +65,7 @@ export function visitsContent(result, frame) {
   const share = (cell) => (isWall(map.values, cell) ? NaN : Math.log1p(map.visits[cell]) / top);
   const palette = themeColors().isDark ? "darkVisits" : "visits";
   const label = `Map of the visits, ${describeSize(map)}: at most ${count(most)} visits of a cell.`;
-  return { ...frame, map, greedy: null, palette, share, isFaint: () => false, path: null, label, most };
+  return { ...frame, map, greedy: null, palette, share, isUnvisited: () => false, path: null, label, most };
 }
 
 /** The content of the map of the optimal or best known values. */
@@ -74,7 +74,7 @@ export function bestContent(result, frame) {
   const [low, high] = valueRange(map, best, frame.layout);
   const share = shareOf(best.values, low, high);
   const label = `Map of the ${best.kind} values, in the same colors as the learned ones.`;
-  return { ...frame, map, greedy: best.greedy, palette: "values", share, isFaint: () => false, path: null, label };
+  return { ...frame, map, greedy: best.greedy, palette: "values", share, isUnvisited: () => false, path: null, label };
 }
 
 function isWall(values, cell) {
@@ -89,12 +89,12 @@ function describeSize({ columns, rows }) {
   return `${rows} rows and ${columns} columns`;
 }
 
-/** Shows the color bar with its limits, and the meaning of pale cells. */
+/** Shows the color bar with its limits, and the meaning of hatched cells. */
 export function showLegend(place, palette, low, high, unvisited = false) {
   const bar = make("span", { className: "bar" });
   bar.style.background = gradient(palette);
-  const pale = () => make("span", { className: "key" }, make("span", { className: "unvisited" }), "pale: never visited");
-  place.replaceChildren(low, bar, high, ...(unvisited ? [pale()] : []));
+  const hatched = () => make("span", { className: "key" }, make("span", { className: "unvisited" }), "never visited");
+  place.replaceChildren(low, bar, high, ...(unvisited ? [hatched()] : []));
 }
 
 /** The greedy episode as a path on a map: positions on a plane, or cells. */

@@ -179,13 +179,13 @@ export class View {
 
   /** The plane, the layout and the names that all maps share. */
   frame() {
-    const { environment, grid, settings } = this.store.state;
+    const { environment, grid } = this.store.state;
     const { entry } = this.store;
     const layout = environment === PAINTED ? grid.layout : entry.layout;
     const { observations, map, actions } = entry;
     const plane = map && { x: observations[map.x], y: observations[map.y], xIndex: map.x, yIndex: map.y };
     const rewards = environment === PAINTED ? grid.rewards : null;
-    return { plane, layout, rewards, actions, hasCells: settings.discretizer !== "tiles" };
+    return { plane, layout, rewards, actions };
   }
 
   showMaps(result) {
@@ -204,7 +204,7 @@ export class View {
     const visits = visitsContent(result, frame);
     this.visits.show(visits);
     const [low, high] = valueRange(map, result.best, frame.layout).map((value) => number(value, 3));
-    showLegend(element("values-legend"), "values", low, high, frame.hasCells);
+    showLegend(element("values-legend"), "values", low, high, true);
     showLegend(element("visits-legend"), visits.palette, "0", count(visits.most));
     this.showBest(result, frame, low, high);
     if (result.current && result.state === "paused") this.values.showAgent(this.placeOf(result.current.observation, result.current.cell));

@@ -1,0 +1,118 @@
+"""What the pictures show: bars of action values, hatched states, the end of an episode, axes and labels."""
+
+from typing import Any
+
+import pytest
+
+from support.playground import Playground
+
+pytestmark = pytest.mark.browser
+
+BARS = """() => [...document.querySelectorAll(".action-values tbody tr")].map((row) =>
+  [row.className, parseFloat(row.querySelector(".bar").style.width)])"""
+COLORS = """(cells) => {
+  const { canvas, frame } = playground.view.values;
+  const ratio = canvas.width / canvas.clientWidth;
+  const image = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+  const colorAt = (x, y) => Array.from(image.data.slice(4 * (y * image.width + x), 4 * (y * image.width + x) + 3));
+  return cells.map((cell) => {
+    const { x, y, width } = frame.cell(cell);
+    const [left, row] = [x + 0.2 * width, y + 0.8 * width].map((place) => Math.round(place * ratio));
+    return Array.from({ length: Math.round(0.6 * width * ratio) }, (_, at) => colorAt(left + at, row));
+  });
+}"""
+"""The red, green and blue along a line below the middle of each cell."""
+
+
+@pytest.mark.parametrize("fragment", ["#env=CliffWalking-v1&example=0", "#env=FrozenLake-v1&example=1"])
+def test_the_greedy_action_has_the_longest_bar(playground: Playground, fragment: str) -> None:
+    playground.open(fragment)
+    values = playground.page.evaluate("() => Array.from(playground.view.result.inspection.actionValues)")
+    bars = playground.page.evaluate(BARS)
+    lowest, highest = min(values), max(values)
+    for value, (kind, width) in zip(values, bars, strict=True):
+        assert width == pytest.approx(100 * (value - lowest) / (highest - lowest), abs=0.01)
+        assert (kind == "greedy") == (width == 100)
+
+
+def test_equal_values_have_no_bars(playground: Playground) -> None:
+    playground.open("#env=FrozenLake-v1&example=0")
+    assert {width for _, width in playground.page.evaluate(BARS)} == {0}
+
+
+def test_states_that_were_never_visited_are_hatched(playground: Playground) -> None:
+    playground.open("#env=FrozenLake8x8-v1%20(not%20slippery)&example=0")
+    visits = playground.result()["visits"]
+    assert visits[0] > 0
+    assert visits[20] == 0
+    visited, unvisited = playground.page.evaluate(COLORS, [0, 20])
+    assert not any(_is_grey(color) for color in visited)
+    assert all(_is_grey(color) for color in unvisited), "a color of the scale of values"
+    assert len({tuple(color) for color in unvisited}) > 1, "no lines"
+    assert "never visited" in playground.text("values-legend")
+
+
+def _is_grey(color: list[int]) -> bool:
+    return max(color) - min(color) < 40
+
+
+@pytest.mark.parametrize(
+    ("fragment", "end"),
+    [
+        ("#env=FrozenLake-v1&example=1", "it fell into a hole."),
+        ("#env=CliffWalking-v1&example=0", "it reached the goal."),
+        ("#env=MountainCar-v0&example=2", "it reached the flag."),
+        ("#env=CartPole-v1&example=0", "the pole fell."),
+        ("#env=CartPole-v1&example=2&seed=0", "time is up."),
+    ],
+)
+def test_the_end_of_an_episode_is_said_in_words(playground: Playground, fragment: str, end: str) -> None:
+    playground.open(fragment)
+    assert playground.text("motion-caption").endswith(f": {end}")
+
+
+@pytest.mark.parametrize(
+    ("grid", "warning"),
+    [
+        ("layout=S..W./...W./...WG", "Walls cut the goal off from the start: "),
+        ("layout=SW.S/.W.G", "Walls cut the goal off from some starts: "),
+        ("layout=S..G/....&wind=0,1,1,0", ""),
+        ("layout=.../S.G&wind=1,1,1", "Walls or wind cut the goal off from the start: "),
+        ("layout=S..", "There is no goal: every episode lasts until time is up."),
+    ],
+)
+def test_a_goal_that_cannot_be_reached_is_noticed(playground: Playground, grid: str, warning: str) -> None:
+    playground.open(f"#env=grid&{grid}&episodes=40&max_episode_steps=50")
+    shown = playground.page.locator("#painter .warning")
+    assert shown.is_visible() == bool(warning)
+    assert shown.inner_text().startswith(warning)
+    reached = any(length < 50 for length in playground.result()["lengths"])
+    assert reached or warning, "an agent that explores finds a goal that it can reach"
+    if "some" not in warning:
+        assert not (reached and warning)
+
+
+def test_a_curve_of_few_episodes_has_an_axis_for_them(playground: Playground) -> None:
+    playground.open("#env=CliffWalking-v1&example=0")
+    ends: list[Any] = [playground.page.evaluate("() => playground.view.curve.shown.end")]
+    playground.page.locator("#reset").click()
+    for _ in range(4):
+        playground.page.locator("#one-episode").click()
+        playground.settled()
+        ends.append(playground.page.evaluate("() => playground.view.curve.shown.end"))
+    assert ends == [500, 1, 2, 3, 5]
+
+
+def test_lines_that_coincide_have_one_label(playground: Playground) -> None:
+    playground.open("#env=CliffWalking-v1&example=0")
+    labels = """marks => {
+      const { curve } = playground.view;
+      curve.show([[-20, -15, -14]], 3, marks.map(([name, value]) => ({ name, value, dash: [] })));
+      return curve.labels.map(({ label }) => label);
+    }"""
+    for marks, expected in (
+        ([["threshold", -13], ["optimal", -13]], ["threshold and optimal −13"]),
+        ([["threshold", -13], ["optimal", -13.001]], ["optimal −13, threshold −13"]),
+        ([["threshold", -16], ["optimal", -13]], ["threshold −16", "optimal −13"]),
+    ):
+        assert playground.page.evaluate(labels, marks) == expected
