@@ -7,6 +7,7 @@ from qtab.diagnosis.cells import coarse_grid, narrow_limits, wide_limits
 from qtab.diagnosis.exploration import coverage, exploration, lasting_bonus, lasting_exploration
 from qtab.diagnosis.facts import Facts
 from qtab.diagnosis.finding import Finding, Unchecked
+from qtab.diagnosis.greedy import greedy_loop
 from qtab.diagnosis.initial_values import too_optimistic, too_pessimistic
 from qtab.diagnosis.learning_rate import divergence, noisy_values, slow_learning
 from qtab.diagnosis.returns import not_solved, too_short, unlucky_seed
@@ -33,6 +34,7 @@ CHECKS: Mapping[str, Check] = {
     "divergence": Check(divergence, if_solved=True, reads_values=True),
     "horizon": Check(horizon),
     "short time limit": Check(time_limit),
+    "greedy loop": Check(greedy_loop, reads_values=True),
     "grid too coarse": Check(coarse_grid, repeats=True),
     "limits too narrow": Check(narrow_limits, repeats=True),
     "limits too wide": Check(wide_limits, repeats=True),

@@ -4,6 +4,7 @@ import time
 from collections.abc import Iterable
 from dataclasses import replace
 
+import gymnasium as gym
 import numpy as np
 
 from qtab._utils import checks
@@ -14,9 +15,12 @@ from qtab.diagnosis.facts import Facts
 from qtab.diagnosis.finding import Finding, Unchecked
 from qtab.planning.optimum import Optimum
 from qtab.results.run import Run
+from qtab.training.setup.run_env import check_same
 
 
-def diagnose(run: Run, optimum: Optimum | None = None, seeds: int | None = None) -> Diagnosis:
+def diagnose(
+    run: Run, optimum: Optimum | None = None, seeds: int | None = None, *, env: gym.Env | None = None
+) -> Diagnosis:
     """Looks for reasons why a run did not solve its environment, and for changes to try.
 
     Each finding is computed from the run and from its environment: some checks repeat the run in Rust, and train other
@@ -27,6 +31,8 @@ def diagnose(run: Run, optimum: Optimum | None = None, seeds: int | None = None)
         optimum: The result of :func:`qtab.optimum` for the run. None computes the optimum of small tables, and uses
             the best known return of MountainCar-v0.
         seeds: The number of other seeds to train for comparison; None trains for a fraction of a second.
+        env: The environment of the run, for one without an id or that qtab cannot make again. Episodes of the greedy
+            policy are played in it; it is reset and stepped, and not closed. None makes the environment of the run.
 
     Returns:
         The findings; they print as text. Its ``what_if()`` tries the changes that they advise.
@@ -34,7 +40,8 @@ def diagnose(run: Run, optimum: Optimum | None = None, seeds: int | None = None)
     Raises:
         MemoryError: if the runs of so many ``seeds`` would take more than half of the machine's memory.
         TypeError: for an argument of the wrong type.
-        ValueError: for a run without a finished episode, or the optimum of another environment.
+        ValueError: for a run without a finished episode, or the optimum of another environment, or if ``env`` differs
+            from the environment of the run.
     """
     checks.instance("run", run, Run)
     if optimum is not None:
@@ -42,10 +49,13 @@ def diagnose(run: Run, optimum: Optimum | None = None, seeds: int | None = None)
         optimum.check_same_env(run)
     if seeds is not None:
         seeds = checks.integer("seeds", seeds, least=0)
+    if env is not None:
+        checks.instance("env", env, gym.Env)
+        check_same(run, env)
     if len(run.episode_returns) == 0:
         raise ValueError("run must have a finished episode, got one that was stopped during its first")
     began = time.perf_counter()
-    facts = Facts(run, optimum, seeds)
+    facts = Facts(run, optimum, seeds, env)
     findings: list[Finding] = []
     unremarkable: list[str] = []
     not_made: dict[str, str] = {}

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
 from qtab._utils import html
+from qtab._utils.shown import counted
 from qtab.diagnosis.facts import Facts
 from qtab.diagnosis.finding import COLUMNS, Finding
 from qtab.diagnosis.what_if import WhatIf, try_changes
@@ -104,6 +105,7 @@ class Diagnosis:
         if self.solved:
             lines.append(f"Solved: {self.verdict}.")
         elif self.solved is None:
+            lines += [self._returns()] if self.facts.greedy is not None else []
             lines.append(f"It is not known whether the run solved its environment: {self.verdict.why_unknown}.")
         if not self.findings:
             lines.append("There is nothing to advise." if self.solved else "No check found anything to advise.")
@@ -112,6 +114,15 @@ class Diagnosis:
         if self.reasons:
             lines.append("\n".join(self._not_checked()))
         return lines
+
+    def _returns(self) -> str:
+        """The mean returns of the greedy policy and of training, in a sentence."""
+        played, verdict = self.facts.greedy, self.verdict
+        if played is None:
+            return ""
+        greedy = counted(len(played.returns), "greedy episode")
+        last = counted(verdict.last, "training episode")
+        return f"Mean returns: {played.returns.mean():.4g} in {greedy}, {verdict.final_return:.4g} in the last {last}."
 
     def _not_checked(self) -> Iterator[str]:
         for reason in dict.fromkeys(self.reasons.values()):

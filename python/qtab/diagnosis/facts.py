@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from functools import cached_property
 
+import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,6 +11,7 @@ from qtab._utils.memory import memory_limit
 from qtab.config import Config
 from qtab.config.choices import IN_PYTHON
 from qtab.config.options import AVERAGE_REWARD, MONTE_CARLO, PREFERENCES
+from qtab.diagnosis.greedy import GreedyEpisodes, play_greedily
 from qtab.diagnosis.sample import Sample, repeat, sample_steps, shortest_best_episode
 from qtab.envs.metadata.goals import BEST_KNOWN_MOUNTAIN_CAR, is_usual_mountain_car
 from qtab.planning.optimum import Optimum
@@ -38,6 +40,7 @@ class Facts:
     run: Run
     given_optimum: Optimum | None = None
     given_seeds: int | None = None
+    given_env: gym.Env | None = None
 
     @property
     def config(self) -> Config:
@@ -69,6 +72,24 @@ class Facts:
     def verdict(self) -> Verdict:
         """Whether the run solved its environment, with the measured returns."""
         return judge(self.run, self.optimum)
+
+    @property
+    def greedy(self) -> GreedyEpisodes | None:
+        """Episodes of the greedy policy; None if they cannot be played, for the reason in ``why_not_played``."""
+        return self._greedy if isinstance(self._greedy, GreedyEpisodes) else None
+
+    @property
+    def why_not_played(self) -> str:
+        """The reason why the greedy policy was not played, to follow the word "as"; empty if it was."""
+        return "" if isinstance(self._greedy, GreedyEpisodes) else self._greedy
+
+    @cached_property
+    def _greedy(self) -> GreedyEpisodes | str:
+        if not self.is_finite:
+            return "the values diverged"
+        if self.given_env is None and not can_be_made(self.config):
+            return "its environment cannot be made again without env="
+        return play_greedily(self.run, self.given_env) or "a greedy episode takes longer than the training"
 
     @property
     def solved(self) -> bool | None:

@@ -12,7 +12,7 @@ from qtab.cli.reporting import Report
 from qtab.cli.saved_run import add_run, load_run
 from qtab.cli.values import integer
 from qtab.diagnosis.diagnose import diagnose
-from qtab.diagnosis.diagnosis import SEEDS
+from qtab.diagnosis.diagnosis import SEEDS, Diagnosis
 from qtab.diagnosis.what_if import WhatIf
 
 
@@ -35,13 +35,21 @@ def run(options: Namespace) -> int:
         report.text(str(diagnosis))
         facts = ("findings", "unremarkable", "not_made", "reasons", "seconds")
         report.add(env=saved.config.env, seed=saved.config.seed, what_if=None)
-        report.add(**diagnosis.verdict.numbers(), **{name: getattr(diagnosis, name) for name in facts})
+        report.add(**_returns(diagnosis), **{name: getattr(diagnosis, name) for name in facts})
         if options.what_if and any(finding.changes for finding in diagnosis):
             with usage_errors(options):
                 tried = diagnosis.what_if(options.seeds, progress=report.progress)
             report.text(f"\n{tried}")
             report.add(what_if=_facts(tried))
     return 0
+
+
+def _returns(diagnosis: Diagnosis) -> dict[str, Any]:
+    """Returns the numbers of the verdict, and the return of the greedy policy also where there is no goal."""
+    numbers, played = diagnosis.verdict.numbers(), diagnosis.facts.greedy
+    if numbers["greedy_return"] is None and played is not None:
+        numbers["greedy_return"] = float(played.returns.mean())
+    return numbers
 
 
 def _facts(tried: WhatIf) -> dict[str, Any]:
