@@ -16,7 +16,7 @@ STEPS = 4_000
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", IDS[1:])  # tests/envs/test_mountain_car_steps.py walks as far with MountainCar-v0
+@pytest.mark.parametrize("name", IDS[1:])  # test_mountain_car_steps.py walks as far with MountainCar-v0
 @pytest.mark.parametrize("policy", [None, heuristic_policy], ids=["random", "heuristic"])
 def test_long_walks_equal_gymnasiums(name, policy, record_property):
     record_property("machine", MACHINE)
