@@ -1,6 +1,6 @@
 """A damaged store raises StoreError, or gives the results of the undamaged one. It never gives other results.
 
-By hand, with 1,000 damaged stores: ``pytest tests/sweeps/test_damaged_stores.py --hypothesis-profile fuzz``.
+By hand, with 1,000 damaged stores: ``pytest tests/sweeps/stores/test_damaged_stores.py --hypothesis-profile fuzz``.
 """
 
 import shutil
@@ -21,7 +21,7 @@ from support.sweeps import assert_equal
 LAKE = "FrozenLake-v1"
 GRID: dict[str, Any] = {"learning_rate": [0.1, 0.2], "algorithm": ["sarsa", "q_learning"]}
 SMALL: dict[str, Any] = {"seeds": 3, "episodes": 20, "block": 5}
-SAVED = Path(__file__).parents[1] / "results" / "saved"
+SAVED = Path(__file__).parents[2] / "results" / "files" / "saved"
 GRID_2: dict[str, Any] = {"learning_rate": [0.1, 0.2]}
 """The grid of the saved store of version 2."""
 

@@ -19,7 +19,7 @@ from qtab.sweeps.study import plan_study
 from support.sweeps import CAR, GRID, assert_equal
 
 SHORT: dict[str, Any] = {"episodes": 20, "block": 5}
-SAVED = Path(__file__).parents[1] / "results" / "saved"
+SAVED = Path(__file__).parents[2] / "results" / "files" / "saved"
 
 
 def test_only_the_new_seeds_are_trained(tmp_path, small_chunks):

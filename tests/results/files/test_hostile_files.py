@@ -1,6 +1,6 @@
 """Nothing is ever unpickled from a file, and a file that is not a run is refused with a clear error.
 
-Most of these files have no digest, so that what they hold is looked at; tests/results/test_digest.py is about digests.
+Most of these files have no digest, so that what they hold is looked at; test_digest.py is about digests.
 """
 
 import pickle

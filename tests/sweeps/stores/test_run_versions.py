@@ -23,7 +23,7 @@ from support.sweeps import assert_equal
 LAKE = "FrozenLake-v1"
 GRID = {"learning_rate": [0.1, 0.2]}
 SHORT: dict[str, Any] = {"episodes": 20, "progress": False}
-SAVED = Path(__file__).parents[1] / "results" / "saved"
+SAVED = Path(__file__).parents[2] / "results" / "files" / "saved"
 OTHERS = {**versions(), "numpy": "9.9.9"}
 HERE = versions()["numpy"]
 NOTE = f"The runs were trained with different versions: numpy {HERE} (4 runs), 9.9.9 (2 runs)."

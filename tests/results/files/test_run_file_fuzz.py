@@ -1,6 +1,6 @@
 """Whatever is done to a run file, it loads as the run that was saved, or is refused by the one documented error.
 
-More examples: python -m pytest tests/results/test_run_file_fuzz.py --hypothesis-profile fuzz
+More examples: python -m pytest tests/results/files/test_run_file_fuzz.py --hypothesis-profile fuzz
 """
 
 import dataclasses
