@@ -1,8 +1,9 @@
 """How long the playground takes from a move of a slider to the redrawn page.
 
 ``python tests/support/slider_to_redraw.py`` trains 5,000 episodes of the article for each of 15 learning rates, in
-Chromium without a graphics card, and prints medians and ranges by the page's own clock. Nothing else should run
-meanwhile.
+Chromium without a graphics card, and prints medians and ranges by the page's own clock. With the name of an algorithm,
+as in ``python tests/support/slider_to_redraw.py sarsa``, it trains a second agent beside the first one. Nothing else
+should run meanwhile.
 """
 
 import os
@@ -29,7 +30,7 @@ PREPARE = """() => {
   const draw = view.draw.bind(view);
   view.draw = () => {
     draw();
-    if (view.result.state !== "finished") return;
+    if (view.result.state !== "finished" || (view.names.length && view.otherResult?.state !== "finished")) return;
     times.drawn = performance.now();
     // The frame is on its way to the screen when the next one begins.
     requestAnimationFrame(() => requestAnimationFrame(() => { times.shown = performance.now(); }));
@@ -61,7 +62,8 @@ def measured() -> list[list[float]]:
         program = os.environ.get("CHROMIUM", "/usr/bin/chromium")
         browser = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
         page = browser.new_page(viewport={"width": 1280, "height": 900})
-        page.goto(file.as_uri())
+        compared = f"#compare={sys.argv[1]}" if len(sys.argv) > 1 else ""
+        page.goto(file.as_uri() + compared)
         page.wait_for_function("() => globalThis.playground?.training.state === 'finished'")
         page.evaluate(PREPARE)
         changes: list[list[float]] = []

@@ -94,6 +94,16 @@ export class Engine {
     this.#post({ type: "inspect", cell });
   }
 
+  /** Sets how many steps of each agent a second takes; Infinity trains as fast as possible. */
+  setPace(steps) {
+    this.#post({ type: "pace", steps });
+  }
+
+  /** Requests the values after some episodes; those at `places` on the way are kept for later requests. */
+  lookBack(episodes, places) {
+    this.#post({ type: "past", episodes, places });
+  }
+
   /** The action values of a run, in the layout of qtab's q_table: (tables, rows, actions) in one array. */
   table(seed = 0) {
     const token = (this.#token += 1);

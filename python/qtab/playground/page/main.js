@@ -5,6 +5,7 @@ import { setUpEnvironments } from "./controls/environments.js";
 import { EXAMPLES, exampleState, setUpExamples } from "./controls/examples.js";
 import { seedControls } from "./controls/seeds.js";
 import { setUpDialog, setUpShortcuts } from "./controls/shortcuts.js";
+import { comparisonControl, paceControl, PastControl } from "./controls/watching.js";
 import { setUpTheme } from "./drawing/theme.js";
 import { definitions, Engine } from "./engine.js";
 import { copyText, pythonProgram } from "./python_code.js";
@@ -30,36 +31,62 @@ function start() {
   store.state = exampleState(store, store.state.environment, 0);
   const left = restore(store, `${location.search.slice(1)}&${location.hash.slice(1)}`);
   const view = new View(store, announce, (cell) => training.inspect(cell));
+  const past = new PastControl((episodes, places) => {
+    if (episodes === null) view.showPast(null);
+    else for (const each of agents()) each.engine.lookBack(episodes, places);
+  });
   const training = new Training(store, Engine, {
     onStart: () => view.expectAnother(),
-    onResult: (result) => {
-      view.show(result);
-      if (["paused", "finished", "diverged"].includes(result.state)) announce(() => view.spoken(result), SPOKEN_DELAY);
+    onResult: (message) => {
+      if (message.type === "result") past.show(message.done, message.state === "training");
+      view.show(message);
+      if (["paused", "finished", "diverged"].includes(message.state)) announce(() => view.spoken(message), SPOKEN_DELAY);
     },
     onProblem: (message) => view.showProblem(message),
   });
+  let other = null; // the training of the agent to compare with
+  const newOther = () => new Training(store, Engine, {
+    onStart: () => {},
+    onResult: (message) => view.showOther(message),
+    onProblem: (message) => view.showProblem(message),
+    request: () => ({ ...store.request(store.otherSettings), best: false }),
+    inspects: false,
+  });
+  const agents = () => (store.otherSettings ? [training, (other ??= newOther())] : [training]);
+  let steps = Infinity;
+  const setPace = (chosen) => {
+    steps = chosen;
+    for (const each of agents()) each.setPace(steps);
+  };
+  element("watching").append(paceControl(setPace), past.element, comparisonControl(store));
   setUpEnvironments(store, element("environments"), element("environment-title"), element("environment-sentence"));
   setUpExamples(store, element("examples"), element("look"));
   new Controls(element("settings"), store, seedControls(store));
-  setUpPage(store, training, view, announce);
-  store.subscribe(() => training.start());
-  training.start();
+  setUpPage(store, agents, view, announce);
+  const start = () => {
+    for (const each of agents()) {
+      each.engine.setPace(steps);
+      each.start();
+    }
+  };
+  store.subscribe(start);
+  start();
   const note = (names) => {
     if (names.length) view.showNote(`Some parts of the address are not valid and were left out or changed: ${names.slice(0, 8).join(", ")}.`);
   };
   note(left);
   addEventListener("hashchange", () => note(restore(store, location.hash.slice(1))));
   if (matchMedia("(max-width: 860px)").matches) element("settings-fold").open = false;
-  globalThis.playground = { engine: training.engine, store, training, view, fragment, restore, fit, pythonProgram, EXAMPLES, exampleState };
+  globalThis.playground = { engine: training.engine, store, training, agents, view, fragment, restore, fit, pythonProgram, EXAMPLES, exampleState };
 }
 
-function setUpPage(store, training, view, announce) {
+function setUpPage(store, agents, view, announce) {
   const press = {
-    run: () => training.run(),
-    stop: () => training.stop(),
-    step: () => training.advance("step"),
-    "one-episode": () => training.advance("episode"),
-    reset: () => training.reset(),
+    run: () => agents().forEach((each) => each.run()),
+    stop: () => agents().forEach((each) => each.stop()),
+    step: () => agents().forEach((each) => each.advance("step")),
+    "one-episode": () => agents().forEach((each) => each.advance("episode")),
+    reset: () => agents().forEach((each) => each.reset()),
   };
   for (const [id, action] of Object.entries(press)) element(id).addEventListener("click", action);
   const program = () => { element("python-code").textContent = pythonProgram(store, view.shownMeasure); };

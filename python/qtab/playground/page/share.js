@@ -7,7 +7,7 @@ import { MANY_SEEDS, MAX_SIDE, PAINTED, REWARD_LIMITS, SEED_LIMITS } from "./sto
 const MAX_LENGTH = 8000;
 /** The parts of an address besides settings. */
 const GRID_NAMES = ["layout", "wind", "step_reward", "goal_reward", "rewards"];
-const NAMES = new Set(["env", "example", "seed", "seeds", ...GRID_NAMES]);
+const NAMES = new Set(["env", "example", "seed", "seeds", "compare", ...GRID_NAMES]);
 
 /** The fragment of a state, without "#". */
 export function fragment(store) {
@@ -19,6 +19,7 @@ export function fragment(store) {
   else for (const [name, value] of Object.entries(state.settings)) if (definitions.settings[name]) base.set(name, String(value));
   if (state.seed) base.set("seed", String(state.seed));
   if (state.seeds > 1) base.set("seeds", String(state.seeds));
+  if (store.otherSettings) base.set("compare", state.compared);
   if (state.environment === PAINTED && example === null) {
     const { layout, wind, step_reward, goal_reward, rewards } = state.grid;
     base.set("layout", layout.join("/").replaceAll("#", "W"));
@@ -48,9 +49,14 @@ export function restore(store, text) {
   else if (![...given.keys()].some((name) => Object.hasOwn(known, name))) state = exampleState(store, environment, 0);
   Object.assign(state, readSeeds(given, left));
   const asks = readSettings(store, given, state, left);
+  state.compared = given.get("compare");
   if (environment === PAINTED && given.has("layout")) readGrid(given, state, left);
   else left.push(...GRID_NAMES.filter((name) => given.has(name)));
   store.update(state);
+  if (store.state.compared !== null && !store.otherSettings) {
+    left.push("compare");
+    store.update({ compared: null });
+  }
   for (const [name, value] of asks) if (String(store.state.settings[name]) !== String(value)) left.push(name);
   return [...new Set(left)];
 }

@@ -49,7 +49,7 @@ export class Store {
     this.state = this.initial(Object.keys(definitions.environments)[0]);
   }
 
-  /** The state of an environment with its first preset. */
+  /** The state of an environment with its first preset, without an agent to compare with. */
   initial(environment, preset = null) {
     const entry = this.definitions.environments[environment];
     const name = preset ?? Object.keys(entry.presets)[0];
@@ -58,6 +58,7 @@ export class Store {
       settings: complete(environment, entry.presets[name]),
       seed: 0,
       seeds: 1,
+      compared: null,
       grid: copyGrid(Object.values(entry.grids ?? {})[0]),
     };
   }
@@ -105,9 +106,17 @@ export class Store {
     return null;
   }
 
+  /** The settings of the agent to compare with, which differs in its algorithm; null if there is none. */
+  get otherSettings() {
+    const { environment, settings, compared } = this.state;
+    const isKnown = this.definitions.settings.algorithm.choices.some(({ value }) => value === compared);
+    if (!isKnown || compared === settings.algorithm || this.impossible("algorithm", compared)) return null;
+    return fit(this.definitions, environment, { ...settings, algorithm: compared });
+  }
+
   /** The request for the engine. */
-  request() {
-    const { environment, settings, seed, seeds, grid } = this.state;
+  request(settings = this.state.settings) {
+    const { environment, seed, seeds, grid } = this.state;
     const asked = environment === PAINTED ? { id: environment, ...grid } : { id: environment };
     const { map: plane, observations } = this.entry;
     const map = plane ? { map: { ...plane, at: observations.map(() => 0), columns: RASTER, rows: RASTER } } : {};

@@ -1,9 +1,9 @@
 // The run that the engine trains: the actions of the buttons, and the handling of its messages.
 
-/** Starts, pauses and continues runs of a store's state. */
+/** Starts, pauses and continues runs of a store's state. `request()` returns what to train. */
 export class Training {
-  constructor(store, Engine, { onStart, onResult, onProblem }) {
-    Object.assign(this, { store, onStart, onResult, onProblem });
+  constructor(store, Engine, { onStart, onResult, onProblem, request = () => store.request(), inspects = true }) {
+    Object.assign(this, { store, onStart, onResult, onProblem, request, inspects });
     this.state = "loading";
     this.id = null;
     this.cell = null;
@@ -19,7 +19,7 @@ export class Training {
     this.state = run ? "training" : "paused";
     this.at = null;
     this.onStart();
-    this.id = this.engine.start({ ...this.store.request(), run, inspect: this.watched() });
+    this.id = this.engine.start({ ...this.request(), run, inspect: this.watched() });
   }
 
   receive(message) {
@@ -30,7 +30,9 @@ export class Training {
       this.state = message.state;
       this.at = message.current?.cell ?? null;
       this.onResult(message);
-      if (message.state !== "training") this.inspectSoon(message);
+      if (message.state !== "training" && this.inspects) this.inspectSoon(message);
+    } else if (message.type === "past") {
+      this.onResult(message);
     } else if (message.type === "inspection") {
       this.onResult({ type: "inspection", inspection: message });
     }
@@ -60,6 +62,12 @@ export class Training {
   /** Shows the agent before its first step. */
   reset() {
     this.start(false);
+  }
+
+  /** Sets how many steps a second takes. A run that is at its end starts again, to be watched. */
+  setPace(steps) {
+    this.engine.setPace(steps);
+    if (steps !== Infinity && ["finished", "diverged"].includes(this.state)) this.start();
   }
 
   /** Shows the numbers of a cell, now and in later results. */

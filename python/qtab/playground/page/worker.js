@@ -8,6 +8,10 @@ const EPISODE_EVERY = 250; // milliseconds between two greedy episodes while tra
 let source = null; // the bytes of the module, compressed by gzip, or its address
 let version = null; // the page's version, which the module's must equal
 let wasm = null; // the exports of the module
+let compiled = null; // the module, for another instance of it
+let past = null; // a second training of the run's first agent, whose earlier values a reader looks back at
+let pace = Infinity; // steps of each agent in a second
+let wake = null; // ends a wait
 let pending = null; // the newest request, not yet begun
 let run = null; // the current run
 let scheduled = false;
@@ -21,11 +25,19 @@ function pause() {
   });
 }
 
+/** Waits for some milliseconds, or until a message comes. */
+function wait(milliseconds) {
+  return new Promise((resolve) => {
+    wake = resolve;
+    setTimeout(resolve, milliseconds);
+  });
+}
+
 async function load() {
   const packed = () => new Response(new Blob([source]).stream().pipeThrough(new DecompressionStream("gzip")));
   const module = await (typeof source === "string" ? await fetch(source) : packed()).arrayBuffer();
-  const { instance } = await WebAssembly.instantiate(module);
-  wasm = instance.exports;
+  const { instance, module: ready } = await WebAssembly.instantiate(module);
+  [wasm, compiled, past] = [instance.exports, ready, null];
   let built = "of an earlier version";
   try {
     built = call({ call: "version" }).version;
@@ -37,13 +49,13 @@ async function load() {
   throw new Error(`qtab.wasm is ${built}, and the page ${version}: rebuild it with python rust/web/build_backend.py`);
 }
 
-/** Calls the module. Throws an Error if it rejects the request. */
-function call(request) {
+/** Calls an instance of the module. Throws an Error if it rejects the request. */
+function call(request, instance = wasm) {
   const text = new TextEncoder().encode(JSON.stringify(request));
-  const address = wasm.request(text.length);
-  new Uint8Array(wasm.memory.buffer, address, text.length).set(text);
-  const response = wasm.call();
-  const bytes = new Uint8Array(wasm.memory.buffer, response, wasm.response_length());
+  const address = instance.request(text.length);
+  new Uint8Array(instance.memory.buffer, address, text.length).set(text);
+  const response = instance.call();
+  const bytes = new Uint8Array(instance.memory.buffer, response, instance.response_length());
   const answer = JSON.parse(new TextDecoder().decode(bytes));
   if (answer.error !== undefined) throw new Error(answer.error);
   return answer;
@@ -51,11 +63,11 @@ function call(request) {
 
 const TYPES = { f64: Float64Array, i32: Int32Array, u8: Uint8Array };
 
-/** Copies the arrays of an answer out of the module's memory. */
-function arraysOf(answer) {
+/** Copies the arrays of an answer out of the memory of an instance. */
+function arraysOf(answer, instance = wasm) {
   const copied = {};
   for (const [name, [type, address, length]] of Object.entries(answer.arrays ?? {})) {
-    copied[name] = new TYPES[type](wasm.memory.buffer, address, length).slice();
+    copied[name] = new TYPES[type](instance.memory.buffer, address, length).slice();
   }
   return copied;
 }
@@ -74,12 +86,13 @@ function send(message) {
 function begin({ id, request, inspected, later }) {
   run = null;
   const { environment, settings, seeds, map, inspect } = request;
-  call({ call: "start", environment, settings, seeds, ...(map ? { map } : {}), ...(inspect ? { inspect } : {}) });
+  const start = { call: "start", environment, settings, ...(map ? { map } : {}) };
+  call({ ...start, seeds, ...(inspect ? { inspect } : {}) });
   const now = performance.now();
   run = {
-    id, seeds, episodes: settings.episodes, goal: request.run === false ? 0 : Infinity,
+    id, start, stepped: now, wanted: null, places: [], seeds, episodes: settings.episodes, goal: request.run === false ? 0 : Infinity,
     state: request.run === false ? "paused" : "training", work: 20000, seconds: 0, begun: now, reported: now,
-    nextReport: now + FIRST_REPORT, episodeReported: -Infinity, bestSent: false, inspected: null,
+    nextReport: now + FIRST_REPORT, episodeReported: -Infinity, showsBest: request.best !== false, bestSent: false, inspected: null,
   };
   if (run.state === "paused") report();
   if (inspected !== null) run.inspected = inspected;
@@ -104,28 +117,89 @@ function advance() {
   else if (answer.done >= run.goal) run.state = "paused";
 }
 
+function mapOf({ columns, rows }, { visits, greedy, values, xEdges = null, yEdges = null }) {
+  return { columns, rows, xEdges, yEdges, visits, greedy, values };
+}
+
+function episodeOf({ episode }, { observations, episodeActions: actions, episodeCells: cells }) {
+  return episode ? { ...episode, observations, actions, cells } : null;
+}
+
+/**
+ * Sends the values after some episodes of the run's first agent, which is trained once more for this. The values at every
+ * place of the slider on the way are kept. Returns early if a newer message arrives.
+ */
+async function lookBack() {
+  const { id, start, seeds, wanted } = run;
+  const isNew = past?.id !== id;
+  if (isNew || (past.done > wanted && !past.kept.has(wanted))) {
+    const instance = past?.instance ?? (await WebAssembly.instantiate(compiled)).exports;
+    call({ ...start, seeds: seeds.slice(0, 1) }, instance);
+    past = { id, instance, done: 0, state: "training", kept: isNew ? new Map() : past.kept };
+  }
+  const { instance, kept } = past;
+  const keep = () => {
+    if (kept.has(past.done)) return;
+    const answer = call({ call: "report", map: true, episode: true }, instance);
+    const arrays = arraysOf(answer, instance);
+    kept.set(past.done, { map: mapOf(answer, arrays), episode: episodeOf(answer, arrays) });
+  };
+  keep();
+  while (!kept.has(wanted) && past.state === "training") {
+    const begun = performance.now();
+    const goal = Math.min(run.places.find((place) => place > past.done) ?? wanted, wanted);
+    do Object.assign(past, call({ call: "advance", work: 20000, episodes: goal }, instance));
+    while (past.state === "training" && past.done < goal && performance.now() - begun < SLICE);
+    if (past.done >= goal || past.state !== "training") keep();
+    await pause();
+    if (pending || run?.id !== id || run.wanted !== wanted) return;
+  }
+  run.wanted = null;
+  const found = kept.get(wanted) ?? kept.get(past.done);
+  postMessage({ type: "past", id, episodes: wanted, ...found });
+}
+
+/** Takes the steps that are due at the chosen pace, or waits for the next one. */
+async function walk() {
+  const left = run.stepped + 1000 / pace - performance.now();
+  if (left > 0) {
+    await wait(Math.min(left, 1000));
+    return;
+  }
+  const begun = performance.now();
+  // What cannot be caught up with in a slice is left out: the pace is then that of the machine.
+  const due = Math.floor(((begun - run.stepped) / 1000) * pace);
+  let steps = 0;
+  do {
+    call({ call: "step" });
+    steps += 1;
+  } while (steps < due && performance.now() - begun < SLICE);
+  run.stepped = steps < due ? begun : run.stepped + (1000 * steps) / pace;
+  run.seconds += (performance.now() - begun) / 1000;
+  const { state, done } = call({ call: "advance", work: 0 });
+  if (state !== "training") run.state = state;
+  else if (done >= run.goal) run.state = "paused";
+}
+
 function report() {
   const now = performance.now();
   const last = run.state !== "training";
   const withEpisode = last || now - run.episodeReported > EPISODE_EVERY;
   // Computing the best known values of MountainCar takes as long as a run, once.
-  const withBest = !run.bestSent && (last || now - run.begun > EPISODE_EVERY);
+  const withBest = run.showsBest && !run.bestSent && (last || now - run.begun > EPISODE_EVERY);
   const answer = call({ call: "report", returns: true, map: true, episode: withEpisode, best: withBest });
   const arrays = arraysOf(answer);
   run.reported = performance.now();
   run.nextReport = run.reported + REPORT_EVERY;
   if (withEpisode) run.episodeReported = run.reported;
   run.bestSent ||= withBest;
-  const { returns, lengths, visits, greedy, values, xEdges = null, yEdges = null } = arrays;
   send({
     type: "result", id: run.id, state: run.state, episodes: run.episodes, done: answer.done, seeds: run.seeds,
-    returns, lengths, seconds: run.seconds,
-    map: { columns: answer.columns, rows: answer.rows, xEdges, yEdges, visits, greedy, values },
+    returns: arrays.returns, lengths: arrays.lengths, seconds: run.seconds, pace,
+    map: mapOf(answer, arrays),
     best: answer.best ? { ...answer.best, values: arrays.bestValues, greedy: arrays.bestGreedy } : null,
     hasBest: withBest,
-    episode: answer.episode
-      ? { ...answer.episode, observations: arrays.observations, actions: arrays.episodeActions, cells: arrays.episodeCells }
-      : null,
+    episode: episodeOf(answer, arrays),
     current: answer.current ? { ...answer.current, observation: arrays.observation } : null,
   });
 }
@@ -166,8 +240,12 @@ async function work() {
         pending = null;
         begin(request);
       } else if (run?.state === "training") {
-        advance();
+        if (pace === Infinity) advance();
+        else await walk();
+        if (pending || !run) continue;
         if (run.state !== "training" || performance.now() > run.nextReport) report();
+      } else if (run && run.wanted !== null) {
+        await lookBack();
       } else if (run && run.inspected !== null && !(run.inspectedAt >= run.reported)) {
         await inspect();
       } else {
@@ -209,7 +287,15 @@ const handlers = {
       Object.assign(run, { goal: done + count, state: "training" });
     }
   },
+  pace({ steps }) {
+    pace = steps;
+    if (run) run.stepped = performance.now();
+  },
+  past({ episodes, places }) {
+    if (run) Object.assign(run, { wanted: episodes, places });
+  },
   run() {
+    if (run) run.stepped = performance.now();
     if (run?.state === "paused") Object.assign(run, { goal: Infinity, state: "training" });
   },
   stop() {
@@ -241,5 +327,6 @@ onmessage = ({ data }) => {
   } catch (error) {
     fail(run?.id, error);
   }
+  wake?.();
   work();
 };

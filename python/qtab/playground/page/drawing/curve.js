@@ -35,22 +35,20 @@ export class LearningCurve {
 
   /**
    * Shows a number for each episode: `returns` has an array for each seed. `episodes`: the length of the run; `marks`:
-   * {value, name} to compare with; `measure`: "returns", or "lengths" for the numbers of steps.
+   * {value, name} to compare with; `measure`: "returns", or "lengths" for the numbers of steps; `names`: those of the
+   * agent and of the other one, and `others` the numbers of that, if two are compared.
    */
-  show(returns, episodes, marks, measure = "returns") {
-    const finished = Math.min(...returns.map((each) => each.length));
+  show(returns, episodes, marks, measure = "returns", { names = [], others = null } = {}) {
     const width = windowOf(episodes);
-    const ends = windowEnds(finished, POINTS);
-    const means = returns.map((each) => movingMeans(each, width, ends));
-    const over = finished ? meanAndInterval(means) : { mean: [], half: [] };
     const word = measure === "lengths" ? "number of steps" : "return";
-    this.shown = { returns, episodes, marks, word, finished, width, ends, means, over };
+    const other = others && movingMeansOf(others, width);
+    this.shown = { ...movingMeansOf(returns, width), episodes, marks, word, width, names, other };
     this.describe();
     this.draw();
   }
 
   describe() {
-    const { returns, episodes, marks, word, finished, width, ends, over } = this.shown;
+    const { returns, episodes, marks, word, finished, width, ends, over, names, other } = this.shown;
     const seeds = returns.length;
     if (!finished) {
       this.canvas.setAttribute("aria-label", "Learning curve: no episode is finished yet.");
@@ -59,12 +57,15 @@ export class LearningCurve {
     }
     const covered = Math.min(width, finished);
     const [first, last] = [over.mean.find((_, index) => ends[index] >= covered), over.mean.at(-1)].map((mean) => number(mean));
-    const interval = seeds > 1 ? ` ± ${number(over.half.at(-1), 3)} (95 % interval of the mean of ${seeds} seeds)` : "";
-    this.summary.textContent = `Mean ${word} of the last ${counted(covered, "episode")}: ${last}${interval}.`;
+    const half = ({ half: all }) => (seeds > 1 ? ` ± ${number(all.at(-1), 3)}` : "");
+    const interval = seeds > 1 ? ` (95 % interval of the mean of ${seeds} seeds)` : "";
+    const compared = other?.finished ? `; ${names[1]}: ${number(other.over.mean.at(-1))}${half(other.over)}` : "";
+    const name = compared ? `${names[0]}: ` : "";
+    this.summary.textContent = `Mean ${word} of the last ${counted(covered, "episode")}: ${name}${last}${half(over)}${compared}${interval}.`;
     this.canvas.setAttribute(
       "aria-label",
       `Learning curve of ${count(finished)} of ${counted(episodes, "episode")}, ${counted(seeds, "seed")}. ` +
-        `Mean ${word} at first ${first}, at last ${last}. ` +
+        `Mean ${word} at first ${first}, at last ${name}${last}${compared}. ` +
         marks.map(({ name, value }) => `${name}: ${number(value)}.`).join(" "),
     );
   }
@@ -76,11 +77,14 @@ export class LearningCurve {
 
   /** The range of returns to show. Rare, very low returns, such as those of early falls from a cliff, are cut off. */
   range() {
-    const { returns, marks, over, means } = this.shown;
-    const lowest = Math.min(...returns.map((each) => quantile(each, 0.03)));
-    const drawn = [...(returns.length === 1 ? [lowest] : means.map((each) => quantile(each, 0.03)))];
-    for (const value of over.mean) if (Number.isFinite(value) && value >= lowest) drawn.push(value);
-    drawn.push(...returns.map((each) => quantile(each, 0.999)), ...marks.map(({ value }) => value));
+    const { marks, other } = this.shown;
+    const drawn = marks.map(({ value }) => value);
+    for (const { returns, over, means } of [this.shown, ...(other ? [other] : [])]) {
+      const lowest = Math.min(...returns.map((each) => quantile(each, 0.03)));
+      drawn.push(...(returns.length === 1 ? [lowest] : means.map((each) => quantile(each, 0.03))));
+      for (const value of over.mean) if (Number.isFinite(value) && value >= lowest) drawn.push(value);
+      drawn.push(...returns.map((each) => quantile(each, 0.999)));
+    }
     const finite = drawn.filter(Number.isFinite);
     if (!finite.length) return [0, 1];
     const low = Math.min(...finite);
@@ -92,10 +96,10 @@ export class LearningCurve {
   draw() {
     if (!this.shown) return;
     const { g, width, height } = surface(this.canvas);
-    const { returns, episodes, finished, marks, means, over, ends } = this.shown;
+    const { episodes, finished, marks, other } = this.shown;
     const [low, high] = this.range();
     const box = { left: 52, right: width - 14, top: 22, bottom: height - 42 };
-    const end = (this.shown.end = axisEnd(finished, episodes));
+    const end = (this.shown.end = axisEnd(Math.max(finished, other?.finished ?? 0), episodes));
     const x = scale(0, end, box.left, box.right);
     const y = scale(low, high, box.bottom, box.top);
     axes(g, box, x, y, ticks(0, end, width < 420 ? 4 : 5).filter(Number.isInteger), ticks(low, high, 6), { x: "episode", y: this.shown.word });
@@ -104,18 +108,13 @@ export class LearningCurve {
     g.rect(box.left, box.top - 4, box.right - box.left, box.bottom - box.top + 8);
     g.clip();
     const colors = themeColors();
-    const points = (values) => values.map((value, index) => [x(ends[index]), y(value)]);
-    if (returns.length === 1) drawDots(g, returns[0], x, y, colors);
-    else {
-      g.globalAlpha = 0.28;
-      for (const each of means) line(g, points(each), colors.accent, 1);
-      const upper = points(over.mean.map((value, index) => value + over.half[index]));
-      const lower = points(over.mean.map((value, index) => value - over.half[index]));
-      g.globalAlpha = 0.22;
-      polygon(g, [...upper, ...lower.reverse()], colors.warm);
-      g.globalAlpha = 1;
+    // Of two agents, each has its own color; of one, the episodes and their mean have.
+    if (other) {
+      drawAgent(g, other, x, y, { single: colors.second, mean: colors.second, seeds: null });
+      drawAgent(g, this.shown, x, y, { single: colors.warm, mean: colors.warm, seeds: null });
+    } else {
+      drawAgent(g, this.shown, x, y, { single: colors.accent, mean: colors.warm, seeds: colors.accent });
     }
-    line(g, points(over.mean), colors.warm, 2.5);
     g.restore();
     this.labels = markLabels(marks, y);
     drawMarks(g, box, this.labels, y, colors);
@@ -123,14 +122,16 @@ export class LearningCurve {
   }
 
   drawPointer(g, box, x, y, colors) {
-    const { ends, over } = this.shown;
+    const { ends, over, names, other } = this.shown;
     if (this.pointer === null || !ends.length || this.pointer < box.left) return;
     const index = ends.findIndex((end) => x(end) >= this.pointer);
     const at = index < 0 ? ends.length - 1 : index;
     const left = x(ends[at]);
     line(g, [[left, box.top], [left, box.bottom]], colors.muted, 1);
     disc(g, left, y(over.mean[at]), 4, colors.warm);
-    const label = `episode ${count(ends[at])}: ${number(over.mean[at])}`;
+    const beside = other?.ends[at] === ends[at] ? `, ${names[1]} ${number(other.over.mean[at])}` : "";
+    if (beside) disc(g, left, y(other.over.mean[at]), 4, colors.second);
+    const label = `episode ${count(ends[at])}: ${beside ? `${names[0]} ` : ""}${number(over.mean[at])}${beside}`;
     const wide = g.measureText(label).width;
     const from = left > (box.left + box.right) / 2 ? left - 8 - wide : left + 8;
     g.fillStyle = colors.card;
@@ -143,10 +144,35 @@ export class LearningCurve {
   }
 }
 
-function drawDots(g, returns, x, y, colors) {
+/** Moving means of the numbers of each seed, and their mean and interval over the seeds. */
+function movingMeansOf(returns, width) {
+  const finished = Math.min(...returns.map((each) => each.length));
+  const ends = windowEnds(finished, POINTS);
+  const means = returns.map((each) => movingMeans(each, width, ends));
+  const over = finished ? meanAndInterval(means) : { mean: [], half: [] };
+  return { returns, finished, ends, means, over };
+}
+
+/** Draws the curve of an agent: with the numbers of its episodes for one seed, and with the interval for several. */
+function drawAgent(g, { returns, means, over, ends }, x, y, { single, mean, seeds }) {
+  const points = (values) => values.map((value, index) => [x(ends[index]), y(value)]);
+  if (returns.length === 1) drawDots(g, returns[0], x, y, single);
+  else {
+    g.globalAlpha = 0.28;
+    if (seeds) for (const each of means) line(g, points(each), seeds, 1);
+    const upper = points(over.mean.map((value, index) => value + over.half[index]));
+    const lower = points(over.mean.map((value, index) => value - over.half[index]));
+    g.globalAlpha = 0.22;
+    polygon(g, [...upper, ...lower.reverse()], mean);
+    g.globalAlpha = 1;
+  }
+  line(g, points(over.mean), mean, 2.5);
+}
+
+function drawDots(g, returns, x, y, color) {
   const step = Math.max(returns.length / MAX_DOTS, 1);
   const size = returns.length > 1500 ? 1.6 : returns.length > 300 ? 2.4 : 3.4;
-  g.fillStyle = colors.accent;
+  g.fillStyle = color;
   g.globalAlpha = returns.length > 1500 ? 0.3 : 0.5;
   for (let place = 0; place < returns.length; place += step) {
     const index = Math.floor(place);
@@ -211,11 +237,13 @@ export class Marks {
     return marks;
   }
 
-  showKey(seeds, episodes, marks, word) {
+  /** `names`: those of the agents if two are compared. */
+  showKey(seeds, episodes, marks, word, names) {
     const width = counted(windowOf(episodes), "episode");
     const mean = `mean of ${width}`;
-    const lines =
-      seeds > 1
+    const lines = names.length
+      ? names.map((name, index) => [["warm", "second"][index], "3px solid", seeds > 1 ? `${name}, mean of ${seeds} seeds` : `${name}, ${mean}`])
+      : seeds > 1
         ? [["accent", "1px solid", `each seed, ${mean}`], ["warm", "3px solid", `mean of ${seeds} seeds, with its 95 % interval`]]
         : [["accent", "3px dotted", `${word} of each episode`], ["warm", "3px solid", mean]];
     if (marks.some(({ name }) => name === "threshold")) lines.push(["good", "2px dotted", "threshold of a solved task"]);

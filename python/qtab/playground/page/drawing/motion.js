@@ -39,20 +39,25 @@ export class Motion {
     this.draw();
   }
 
-  /** Shows a greedy episode from its start, unless it is already shown. */
-  show(episode) {
+  /** Shows a greedy episode from its start, unless it is already shown. `when` says how long the agent has learned. */
+  show(episode, when = "") {
     const same = this.episode && !this.episode.current && sameEpisode(this.episode, episode);
     this.episode = episode;
     this.described = null;
     this.slider.disabled = false;
     this.slider.max = episode.actions.length;
     if (!same) this.time = 0;
-    const steps = counted(episode.actions.length, "step");
-    const end = episode.terminated ? this.scene.outcome(this.momentAt(episode.actions.length)) : "time is up";
-    this.caption.textContent = episode.terminated || episode.truncated
-      ? `Greedy episode: return ${number(episode.return)} in ${steps}: ${end}.`
-      : `Greedy episode: return ${number(episode.return)} in its first ${steps}; the rest is not shown.`;
+    this.caption.textContent = this.words(episode, when);
     this.draw();
+  }
+
+  /** A greedy episode in words. */
+  words(episode, when = "") {
+    const steps = counted(episode.actions.length, "step");
+    const name = `Greedy episode${when}: return ${number(episode.return)}`;
+    if (!episode.terminated && !episode.truncated) return `${name} in its first ${steps}; the rest is not shown.`;
+    const end = episode.terminated ? this.scene.outcome(this.momentAt(episode.actions.length, episode)) : "time is up";
+    return `${name} in ${steps}: ${end}.`;
   }
 
   /** Shows a single moment of the episode in training. */
@@ -116,19 +121,19 @@ export class Motion {
     this.canvas.setAttribute("aria-label", `The agent: ${this.scene.alternative(moment)}.`);
   }
 
-  /** The content of the scene at a time: an observation and the action, and the cells on a grid. */
-  momentAt(shownTime) {
+  /** The content of the scene at a time of an episode: an observation and the action, and the cells on a grid. */
+  momentAt(shownTime, episode = this.episode) {
     const { layout, wind, rewards, drawing } = this.world;
-    if (!this.episode) return layout ? { layout, wind, rewards, drawing, cell: null, from: null, share: 1, trail: [] } : null;
-    const { observations, components, actions, cells } = this.episode;
+    if (!episode) return layout ? { layout, wind, rewards, drawing, cell: null, from: null, share: 1, trail: [] } : null;
+    const { observations, components, actions, cells } = episode;
     const time = Math.min(shownTime, actions.length);
-    const step = this.episode.current ? 0 : Math.floor(time);
+    const step = episode.current ? 0 : Math.floor(time);
     const action = step < actions.length ? actions[step] : null;
     const observation = observations.slice(step * components, (step + 1) * components);
     if (!layout) return { observation, action };
     const share = time - step;
-    const next = this.episode.current ? cells[0] : cells[Math.min(step + 1, cells.length - 1)];
-    const trail = this.episode.current ? [] : Array.from(cells.slice(Math.max(step - MAX_TRAIL, 0), step + 1));
+    const next = episode.current ? cells[0] : cells[Math.min(step + 1, cells.length - 1)];
+    const trail = episode.current ? [] : Array.from(cells.slice(Math.max(step - MAX_TRAIL, 0), step + 1));
     return { layout, wind, rewards, drawing, observation, action, cell: next, from: cells[step], share, trail };
   }
 }

@@ -22,7 +22,7 @@ export function themeColors() {
       probe.style.color = `var(--${name})`;
       return shown.color;
     };
-    const names = ["card", "ink", "muted", "line", "accent", "warm", "good", "sky", "ground", "wall"];
+    const names = ["card", "ink", "muted", "line", "accent", "warm", "second", "good", "sky", "ground", "wall"];
     colors = Object.fromEntries(names.map((name) => [name, colorOf(name)]));
     colors.isDark = shownTheme() === "dark";
     probe.remove();

@@ -32,24 +32,22 @@ function duration(seconds) {
   return seconds < 1 ? `${Math.round(seconds * 1000)} ms` : `${number(seconds, 2)} s`;
 }
 
-/** The range of the values to show: those of the visited states, and the optimal ones. */
-export function valueRange({ values, visits }, best, layout) {
+/** The range of the values to show: those of the visited states on each map, and the optimal ones. */
+export function valueRange(maps, best, layout) {
   let [low, high] = [Infinity, -Infinity];
   const include = (value) => {
     if (!Number.isFinite(value)) return;
     low = Math.min(low, value);
     high = Math.max(high, value);
   };
-  values.forEach((value, cell) => visits[cell] > 0 && include(value));
+  for (const { values, visits } of maps) values.forEach((value, cell) => visits[cell] > 0 && include(value));
   best?.values.forEach((value, cell) => isEnd(layout, cell) || include(value));
-  if (low > high) values.forEach(include);
+  if (low > high) maps[0].values.forEach(include);
   return low > high ? [0, 1] : [low, high];
 }
 
-/** The content of the map of learned values. */
-export function learnedContent(result, frame, path) {
-  const { map } = result;
-  const [low, high] = valueRange(map, result.best, frame.layout);
+/** The content of a map of learned values, whose colors span a range. */
+export function learnedContent(map, [low, high], frame, path) {
   const share = shareOf(map.values, low, high);
   const isUnvisited = (cell) => !(map.visits[cell] > 0);
   const visited = map.visits.reduce((sum, visits) => sum + (visits > 0), 0);
@@ -58,8 +56,7 @@ export function learnedContent(result, frame, path) {
 }
 
 /** The content of the map of visits. */
-export function visitsContent(result, frame) {
-  const { map } = result;
+export function visitsContent(map, frame) {
   const most = Math.round(map.visits.reduce((largest, visits) => Math.max(largest, visits), 0));
   const top = Math.log1p(most) || 1;
   const share = (cell) => (isWall(map.values, cell) ? NaN : Math.log1p(map.visits[cell]) / top);
@@ -68,10 +65,8 @@ export function visitsContent(result, frame) {
   return { ...frame, map, greedy: null, palette, share, isUnvisited: () => false, path: null, label, most };
 }
 
-/** The content of the map of the optimal or best known values. */
-export function bestContent(result, frame) {
-  const { map, best } = result;
-  const [low, high] = valueRange(map, best, frame.layout);
+/** The content of the map of the optimal or best known values, whose colors span a range. */
+export function bestContent({ map, best }, [low, high], frame) {
   const share = shareOf(best.values, low, high);
   const label = `Map of the ${best.kind} values, in the same colors as the learned ones.`;
   return { ...frame, map, greedy: best.greedy, palette: "values", share, isUnvisited: () => false, path: null, label };

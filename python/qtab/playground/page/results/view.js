@@ -23,6 +23,7 @@ import {
 import { PAINTED } from "../store.js";
 
 const element = (id) => document.getElementById(id);
+const FOLLOWED_PACE = 300; // steps a second
 
 /** Shows results: the last one of a run at once, and during training the newest one in each frame. */
 export class View {
@@ -33,6 +34,8 @@ export class View {
     this.waiting = false;
     this.world = "";
     this.isStale = true;
+    this.past = null;
+    this.other = { result: null, episode: null, past: null, isStale: true };
     this.note = null;
     this.curve = new LearningCurve(element("curve"), element("curve-summary"));
     this.motion = new Motion({
@@ -46,6 +49,7 @@ export class View {
     this.painter = new Painter(element("painter"), store, announce);
     this.values = new StateMap(element("values"), { name: "Map of the values", describe, onPick: (cell, how) => this.pick(cell, how) });
     this.visits = new StateMap(element("visits"), { name: "Map of the visits", describe });
+    this.otherValues = new StateMap(element("other"), { name: "Map of the values of the other agent", describe });
     this.best = new StateMap(element("best"), { name: "Map of the optimum", describe });
     this.marks = new Marks(element("curve-key"));
     this.measure = null;
@@ -60,11 +64,45 @@ export class View {
   /** Keeps the current view, but does not redraw it: it belongs to choices that have changed since. */
   expectAnother() {
     this.isStale = true;
+    this.other.isStale = true;
     this.note = null;
+  }
+
+  /** Shows a result of the agent to compare with, or its values at an earlier time. */
+  showOther(message) {
+    if (message.type === "past") this.other.past = message;
+    else if (message.type === "result") {
+      const episode = message.episode ?? this.other.episode;
+      this.other = { result: message, episode, past: null, isStale: false };
+    } else return;
+    if (!this.isStale) this.drawSoon(message.state === "training");
+  }
+
+  /** The names of the agent and of the other one if two are compared. */
+  get names() {
+    const { state, otherSettings, definitions } = this.store;
+    const title = (algorithm) => definitions.settings.algorithm.choices.find(({ value }) => value === algorithm).title;
+    return otherSettings ? [title(state.settings.algorithm), title(state.compared)] : [];
+  }
+
+  /** Shows the values as they were at an earlier time; null shows the newest ones. */
+  showPast(message) {
+    this.past = message;
+    if (!message) this.other.past = null;
+    if (!this.isStale) this.draw();
+  }
+
+  /** The newest result of the other agent; null if there is none, or it belongs to other choices. */
+  get otherResult() {
+    return this.names.length && !this.other.isStale ? this.other.result : null;
   }
 
   /** Shows a result, or only an inspection. */
   show(message) {
+    if (message.type === "past") {
+      this.showPast(message);
+      return;
+    }
     if (message.type === "inspection") {
       if (this.isStale) return;
       this.result.inspection = message.inspection;
@@ -75,7 +113,15 @@ export class View {
     else if (this.result && this.world !== this.worldOf()) this.episode = null;
     this.result = message;
     this.isStale = false;
-    if (message.state !== "training") {
+    this.past = null;
+    // Drawn once, with the other agent.
+    if (this.names.length && this.other.isStale) return;
+    this.drawSoon(message.state === "training");
+  }
+
+  /** Draws in the next frame during training, otherwise at once. */
+  drawSoon(isTraining) {
+    if (!isTraining) {
       this.draw();
       return;
     }
@@ -121,8 +167,8 @@ export class View {
     const { result } = this;
     this.showStatus(result);
     this.showCurve(result);
-    this.showMaps(result);
     this.showMotion(result);
+    this.showMaps(result);
     this.showState();
   }
 
@@ -134,13 +180,14 @@ export class View {
   }
 
   showCurve(result) {
-    const { seeds, done, episodes } = result;
+    const { seeds, episodes } = result;
     const measure = this.shownMeasure;
     this.markMeasure(measure);
     const marks = measure === "returns" ? this.marks.of(this.store, result) : [];
-    const bySeed = seeds.map((_, index) => result[measure].subarray(index * done, (index + 1) * done));
-    this.marks.showKey(seeds.length, episodes, marks, measure === "returns" ? "return" : "number of steps");
-    this.curve.show(bySeed, episodes, marks, measure);
+    const bySeed = (of) => seeds.map((_, index) => of[measure].subarray(index * of.done, (index + 1) * of.done));
+    const { names, otherResult } = this;
+    this.marks.showKey(seeds.length, episodes, marks, measure === "returns" ? "return" : "number of steps", names);
+    this.curve.show(bySeed(result), episodes, marks, measure, { names, others: otherResult && bySeed(otherResult) });
   }
 
   showStatus(result) {
@@ -165,10 +212,18 @@ export class View {
       this.motion.setWorld({ drawing: entry.drawing, layout: painted ? grid.layout : entry.layout, wind, rewards });
       this.world = world;
     }
-    const inTraining = result.state === "paused" && result.current;
-    element("motion-title").textContent = inTraining ? "The agent in training" : "The greedy agent in motion";
+    const inTraining = this.isInTraining(result);
+    const [name] = this.names;
+    const what = inTraining ? "agent in training" : "greedy agent in motion";
+    element("motion-title").textContent = name ? `${name}: the ${what}` : `The ${what}`;
     if (inTraining) this.motion.showCurrent(result.current, this.currentText(result));
+    else if (this.past?.episode) this.motion.show(this.past.episode, ` after ${counted(this.past.episodes, "episode")}`);
     else if (this.episode) this.motion.show(this.episode);
+  }
+
+  /** Whether to show the agent in its unfinished episode: between single steps, and at a speed that eyes can follow. */
+  isInTraining({ state, current, pace }) {
+    return current && !this.past && (state === "paused" || (state === "training" && pace <= FOLLOWED_PACE));
   }
 
   currentText({ current, done }) {
@@ -190,33 +245,54 @@ export class View {
 
   showMaps(result) {
     const frame = this.frame();
-    const { map } = result;
-    if (frame.layout && (frame.layout.length !== map.rows || frame.layout[0].length !== map.columns)) return;
+    const { layout } = frame;
+    const map = this.past?.map ?? result.map;
+    if (layout && (layout.length !== map.rows || layout[0].length !== map.columns)) return;
+    const other = this.otherResult;
+    const isCompared = other !== null && other.map.columns === map.columns && other.map.rows === map.rows;
     const aspect = frame.plane ? 1.08 : map.columns / map.rows;
     const place = document.querySelector(".three");
     place.style.setProperty("--aspect", String(Math.min(Math.max(aspect, 0.6), 5)));
     place.classList.toggle("large-first", this.store.state.environment === PAINTED);
     place.classList.toggle("only-two", !result.best);
+    place.classList.toggle("compared", isCompared);
     element("best-panel").hidden = !result.best;
+    element("other-panel").hidden = !isCompared;
     forgetSizes();
-    const path = result.current && result.state === "paused" ? null : pathOf(this.episode, frame.plane);
-    this.values.show(learnedContent(result, frame, path));
-    const visits = visitsContent(result, frame);
+    const inTraining = this.isInTraining(result);
+    const path = inTraining ? null : pathOf(this.past?.episode ?? this.episode, frame.plane);
+    // The newest maps decide on the colors, so that looking back does not change them.
+    const range = valueRange([result.map, ...(isCompared ? [other.map] : [])], result.best, layout);
+    this.values.show(learnedContent(map, range, frame, path));
+    const visits = visitsContent(map, frame);
     this.visits.show(visits);
-    const [low, high] = valueRange(map, result.best, frame.layout).map((value) => number(value, 3));
+    const [low, high] = range.map((value) => number(value, 3));
     showLegend(element("values-legend"), "values", low, high, true);
     showLegend(element("visits-legend"), visits.palette, "0", count(visits.most));
-    this.showBest(result, frame, low, high);
-    if (result.current && result.state === "paused") this.values.showAgent(this.placeOf(result.current.observation, result.current.cell));
+    element("values-title").textContent = isCompared ? `What ${this.names[0]} learned` : "What it learned";
+    element("visits-title").textContent = isCompared ? `Where ${this.names[0]} has been` : "Where it has been";
+    if (isCompared) this.showOtherMap(frame, range, [low, high], inTraining);
+    this.showBest(result, range, frame, low, high);
+    if (inTraining) this.values.showAgent(this.placeOf(result.current.observation, result.current.cell));
   }
 
-  showBest(result, frame, low, high) {
+  showOtherMap(frame, range, limits, inTraining) {
+    const { result, episode: newest, past } = this.other;
+    const episode = past?.episode ?? newest;
+    this.otherValues.show(learnedContent(past?.map ?? result.map, range, frame, inTraining ? null : pathOf(episode, frame.plane)));
+    showLegend(element("other-legend"), "values", ...limits, true);
+    element("other-title").textContent = `What ${this.names[1]} learned`;
+    const when = past ? ` after ${counted(past.episodes, "episode")}` : "";
+    element("other-caption").textContent = `The same settings but for the algorithm, in the same colors. ${episode ? this.motion.words(episode, when) : ""}`;
+  }
+
+  showBest(result, range, frame, low, high) {
     const { best } = result;
     const { entry, state } = this.store;
     const { discount } = state.settings;
     element("best-title").textContent = best?.kind === "optimal" ? "The optimum" : "The best known";
     if (!best) return;
-    this.best.show(bestContent(result, frame));
+    this.best.show(bestContent(result, range, frame));
     showLegend(element("best-legend"), "values", low, high);
     const word = best.kind === "optimal" ? "optimal" : "best known";
     const value = bestReturn(entry, state.settings, best);
@@ -242,7 +318,7 @@ export class View {
   /** A cell in words, for screen readers. */
   describe(cell) {
     if (this.isStale) return "no result yet";
-    const { map } = this.result;
+    const map = this.past?.map ?? this.result.map;
     const { layout, actions } = this.frame();
     const [row, column] = [Math.floor(cell / map.columns), cell % map.columns];
     const place = `Row ${row + 1}, column ${column + 1}`;
@@ -279,7 +355,8 @@ export class View {
     if (this.values.selected !== (inspection?.cell ?? null) && inspection) this.values.select(inspection.cell);
     const { actions } = this.store.entry;
     const bootstraps = this.store.definitions.bootstraps[this.store.state.settings.algorithm];
-    const named = inspection && { ...inspection, state: this.stateText(inspection) };
+    const when = this.past ? ", at the end of the training" : "";
+    const named = inspection && { ...inspection, state: `${this.stateText(inspection)}${when}` };
     showInspection(element("inspector-title"), element("inspection"), named, actions, bootstraps);
   }
 }

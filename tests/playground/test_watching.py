@@ -1,0 +1,142 @@
+"""Watching an agent learn: the speed, the agent as it was after some episodes, and another one beside it."""
+
+from typing import Any
+
+import pytest
+
+from support.playground import Playground
+
+pytestmark = pytest.mark.browser
+
+MAP = "({ map }) => [map.values, map.visits, map.greedy].map((each) => Array.from(each))"
+PACE = """place => {
+  const slider = document.querySelector("#pace");
+  slider.value = place === null ? slider.max : place;
+  slider.dispatchEvent(new Event("input"));
+  return document.querySelector(".watched .value").textContent;
+}"""
+LOOK = """episodes => {
+  const { training } = playground;
+  playground.view.past = null;
+  training.engine.lookBack(episodes, [0, 5, 10, 20, 40]);
+}"""
+
+
+def compared(playground: Playground) -> dict[str, Any]:
+    """Waits for the other agent, and returns its result."""
+    playground.page.wait_for_function(
+        "() => !playground.view.other.isStale && playground.view.other.result.state === 'finished'"
+    )
+    found: dict[str, Any] = playground.page.evaluate(
+        "() => { const { returns, map } = playground.view.other.result;"
+        " return { returns: Array.from(returns), values: Array.from(map.values), visits: Array.from(map.visits) }; }"
+    )
+    return found
+
+
+def test_a_slow_run_is_watched_and_ends_as_a_fast_one(playground: Playground) -> None:
+    playground.open("#env=CliffWalking-v1&example=0")
+    fast = playground.result()
+    assert playground.page.evaluate(PACE, 0) == "1 step a second"
+    assert playground.page.evaluate(PACE, 5) == "100 steps a second"
+    playground.page.wait_for_function("() => playground.view.result.current?.step > 3")
+    assert playground.text("motion-title") == "The agent in training"
+    assert playground.page.evaluate("() => playground.training.state") == "training"
+    assert playground.page.evaluate(PACE, None) == "all at once"
+    playground.page.wait_for_function("() => playground.training.state === 'finished'")
+    assert playground.settled().result() == fast
+
+
+def test_a_slow_run_can_be_stopped_and_stepped(playground: Playground) -> None:
+    playground.open("#env=CliffWalking-v1&example=0")
+    playground.page.evaluate(PACE, 4)
+    playground.page.wait_for_function("() => playground.view.result.current?.step > 1")
+    playground.page.locator("#stop").click()
+    stopped = playground.settled().result()
+    playground.page.locator("#step").click()
+    stepped = playground.settled().result()
+    assert sum(stepped["visits"]) == sum(stopped["visits"]) + 1
+
+
+@pytest.mark.parametrize("environment", ["CliffWalking-v1", "MountainCar-v0&discretizer=tiles&max_episode_steps=50"])
+def test_looking_back_shows_what_was_learned_by_then(playground: Playground, environment: str) -> None:
+    playground.open(f"#env={environment}&episodes=40")
+    expected = {40: playground.page.evaluate(f"() => ({MAP})(playground.view.result)")}
+    playground.page.locator("#reset").click()
+    playground.settled()
+    expected[0] = playground.page.evaluate(f"() => ({MAP})(playground.view.result)")
+    for episode in range(1, 8):
+        playground.page.locator("#one-episode").click()
+        playground.settled()
+        expected[episode] = playground.page.evaluate(f"() => ({MAP})(playground.view.result)")
+    playground.page.locator("#run").click()
+    playground.page.wait_for_function("() => playground.training.state === 'finished'")
+    playground.settled()
+    for episode in (7, 3, 40, 0, 5, 3):
+        playground.page.evaluate(LOOK, episode)
+        playground.page.wait_for_function("episode => playground.view.past?.episodes === episode", arg=episode)
+        assert playground.page.evaluate(f"() => ({MAP})(playground.view.past)") == expected[episode], episode
+
+
+def test_the_slider_looks_back_and_returns(playground: Playground) -> None:
+    playground.open("#env=CliffWalking-v1&example=0")
+    newest = playground.text("motion-caption")
+    slider = playground.page.locator("#past")
+    slider.focus()
+    slider.press("Home")
+    playground.page.wait_for_function("() => playground.view.past?.episodes === 0")
+    assert playground.text("motion-caption").startswith("Greedy episode after 0 episodes: return −")
+    label = playground.page.locator("#values").get_attribute("aria-label")
+    assert label is not None
+    assert label.endswith("; 0 cells visited.")
+    slider.press("ArrowRight")
+    playground.page.wait_for_function("() => playground.view.past?.episodes === 8")
+    assert slider.get_attribute("aria-valuetext") == "episode 8 of 500"
+    slider.press("End")
+    playground.page.wait_for_function("() => playground.view.past === null")
+    assert playground.text("motion-caption") == newest
+
+
+def test_two_agents_share_axes_and_colors(playground: Playground) -> None:
+    playground.open("#env=CliffWalking-v1&algorithm=sarsa&episodes=300&epsilon=0.1&seed=3")
+    alone = playground.result()
+    playground.page.locator("#set-algorithm").select_option("q_learning")
+    playground.page.locator("#compared").select_option("sarsa")
+    other = compared(playground)
+    playground.settled()
+    assert other["returns"] == alone["returns"]
+    assert other["values"] == alone["values"]
+    assert playground.text("values-legend") == playground.text("other-legend")
+    assert playground.text("other-title") == "What Sarsa learned"
+    summary = playground.text("curve-summary")
+    assert "Q-learning: −" in summary
+    assert "Sarsa: −" in summary
+    assert playground.colors("other") > 3
+    playground.page.locator("#one-episode").click()
+    playground.page.locator("#compared").select_option("")
+    playground.settled()
+    assert playground.page.locator("#other-panel").is_hidden()
+
+
+def test_an_address_keeps_the_agent_to_compare_with(playground: Playground) -> None:
+    playground.open("#env=CliffWalking-v1&example=0&compare=expected_sarsa&seeds=16")
+    compared(playground)
+    playground.page.wait_for_function("() => !playground.view.isStale")
+    assert "compare=expected_sarsa" in playground.page.evaluate("() => playground.fragment(playground.store)")
+    assert "(95 % interval of the mean of 16 seeds)" in playground.text("curve-summary")
+
+
+@pytest.mark.parametrize("word", ["q_learning", "none", "__proto__", "monte_carlo"])
+def test_an_agent_that_cannot_be_compared_is_left_out(playground: Playground, word: str) -> None:
+    playground.open(f"#env=CliffWalking-v1&example=0&compare={word}")
+    assert playground.text("problem").endswith("left out or changed: compare.")
+    assert playground.page.locator("#other-panel").is_hidden()
+
+
+def test_an_impossible_agent_is_disabled_with_the_reason(playground: Playground) -> None:
+    playground.open("#env=MountainCar-v0&discretizer=tiles&episodes=20")
+    options = playground.page.locator("#compared option")
+    texts = options.all_inner_texts()
+    assert "Q-learning (this agent)" in texts
+    assert "Dyna-Q (not with Tile coding)" in texts
+    assert playground.page.locator('#compared option[value="dyna_q"]').is_disabled()
