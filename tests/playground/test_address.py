@@ -211,3 +211,37 @@ def _assert_allowed(playground: Playground) -> None:
     if state["grid"]:
         assert len(state["grid"]["layout"]) <= 20
         assert all(set(row) <= set(".#SG") for row in state["grid"]["layout"])
+
+
+def test_settings_are_shared_between_pages_that_are_files(playground: Playground) -> None:
+    playground.page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    playground.open("#env=CliffWalking-v1&algorithm=sarsa&episodes=20&seed=4")
+    state = playground.state()
+    playground.page.locator("#share-open").click()
+    assert "file on your computer" in playground.text("share-text")
+    playground.page.locator("#share-copy").click()
+    playground.page.wait_for_function("() => document.querySelector('#share-copy').textContent === 'Copied'")
+    shared = playground.page.evaluate("() => navigator.clipboard.readText()")
+    assert shared.startswith("#env=CliffWalking-v1&")
+    for text in (
+        shared,
+        f"https://example.org/playground/{shared}",
+        f"file:///elsewhere/page.html{shared}",
+        shared[1:],
+    ):
+        playground.open("#env=FrozenLake-v1&episodes=20")
+        playground.page.keyboard.press("l")
+        playground.page.locator("#share-given").fill(text)
+        playground.page.locator("#share-given").press("Enter")
+        assert playground.settled().state() == state, text
+        assert playground.page.locator("#share-dialog").is_hidden()
+        assert not playground.page.locator("#problem").is_visible()
+
+
+def test_shared_settings_that_do_not_fit_are_named(playground: Playground) -> None:
+    playground.open("#env=CliffWalking-v1&episodes=20")
+    playground.page.locator("#share-open").click()
+    playground.page.locator("#share-given").fill("http://a.b/?env=CliffWalking-v1&episodes=9e9&discount=2&nothing=1")
+    playground.page.locator("#share-restore").click()
+    playground.settled()
+    assert playground.text("problem").endswith("left out or changed: nothing, episodes, discount.")

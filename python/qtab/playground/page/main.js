@@ -62,7 +62,10 @@ function start() {
   setUpEnvironments(store, element("environments"), element("environment-title"), element("environment-sentence"));
   setUpExamples(store, element("examples"), element("look"));
   new Controls(element("settings"), store, seedControls(store));
-  setUpPage(store, agents, view, announce);
+  const note = (names) => {
+    if (names.length) view.showNote(`Some parts of the address are not valid and were left out or changed: ${names.slice(0, 8).join(", ")}.`);
+  };
+  setUpPage(store, agents, view, note, announce);
   const start = () => {
     for (const each of agents()) {
       each.engine.setPace(steps);
@@ -71,16 +74,13 @@ function start() {
   };
   store.subscribe(start);
   start();
-  const note = (names) => {
-    if (names.length) view.showNote(`Some parts of the address are not valid and were left out or changed: ${names.slice(0, 8).join(", ")}.`);
-  };
   note(left);
   addEventListener("hashchange", () => note(restore(store, location.hash.slice(1))));
   if (matchMedia("(max-width: 860px)").matches) element("settings-fold").open = false;
   globalThis.playground = { engine: training.engine, store, training, agents, view, fragment, restore, fit, pythonProgram, EXAMPLES, exampleState };
 }
 
-function setUpPage(store, agents, view, announce) {
+function setUpPage(store, agents, view, note, announce) {
   const press = {
     run: () => agents().forEach((each) => each.run()),
     stop: () => agents().forEach((each) => each.stop()),
@@ -106,8 +106,25 @@ function setUpPage(store, agents, view, announce) {
     announce(done ? `${what} copied.` : "The browser does not allow copying.");
   };
   element("python-copy").addEventListener("click", () => copied(pythonProgram(store, view.shownMeasure), element("python-copy"), "Program"));
-  const address = () => `${location.href.split(/[?#]/)[0]}#${fragment(store)}`;
-  element("copy-link").addEventListener("click", () => copied(address(), element("copy-link"), "Link"));
+  // The address of a file means nothing on another computer: only the settings can be shared then.
+  const isFile = location.protocol === "file:";
+  const shared = () => `${isFile ? "" : location.href.split(/[?#]/)[0]}#${fragment(store)}`;
+  element("share-text").textContent = isFile
+    ? "This page is a file on your computer. Send the text below: it opens in another copy of the page, with Share or at the end of its address."
+    : "This link opens the page with the task, the settings and the seeds that you see.";
+  const openShare = setUpDialog(element("share-dialog"), element("share-open"), () => {
+    element("share-link").value = shared();
+    element("share-given").value = "";
+  });
+  element("share-copy").addEventListener("click", () => copied(shared(), element("share-copy"), isFile ? "Settings" : "Link"));
+  const open = () => {
+    note(restore(store, element("share-given").value.trim().replace(/^[^?#]*[?#]/, "")));
+    element("share-dialog").close();
+  };
+  element("share-restore").addEventListener("click", open);
+  element("share-given").addEventListener("keydown", (event) => {
+    if (event.key === "Enter") open();
+  });
   let waiting = 0;
   store.subscribe(() => {
     clearTimeout(waiting);
@@ -123,6 +140,7 @@ function setUpPage(store, agents, view, announce) {
       ["m", "play or pause the motion", () => view.motion.setPlaying(!view.motion.playing)],
       ["v", "go to the map of values", () => view.values.cell.focus()],
       ["c", "copy as Python", openPython],
+      ["l", "share these settings, or open shared ones", openShare],
       ["?", "these shortcuts", openShortcuts],
     ],
     {
