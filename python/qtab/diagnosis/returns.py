@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from qtab.config.presets import presets
 from qtab.diagnosis.facts import Facts
 from qtab.diagnosis.finding import Finding, Unchecked, changes, percent
+from qtab.envs.registry import is_registered
 from qtab.results.rates import epsilons
 from qtab.training.verdict import judge
 
@@ -24,7 +25,8 @@ def not_solved(facts: Facts) -> Finding | Unchecked | None:
     if facts.best_return is not None:
         evidence["best known"] = facts.best_return
     above = verdict.goal.threshold is not None and verdict.goal.threshold > goal
-    has_better = facts.config.preset != "solved" and "solved" in presets(facts.config.env)
+    known = presets(facts.config.env) if is_registered(facts.config.env) else {}
+    has_better = facts.config.preset != "solved" and "solved" in known
     return Finding(
         title="The run did not solve its environment.",
         evidence=evidence,

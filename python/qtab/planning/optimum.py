@@ -20,6 +20,7 @@ from qtab.planning.classic_control import GridSolver
 from qtab.planning.gap import Gap
 from qtab.planning.search import Search
 from qtab.planning.tabular import StationaryPolicy, TabularSolver
+from qtab.planning.tabulated_runs import AnyRun
 from qtab.results.run import Run
 from qtab.results.runs import Runs
 from qtab.results.summary import FINAL_EPISODES
@@ -141,6 +142,9 @@ class Optimum:
     def gap(self, run: Run | Runs) -> Gap[float] | Gap[NDArray[np.float64]]:
         """Returns the shortfall of a run, or of each of several runs, from the optimum, and the part due to its table.
 
+        The optimum of a table that :func:`qtab.tabulate` made is also compared with runs on the environment itself.
+        Their greedy policy acts in each state by its observation.
+
         A table may be unable to represent the best policy: its cells join states that need different actions, or it
         does not include the number of steps taken. The best policy with that table is estimated: for cells, by dynamic
         programming that treats all states of a cell as one; for a transition table, by :attr:`stationary`. For tile
@@ -154,6 +158,7 @@ class Optimum:
         """
         if not isinstance(run, Run | Runs):
             raise TypeError(f"run must be a Run or Runs, got {shown(run)}")
+        run = self.as_solved(run)
         self.check_same_env(run)
         if isinstance(run, Run):
             last = run.episode_returns[-FINAL_EPISODES:]
@@ -171,6 +176,14 @@ class Optimum:
         found = self.solver.attainable_return(run)
         return None if found is None else max(found, float(np.max(greedy_returns)))
 
+    def as_solved(self, run: AnyRun) -> AnyRun:
+        """Returns a run, or runs, on the environment that was tabulated, as on the table; any other run unchanged.
+
+        Raises:
+            ValueError: if that environment has the same name as the run's, but differs from it.
+        """
+        return self.solver.as_solved(run) if isinstance(self.solver, TabularSolver) else run
+
     def check_same_env(self, run: Run | Runs, *, with_limit: bool = True) -> None:
         """Checks that the environment of a run is that of this optimum.
 
@@ -181,6 +194,7 @@ class Optimum:
         Raises:
             ValueError: if the environment, its keyword arguments or the time limit of the run differ.
         """
+        run = self.as_solved(run)
         config = run.config
         expected = gymnasium_id(self.env), _all_kwargs(self.env, self.env_kwargs), self.max_episode_steps
         actual = gymnasium_id(config.env), _all_kwargs(config.env, config.env_kwargs), config.max_episode_steps

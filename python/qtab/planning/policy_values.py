@@ -14,8 +14,11 @@ from qtab import _core
 from qtab._utils import checks, html
 from qtab._utils.fields import with_fields
 from qtab.config.unknown import suggesting
+from qtab.envs.tabulation.tabulated_env import TabulatedEnv
 from qtab.planning.policies import GivenPolicy, probabilities
 from qtab.planning.table import opened_table
+from qtab.planning.tabulated_runs import on_table
+from qtab.results.run import Run
 
 
 @with_fields
@@ -108,7 +111,8 @@ def policy_values(
         env: A Gymnasium id, an ``EnvSpec`` or an environment, which is neither stepped nor closed.
         policy: ``"random"`` for equal probabilities; an array (*cells,) of actions or (*cells, actions) of
             probabilities; a function from an observation to an action or to (actions,) probabilities; a run, for its
-            greedy policy; or an optimum that does not depend on the steps left.
+            greedy policy; or an optimum that does not depend on the steps left. In a table that :func:`qtab.tabulate`
+            made of the run's environment, a run acts in each state by its observation.
         discount: The discount, in [0, 1].
         env_kwargs: Keyword arguments of the environment's constructor, with an id or a spec.
 
@@ -122,6 +126,9 @@ def policy_values(
     discount = checks.real("discount", discount, 0.0, 1.0)
     with opened_table(env, env_kwargs) as table:
         cells, actions, solver = table.cells, table.actions, table.solver
+        unwrapped = table.env.unwrapped
+        if isinstance(policy, Run) and isinstance(unwrapped, TabulatedEnv):
+            policy = on_table(policy, unwrapped)
         given = probabilities("policy", policy, table.env.observation_space, cells, actions)
     values, q_values, error = solver.policy_evaluation(np.ascontiguousarray(given.ravel()), discount)
     observed = slice(cells.n_rows)

@@ -9,7 +9,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from qtab._utils.fields import with_fields
 from qtab.discretizers.time_aware import TimeAware
+from qtab.envs.tabulation.tabulated_env import TabulatedEnv
 from qtab.planning.table import Table
+from qtab.planning.tabulated_runs import AnyRun, on_table
 from qtab.results.run import Run
 
 METHODS = ("finite_horizon", "value_iteration", "policy_iteration")
@@ -63,6 +65,8 @@ class TabularSolver:
 
     def __init__(self, table: Table, method: str, discount: float, max_episode_steps: int) -> None:
         self.cells, self.actions = table.cells, table.actions
+        unwrapped = table.env.unwrapped
+        self._tabulated = unwrapped if isinstance(unwrapped, TabulatedEnv) else None
         planner = self._planner = table.solver
         self._max_episode_steps = max_episode_steps
         if method == "finite_horizon":
@@ -107,12 +111,21 @@ class TabularSolver:
         applicable = np.flatnonzero((states == state) & (steps_to_go <= remaining))
         return int(actions[applicable[-1]])
 
+    def as_solved(self, run: AnyRun) -> AnyRun:
+        """Returns a run, or runs, on the solved table, if it was trained on the environment that was tabulated.
+
+        Raises:
+            ValueError: if that environment has the same name as the run's, but differs from it.
+        """
+        return run if self._tabulated is None else on_table(run, self._tabulated)
+
     def greedy_return(self, run: Run) -> tuple[float, float]:
         """Returns the expected return of a run's greedy policy, and 0.0 as its standard error, as it is exact.
 
         Raises:
             ValueError: if the run's Q table does not have the environment's shape, or its rows are not the states.
         """
+        run = self.as_solved(run)
         cells, steps = run.discretizer, tuple[int, ...]()
         if isinstance(cells, TimeAware):
             cells, steps = cells.cells, (self._max_episode_steps,)

@@ -46,7 +46,8 @@ def difference(
 
     Args:
         run: A run, or the runs of many seeds with their tables, whose most frequent greedy action is taken.
-        optimum: The result of :func:`qtab.optimum` for the environment.
+        optimum: The result of :func:`qtab.optimum` for the environment, or for the table that :func:`qtab.tabulate`
+            made of it.
         ax: The axes to draw on; None creates a new figure.
         at: For observations of more than two components, the values of those that are not axes; see
             :func:`qtab.plots.values`.
@@ -67,7 +68,8 @@ def difference(
     if not isinstance(optimum, Optimum):
         raise TypeError(f"optimum must be a result of qtab.optimum, got {optimum!r}")
     check_title(title)
-    subject, best = subject_of("run", run), subject_of("optimum", optimum)
+    env = run.config.env
+    subject, best = subject_of("run", optimum.as_solved(run)), subject_of("optimum", optimum)
     _check_same(subject, best)
     if not subject.discretizer.has_component_axes:
         raise ValueError(
@@ -84,7 +86,7 @@ def difference(
     share = wrong.sum() / max(known.sum(), 1)
     if title is None:
         policy = "an optimal policy" if optimum.exact else "the best known policy"
-        title = f"{subject.env}: cost against {policy}"
+        title = f"{env}: cost against {policy}"
     shade_unknown(ax, raster, cost)
     # The end of the map that looks like the background is left out.
     cmap = ListedColormap(colormaps["magma" if is_dark(ax) else "magma_r"](np.linspace(0.25, 1.0, 256)))

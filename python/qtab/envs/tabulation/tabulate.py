@@ -13,7 +13,7 @@ from qtab._utils.shown import shown
 from qtab.envs.functional import FunctionalEnv
 from qtab.envs.in_rust.matching import layers, overridden, time_limit
 from qtab.envs.origin.class_code import is_of_library
-from qtab.envs.origin.describe import NEUTRAL
+from qtab.envs.origin.describe import NEUTRAL, describe
 from qtab.envs.tabulation.branches import CannotListError
 from qtab.envs.tabulation.copied_outcomes import CopiedOutcomes
 from qtab.envs.tabulation.functional_outcomes import FunctionalOutcomes
@@ -76,12 +76,18 @@ def tabulate(env: gym.Env[Any, Any], *, max_states: int = 100_000) -> TabulatedE
     if not isinstance(unwrapped.action_space, gym.spaces.Discrete):
         raise ValueError(f"env must have a Discrete action space, got {unwrapped.action_space}")
     limit = time_limit(env)
-    if has_known_table(unwrapped):
-        return tabulate_known(unwrapped, limit, max_states)
-    if not isinstance(unwrapped, FunctionalEnv):
-        return _tabulated(CopiedOutcomes(unwrapped), unwrapped, limit, max_states)
-    _check_not_overridden(unwrapped)
-    return _tabulated(FunctionalOutcomes(unwrapped), unwrapped, limit, max_states)
+    table = _table(unwrapped, limit, max_states)
+    table.made_of = describe(env)
+    return table
+
+
+def _table(env: Any, limit: int | None, max_states: int) -> TabulatedEnv:
+    if has_known_table(env):
+        return tabulate_known(env, limit, max_states)
+    if not isinstance(env, FunctionalEnv):
+        return _tabulated(CopiedOutcomes(env), env, limit, max_states)
+    _check_not_overridden(env)
+    return _tabulated(FunctionalOutcomes(env), env, limit, max_states)
 
 
 def _check_not_overridden(env: FunctionalEnv) -> None:

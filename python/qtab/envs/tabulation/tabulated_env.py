@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qtab.envs.origin.description import EnvironmentDescription
 from qtab.envs.tabular import TabularEnv, TransitionTable
 
 MOST_NAMES = 1_000
@@ -40,6 +41,8 @@ class TabulatedEnv(TabularEnv):
     """(states, actions): the available actions, in terminal states all; None if the other environment has no masks."""
     max_episode_steps: int | None
     """The time limit of the other environment in steps; None without one."""
+    made_of: EnvironmentDescription | None
+    """The other environment in detail; None if the table was not made by :func:`qtab.tabulate`."""
 
     def __init__(
         self,
@@ -58,6 +61,7 @@ class TabulatedEnv(TabularEnv):
         self.action_names = tuple(action_names)
         self.masks = masks
         self.max_episode_steps = max_episode_steps
+        self.made_of = None
 
     def action_mask(self, state: int) -> NDArray[np.int8]:
         """Returns the mask of a state, (actions,): 1 for each available action, and for all without masks.

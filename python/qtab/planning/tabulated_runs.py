@@ -1,0 +1,104 @@
+"""Runs on an environment, read as runs on the table that ``qtab.tabulate`` made of it."""
+
+from dataclasses import replace
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab.config import DEFAULTS
+from qtab.config.config import replace_checked
+from qtab.config.functions import checked_mask
+from qtab.config.options import OPTIONS
+from qtab.config.origin import Origin, copied, trained_on
+from qtab.discretizers import Discretizer
+from qtab.discretizers.identity import Identity
+from qtab.discretizers.time_aware import TimeAware
+from qtab.envs.origin.describe import describe
+from qtab.envs.origin.description import differences
+from qtab.envs.registry import gymnasium_id
+from qtab.envs.tabulation.tabulated_env import TabulatedEnv
+from qtab.results.run import Run
+from qtab.results.runs import Runs
+
+AnyRun = TypeVar("AnyRun", bound=Run | Runs)
+
+_OF_DISCRETIZER = [name for name, option in OPTIONS.items() if option.choice == "discretizer"]
+"""The settings that apply to some discretizers only."""
+
+
+def on_table(run: AnyRun, table: TabulatedEnv) -> AnyRun:
+    """Returns a run, or runs, with the values of the states of a table, by the observation of each state.
+
+    Two states that share an observation have the same values. A run on any other environment than the one that was
+    tabulated is returned unchanged, as is one on the table.
+
+    Args:
+        run: The run on the environment that was tabulated.
+        table: The table.
+
+    Raises:
+        ValueError: if the environment of the run has the same name, but other arguments, attributes or spaces.
+    """
+    made_of, config = table.made_of, run.config
+    if made_of is None or gymnasium_id(config.env) != gymnasium_id(made_of.name):
+        return run
+    description = trained_on(config)
+    found = [] if description is None else differences(description, made_of)
+    if found:
+        raise ValueError(f"run must be on the environment that the table was made of, got another one: {found[0]}")
+    cells: Discretizer = Identity.of_space(table.observation_space, len(run.actions))
+    rows = np.array([run.discretizer.active_rows(observation) for observation in table.observations])
+    changes: dict[str, Any] = {"tables": None if run.tables is None else _of_states(run, run.tables, rows)}
+    masks = _masks(run, table, rows)
+    if isinstance(run.discretizer, TimeAware):
+        cells = TimeAware(cells.low, cells.high, cells, run.discretizer.max_episode_steps)
+    if masks is not None:
+        runs = () if isinstance(run, Run) else (len(run),)
+        changes["action_masks"] = masks.reshape(*runs, *cells.shape, len(run.actions))
+    if isinstance(run, Run):
+        changes |= {"visits": None, "snapshots": None, "recordings": (), "state": None}
+    settings = {name: DEFAULTS[name] for name in _OF_DISCRETIZER}
+    settings |= {"env": type(table).__name__, "env_kwargs": {}, "discretizer": "identity", "max_rows": None}
+    settings |= {"initial_q": _initial(run, rows), "action_mask": masks is not None}
+    config = copied(replace_checked(config, **settings), Origin(describe(table)))
+    return replace(run, config=config, discretizer=cells, actions=run.actions, **changes)
+
+
+def _of_states(run: Run | Runs, tables: NDArray[np.float64], rows: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Returns (..., k, states, actions): the values of the states, added from left to right as a run adds them."""
+    if isinstance(run.discretizer, TimeAware):
+        # (..., steps, cells, actions): each step has a table of its own.
+        steps = run.discretizer.max_episode_steps
+        parts = tables.reshape(*tables.shape[:-2], steps, -1, tables.shape[-1])
+        return parts[..., rows[:, 0], :].reshape(*tables.shape[:-2], -1, tables.shape[-1])
+    first, *others = rows.T
+    total: NDArray[np.float64] = tables[..., first, :]
+    for active in others:
+        total = total + tables[..., active, :]
+    return total
+
+
+def _masks(run: Run | Runs, table: TabulatedEnv, rows: NDArray[np.int64]) -> NDArray[np.bool_] | None:
+    """Returns (..., states, actions): the mask of each state; None without masks."""
+    function, count = run.config.action_mask, len(run.actions)
+    if callable(function):
+        masks = [checked_mask("action_mask", function(observation), count) for observation in table.observations]
+        known = np.array(masks, np.bool_)
+        steps = run.discretizer.max_episode_steps if isinstance(run.discretizer, TimeAware) else 1
+        repeated = np.tile(known, (steps, 1))
+        return repeated if isinstance(run, Run) else np.broadcast_to(repeated, (len(run), *repeated.shape))
+    if run.action_masks is None:
+        return None
+    leading = () if isinstance(run, Run) else (len(run),)
+    flat = run.action_masks.reshape(*leading, -1, count)
+    if isinstance(run.discretizer, TimeAware):
+        parts = flat.reshape(*leading, run.discretizer.max_episode_steps, -1, count)
+        return parts[..., rows[:, 0], :].reshape(*leading, -1, count)
+    return flat[..., rows[:, 0], :]
+
+
+def _initial(run: Run | Runs, rows: NDArray[np.int64]) -> Any:
+    """Returns the initial value of every state, as far as it is one number; otherwise the setting of the run."""
+    initial = run.config.initial_q
+    return initial * rows.shape[1] if isinstance(initial, int | float) else (-1.0, 1.0)

@@ -1,0 +1,129 @@
+"""Runs on an environment, compared with the optimum of the table that ``qtab.tabulate`` made of it."""
+
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import pytest
+
+import qtab
+from support.errand import SETTINGS, Errand, ErrandClass
+from support.own_environments.gymnasium_class import Corridor
+
+LIMIT = 200
+
+
+def limited(env: gym.Env[Any, Any]) -> gym.Env[Any, Any]:
+    return gym.wrappers.TimeLimit(env, LIMIT)
+
+
+@pytest.fixture(scope="module")
+def table() -> qtab.TabulatedEnv:
+    return qtab.tabulate(limited(Errand()))
+
+
+@pytest.fixture(scope="module")
+def best(table: qtab.TabulatedEnv) -> qtab.Optimum:
+    return qtab.optimum(table)
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [
+        {},
+        {"algorithm": "double_q_learning"},
+        {"max_rows": 80},
+        {"discretizer": "tiles", "tilings": 4, "tiles": (3, 3, 2)},
+        {"algorithm": "actor_critic", "epsilon": None, "epsilon_schedule": None},
+        {"action_mask": lambda observation: [1, 1, 1, observation[0] > 0]},
+    ],
+    ids=["table", "two tables", "assigned rows", "tiles", "preferences", "masks"],
+)
+def test_the_greedy_return_is_that_of_an_episode(best: qtab.Optimum, settings: dict[str, Any]) -> None:
+    given = {name: value for name, value in {**SETTINGS, **settings}.items() if value is not None}
+    if "discretizer" in settings:  # tiles need a Box
+        env: Any = gym.wrappers.TransformObservation(
+            Errand(), lambda seen: np.array(seen, np.float32), gym.spaces.Box(0.0, 5.0, (3,))
+        )
+        with pytest.raises(ValueError, match="without a wrapper"):
+            best.gap(qtab.train(limited(env), seed=1, episodes=20, **given))
+        return
+    for episodes in (30, 300):
+        run = qtab.train(limited(Errand()), seed=1, episodes=episodes, **given)
+        [played] = qtab.evaluate(run, 1, seed=0, env=limited(Errand())).returns
+        gap = best.gap(run)
+        assert gap.greedy_return == pytest.approx(played, abs=1e-9)
+        assert gap.optimum == best.expected_return == pytest.approx(-15.0)
+        assert gap.final_return == run.episode_returns[-100:].mean()
+
+
+def test_a_time_aware_run_is_compared_step_by_step(best: qtab.Optimum) -> None:
+    run = qtab.train(limited(Errand()), seed=1, episodes=2000, time_aware=True, **SETTINGS)
+    [played] = qtab.evaluate(run, 1, seed=0, env=limited(Errand())).returns
+    assert best.gap(run).greedy_return == pytest.approx(played, abs=1e-9)
+
+
+def test_many_runs_are_compared_at_once(best: qtab.Optimum) -> None:
+    runs = qtab.train_many(lambda: limited(ErrandClass()), seeds=3, episodes=300, tables=True, threads=1, **SETTINGS)
+    best_of_class = qtab.optimum(qtab.tabulate(limited(ErrandClass())))
+    gap = best_of_class.gap(runs)
+    assert gap.greedy_return.tolist() == [best_of_class.gap(run).greedy_return for run in runs]
+    with pytest.raises(ValueError, match="run must have env 'TabulatedEnv' as this optimum has, got 'ErrandClass'"):
+        best.gap(runs)
+
+
+def test_policy_values_take_a_run_on_the_environment(table: qtab.TabulatedEnv) -> None:
+    run = qtab.train(limited(Errand()), seed=0, episodes=400, **SETTINGS)
+    values = qtab.policy_values(table, run, discount=0.95)
+    assert values.values.shape == (len(table.states),)
+    assert values.expected_return == pytest.approx(-sum(0.95**step for step in range(15)))
+
+
+def test_the_picture_of_the_difference_has_the_costs_of_the_run(best: qtab.Optimum) -> None:
+    pytest.importorskip("matplotlib")
+    from matplotlib import pyplot as plt
+
+    run = qtab.train(limited(Errand()), seed=0, episodes=60, **SETTINGS)
+    ax = qtab.plots.difference(run, best)
+    assert ax.get_title(loc="left").startswith("Errand: cost against an optimal policy")
+    plt.close("all")
+
+
+def test_a_diagnosis_knows_the_goal_from_the_table(best: qtab.Optimum) -> None:
+    env = limited(Errand())
+    failed = qtab.diagnose(qtab.train(env, seed=0, episodes=60, **SETTINGS), best, env=env)
+    assert failed.solved is False
+    assert failed["not solved"].evidence["greedy policy"] == pytest.approx(-LIMIT)
+    assert "greedy loop" in failed
+    assert qtab.diagnose(qtab.train(env, seed=0, episodes=400, **SETTINGS), best, env=env).solved is True
+
+
+def test_states_that_share_an_observation_have_the_same_policy() -> None:
+    env = limited(Corridor())
+    table = qtab.tabulate(env)
+    assert len(table.states) > env.observation_space.n  # type: ignore[attr-defined]
+    run = qtab.train(env, seed=0, episodes=500)
+    exact = qtab.optimum(table).gap(run)
+    played = qtab.evaluate(run, 4000, seed=0, env=env)
+    assert exact.greedy_return == pytest.approx(played.mean_return, abs=4 * played.standard_error)
+
+
+def test_an_environment_with_other_arguments_is_refused(best: qtab.Optimum) -> None:
+    run = qtab.train(limited(Errand(cost=2.0)), seed=0, episodes=10)
+    expected = r"that the table was made of, got another one: its attribute cost was 2\.0 in training, and is 1\.0"
+    with pytest.raises(ValueError, match=expected):
+        best.gap(run)
+    with pytest.raises(ValueError, match=expected):
+        qtab.diagnose(run, best)
+
+
+def test_another_time_limit_is_refused(best: qtab.Optimum) -> None:
+    run = qtab.train(limited(Errand()), seed=0, episodes=10, max_episode_steps=50)
+    with pytest.raises(ValueError, match="run must have max_episode_steps 200 as this optimum has, got 50"):
+        best.gap(run)
+
+
+def test_toy_text_is_compared_with_its_tabulated_table() -> None:
+    run = qtab.train("FrozenLake-v1", seed=0, preset="solved")
+    ours, theirs = qtab.optimum(qtab.tabulate(gym.make("FrozenLake-v1"))), qtab.optimum("FrozenLake-v1")
+    assert ours.gap(run).greedy_return == theirs.gap(run).greedy_return
