@@ -94,7 +94,7 @@ html_show_sphinx = False
 html_context = {"default_mode": "auto"}
 html_theme_options = {
     "logo": {"text": "qtab", "image_light": "_static/icon.svg", "image_dark": "_static/icon.svg", "alt_text": ""},
-    "header_links_before_dropdown": 7,
+    "header_links_before_dropdown": 8,
     "navbar_align": "left",
     "navbar_end": ["theme-switcher"],
     "navbar_persistent": ["search-button"],

@@ -1,12 +1,11 @@
 """The notebooks in examples/: how they are stored, and that they run, show pictures and print the right numbers.
 
 What they show is tested with ``-m docs`` only: ``.ci/run docs`` executes them for the site, and the tests read that.
+``test_chapter_notebooks.py`` tests what those of the chapters show.
 """
 
-import copy
 import re
-from collections.abc import Callable, Sequence
-from functools import cache
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -15,17 +14,18 @@ import pytest
 
 import qtab
 from qtab.envs.metadata.goals import BEST_KNOWN_MOUNTAIN_CAR
+from support.notebooks import EXAMPLES, Executed, check_shown, nbformat, source, stored
 from support.repository import ROOT, tracked_files
 
-nbformat = pytest.importorskip("nbformat")
-
-NOTEBOOKS = [path for path in tracked_files(".ipynb") if path.parent == ROOT / "examples"]
+NOTEBOOKS = [
+    path.relative_to(EXAMPLES).with_suffix("").as_posix()
+    for path in tracked_files(".ipynb")
+    if path.is_relative_to(EXAMPLES)
+]
 LINK = re.compile(r"\]\(([^)\s]+)\)")
-PNG, HTML, TEXT = "image/png", "text/html", "text/plain"
 
 PICTURES = {
     "mountain_car": "curve values policy visits trajectory solved solved-trajectory policies",
-    "chapter_6": "windy-policy cliff cliff-policies bias",
     "your_environment": "many learned day",
     "study": "sensitivity profile curves",
     "playground": "picture",
@@ -33,7 +33,6 @@ PICTURES = {
 """The cells that show one picture each."""
 TABLES = {
     "mountain_car": "train diagnosis what-if advice gap same-numbers",
-    "chapter_6": "windy compare experiment",
     "your_environment": "train verify optimum gap",
     "study": "search confirm improvement reload",
     "playground": "change",
@@ -43,23 +42,13 @@ PLAYERS = {"mountain_car": "play-article play-solved animation"}
 """The cells that show pictures in motion."""
 
 
-@cache
-def stored(name: str) -> Any:
-    return nbformat.read(ROOT / "examples" / f"{name}.ipynb", 4)
-
-
-def source(name: str, cell: str) -> str:
-    [text] = [one.source for one in stored(name).cells if one.id == cell]
-    return str(text)
-
-
-def test_there_are_five_and_the_readme_links_them() -> None:
-    assert sorted(path.stem for path in NOTEBOOKS) == sorted(PICTURES)
+def test_each_is_tested_and_the_readme_links_it() -> None:
+    assert sorted(name for name in NOTEBOOKS if "/" not in name) == sorted(PICTURES)
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    assert [path.name for path in NOTEBOOKS if f"(examples/{path.name})" not in readme] == []
+    assert [name for name in PICTURES if f"(examples/{name}.ipynb)" not in readme] == []
 
 
-@pytest.mark.parametrize("name", PICTURES)
+@pytest.mark.parametrize("name", NOTEBOOKS)
 def test_a_notebook_is_stored_without_what_running_it_leaves(name: str) -> None:
     notebook = stored(name)
     nbformat.validate(notebook)
@@ -72,41 +61,17 @@ def test_a_notebook_is_stored_without_what_running_it_leaves(name: str) -> None:
     assert [cell.id for cell in code if cell.outputs or cell.execution_count is not None] == []
     # Words as ids: an editor that makes new ones would be seen in the difference.
     assert [cell.id for cell in notebook.cells if not re.fullmatch(r"[a-z0-9]+(-[a-z0-9]+)*", cell.id)] == []
-    text = (ROOT / "examples" / f"{name}.ipynb").read_text(encoding="utf-8")
+    text = (EXAMPLES / f"{name}.ipynb").read_text(encoding="utf-8")
     assert not re.search(r"/(home|Users|work|tmp)/|[A-Z]:\\\\", text)
 
 
-@pytest.mark.parametrize("name", PICTURES)
+@pytest.mark.parametrize("name", NOTEBOOKS)
 def test_the_links_of_a_notebook_lead_to_files(name: str) -> None:
     texts = [cell.source for cell in stored(name).cells if cell.cell_type == "markdown"]
     assert texts[0].startswith("# ")
     targets = [target for text in texts for target in LINK.findall(text) if not target.startswith("https://")]
-    assert [target for target in targets if not (ROOT / "examples" / target).exists()] == []
-
-
-class Executed:
-    """The outputs of a notebook that ran."""
-
-    def __init__(self, cells: Sequence[Any]) -> None:
-        self._cells = {cell.id: cell.outputs for cell in cells if cell.cell_type == "code"}
-
-    def shown(self, cell: str, kind: str) -> list[str]:
-        """What a cell shows of a MIME type; the text that it prints counts as plain."""
-        printed = [output.text for output in self._cells[cell] if "text" in output and kind == TEXT]
-        return printed + [output.data[kind] for output in self._cells[cell] if kind in output.get("data", {})]
-
-    def text(self, cell: str) -> str:
-        return "\n".join(self.shown(cell, TEXT))
-
-    @property
-    def errors(self) -> list[str]:
-        """What was printed on standard error, which a reader would see in red."""
-        found = [output for outputs in self._cells.values() for output in outputs if _is_red(output)]
-        return [output.get("text", str(output)) for output in found]
-
-
-def _is_red(output: Any) -> bool:
-    return bool(output.output_type == "error" or output.get("name") == "stderr")
+    folder = (EXAMPLES / name).parent
+    assert [target for target in targets if not (folder / target.partition("#")[0]).exists()] == []
 
 
 def check_mountain_car(executed: Executed) -> None:
@@ -128,20 +93,6 @@ def check_mountain_car(executed: Executed) -> None:
     assert f"greedy policy {greedy:.2f}, best known {BEST_KNOWN_MOUNTAIN_CAR:.2f}" in executed.text("gap")
     assert "return -200 in 200 steps" in executed.text("play-article")
     assert executed.text("same-numbers").endswith("equal>")
-
-
-def check_chapter_6(executed: Executed) -> None:
-    assert executed.text("windy-gap").startswith("optimum: -15.0\ngreedy policy: -15.0")
-    assert executed.text("step").count("target = R + γ Q(S', A')") == 2
-    settings: dict[str, Any] = {}
-    exec(source("chapter_6", "windy").partition("windy =")[0], settings)  # noqa: S102 - our own notebook
-    for algorithm in ("sarsa", "q_learning"):
-        runs = qtab.train_many("CliffWalking-v1", 200, algorithm=algorithm, episodes=500, **settings["settings"])
-        assert str(qtab.stats.mean(runs.final_returns())) in executed.text("cliff-returns")
-    assert "optimum: -13.0" in executed.text("cliff-greedy")
-    assert "Q-learning      200 of 200" in executed.text("cliff-greedy")
-    assert "Sarsa           0 of 200" in executed.text("cliff-greedy")
-    assert str(qtab.book.run("figure-6.5", runs=1000)).splitlines()[-2] in executed.text("bias-table")
 
 
 def check_your_environment(executed: Executed) -> None:
@@ -203,49 +154,21 @@ def check_playground(executed: Executed) -> None:
 
 CHECKS: dict[str, Callable[[Executed], None]] = {
     "mountain_car": check_mountain_car,
-    "chapter_6": check_chapter_6,
     "your_environment": check_your_environment,
     "study": check_study,
     "playground": check_playground,
 }
 
 
-def built_with_the_site(name: str) -> Path | None:
-    """The executed notebook that a build of the site has left, if neither it nor the package has changed since."""
-    built = ROOT / "docs" / "_build" / "jupyter_execute" / "notebooks" / f"{name}.ipynb"
-    package = [path for path in Path(qtab.__file__).parent.rglob("*") if path.suffix in (".py", ".so", ".pyd")]
-    used = [*package, ROOT / "examples" / f"{name}.ipynb"]
-    if built.exists() and built.stat().st_mtime > max(path.stat().st_mtime for path in used):
-        return built
-    return None
-
-
-def execute(name: str, folder: Path) -> Executed:
-    """Executes a notebook in a kernel and a folder of its own."""
-    nbclient = pytest.importorskip("nbclient")
-    pytest.importorskip("ipykernel")
-    notebook = copy.deepcopy(stored(name))
-    # The kernel chooses its own backend, as it does for a reader.
-    with pytest.MonkeyPatch.context() as environment:
-        environment.delenv("MPLBACKEND", raising=False)
-        environment.setenv("IPYTHONDIR", str(folder / "ipython"))
-        # A cell that fails is reported with all others of its notebook.
-        client = nbclient.NotebookClient(notebook, timeout=300, kernel_name="python3", allow_errors=True)
-        client.execute(cwd=str(folder))
-    return Executed(notebook.cells)
-
-
 @pytest.mark.docs
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")  # of Jupyter's libraries
 @pytest.mark.parametrize("name", PICTURES)
 def test_a_notebook_runs_and_shows_what_it_says(name: str, tmp_path: Path) -> None:
-    built = built_with_the_site(name)
-    shown = execute(name, tmp_path) if built is None else Executed(nbformat.read(built, 4).cells)
-    assert shown.errors == []
-    assert {cell: len(shown.shown(cell, PNG)) for cell in PICTURES[name].split()} == dict.fromkeys(
-        PICTURES[name].split(), 1
+    check_shown(
+        name,
+        tmp_path,
+        pictures=PICTURES[name],
+        tables=TABLES[name],
+        players=PLAYERS.get(name, ""),
+        check=CHECKS[name],
     )
-    assert [cell for cell in TABLES[name].split() if "<table" not in "".join(shown.shown(cell, HTML))] == []
-    for cell in PLAYERS.get(name, "").split():
-        assert re.search(r"<(video|img)[^>]* src=|data:(video|image)/", "".join(shown.shown(cell, HTML))), cell
-    CHECKS[name](shown)

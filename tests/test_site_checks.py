@@ -109,8 +109,12 @@ def test_links_out_of_the_documentation_become_pages_of_the_site() -> None:
         "[a](../notebooks/study.ipynb) [b](../reference/contributing.md) [c](spaces.md) ![d](../gallery/x.png)"
     )
     assert (
-        links.rewrite_notebook("[e](chapter_6.ipynb) [f](../docs/book.md#x)")
-        == "[e](chapter_6.ipynb) [f](../book.md#x)"
+        links.rewrite_notebook("[e](chapters/chapter_6.ipynb) [f](../docs/book.md#x)")
+        == "[e](chapters/chapter_6.ipynb) [f](../book.md#x)"
+    )
+    assert (
+        links.rewrite_notebook("[e](../study.ipynb) [f](../../docs/book.md#x)", "chapters")
+        == "[e](../study.ipynb) [f](../../book.md#x)"
     )
     with pytest.raises(Exception, match="not a file of the repository"):
         links.rewrite("[g](../../nothing.md)", "docs/how_to")

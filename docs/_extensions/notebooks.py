@@ -1,4 +1,4 @@
-"""Makes pages of the notebooks in ``examples/``: copies them to ``docs/notebooks`` before the build; myst-nb runs them.
+"""Makes pages of the notebooks in ``examples/`` and its folders: copies them to ``docs/notebooks``; myst-nb runs them.
 
 The stored notebooks have no outputs, and no descriptions of their pictures. ``notebook_pictures.json`` has the
 descriptions: for each notebook, by the id of the cell that shows the picture.
@@ -18,9 +18,9 @@ DESCRIPTIONS = Path(__file__).with_name("notebook_pictures.json")
 def copy_notebooks(app: Sphinx) -> None:
     """Writes each notebook with the descriptions of its pictures, if it changed."""
     folder = Path(app.srcdir) / "notebooks"
-    folder.mkdir(exist_ok=True)
     descriptions = json.loads(DESCRIPTIONS.read_text(encoding="utf-8"))
-    for path in sorted((ROOT / "examples").glob("*.ipynb")):
+    examples = ROOT / "examples"
+    for path in sorted([*examples.glob("*.ipynb"), *examples.glob("[!.]*/*.ipynb")]):
         notebook = json.loads(path.read_text(encoding="utf-8"))
         described = dict(descriptions.get(path.stem, {}))
         for cell in notebook["cells"]:
@@ -29,7 +29,8 @@ def copy_notebooks(app: Sphinx) -> None:
         if described:
             raise ExtensionError(f"{path.name} has no cells {sorted(described)}, of {DESCRIPTIONS.name}")
         text = json.dumps(notebook, indent=1, ensure_ascii=False)
-        target = folder / path.name
+        target = folder / path.relative_to(examples)
+        target.parent.mkdir(parents=True, exist_ok=True)
         if not target.exists() or target.read_text(encoding="utf-8") != text:
             target.write_text(text, encoding="utf-8")
 

@@ -32,7 +32,7 @@ def on_the_site(path: str, fragment: str) -> str | None:
         ExtensionError: if the path does not exist, or is a folder.
     """
     if path.startswith("examples/") and path.endswith(".ipynb"):
-        return f"docs/notebooks/{Path(path).name}"
+        return f"docs/notebooks/{path.removeprefix('examples/')}"
     if page := PAGES.get(path + fragment, PAGES.get(path)):
         return page
     if not (ROOT / path).is_file():
@@ -68,17 +68,18 @@ def rewrite_page(app: Sphinx, docname: str, content: list[str]) -> None:
         notebook = json.loads(content[0])
         for cell in notebook["cells"]:
             if cell["cell_type"] == "markdown":
-                cell["source"] = rewrite_notebook("".join(cell["source"]))
+                folder = path.parent.relative_to(ROOT / "docs" / "notebooks").as_posix()
+                cell["source"] = rewrite_notebook("".join(cell["source"]), folder)
         content[0] = json.dumps(notebook)
 
 
-def rewrite_notebook(text: str) -> str:
-    """Returns a cell of a notebook of ``examples/`` with links as from ``docs/notebooks``."""
+def rewrite_notebook(text: str, folder: str = ".") -> str:
+    """Returns a cell of a notebook in a folder of ``examples/`` with links as from ``docs/notebooks``."""
 
     def replace(found: re.Match[str]) -> str:
-        path = os.path.normpath(f"examples/{found.group(2)}").replace(os.sep, "/")
+        path = os.path.normpath(f"examples/{folder}/{found.group(2)}").replace(os.sep, "/")
         page = path if path.startswith("docs/") else on_the_site(path, found.group(3) or "") or path
-        relative = os.path.relpath(page, "docs/notebooks").replace(os.sep, "/")
+        relative = os.path.relpath(page, f"docs/notebooks/{folder}").replace(os.sep, "/")
         return f"{found.group(1)}{relative}{found.group(3) or ''}{found.group(4)}"
 
     return LINK.sub(replace, text)

@@ -7,6 +7,7 @@ from qtab.book.experiment import Outcome
 from qtab.book.prediction_experiment import PredictionExperiment, PredictionSetting
 from qtab.book.problems import blackjack, root_value_error
 from qtab.book.result import Result
+from qtab.envs.registry import UNLIMITED_MAX_EPISODE_STEPS
 from qtab.prediction.estimate import estimate_values
 
 if TYPE_CHECKING:
@@ -35,7 +36,9 @@ class BlackjackValues(PredictionExperiment):
         """Estimates the values."""
         outcome = super()._run(runs, seed, threads, progress)
         task = blackjack()
-        first = estimate_values(task.env, task.policy, seeds=[seed], **_ARGUMENTS)
+        # With the default limit given, there is no note that the game has none.
+        limit = UNLIMITED_MAX_EPISODE_STEPS
+        first = estimate_values(task.env, task.policy, seeds=[seed], max_episode_steps=limit, **_ARGUMENTS)
         surfaces = {
             f"{name}, after {count:,} episodes": first.values_after(point)[0, 12:22, 1:11, ace]
             for ace, name in ((1, USABLE[0]), (0, USABLE[1]))
