@@ -46,7 +46,7 @@ def test_preferences_alone_are_named(algorithm: Any) -> None:
     env = {"env": "qtab/KArmedBandit-v0"} if algorithm == "gradient_bandit" else {}
     run = qtab.train(algorithm=algorithm, **LAKE | env)
     ax = plots.values(run)
-    assert label(ax) == "largest preference, max$_a$ H(s, a)"
+    assert label(ax).replace("\n", " ") == "largest preference, max$_a$ H(s, a)"
     assert np.nanmax(shown(ax)) == run.tables[0].max()
     assert "Preferences" in [ax.get_title("left") for ax in plots.overview(run).axes]
     if algorithm != "gradient_bandit":

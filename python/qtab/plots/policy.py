@@ -11,6 +11,7 @@ from qtab.plots.arrangements.grid_map import Layout
 from qtab.plots.arrangements.raster import DIRECTIONS
 from qtab.plots.parts.colors import COLORS, brightness, is_dark
 from qtab.plots.parts.labels import below_label, joined
+from qtab.plots.parts.own_names import environment_action_names
 from qtab.plots.parts.panels import (
     arranged,
     axes_for,
@@ -48,7 +49,8 @@ def policy(
         at: For observations of more than two components, the values of those that are not axes; see
             :func:`qtab.plots.values`.
         layout: A map for numbered states; see :func:`qtab.plots.values`.
-        action_names: A name for each action; None takes ``run.action_names``. On a map the actions left, right, up and
+        action_names: A name for each action; None takes those of the environment's attribute ``action_names``, or
+            ``run.action_names``. On a map the actions left, right, up and
             down, and west, east, north and south, are arrows.
         title: The title; None names the environment, the algorithm and the seed.
         step: The step of the episode to show, for runs with ``time_aware=True``.
@@ -62,16 +64,16 @@ def policy(
         ValueError: for one that does not fit the environment, or runs without tables.
     """
     panels = arranged(run, at, layout, title, step)
-    names = [checked_action_names(subject.action_names, action_names) for subject, _ in panels]
+    names = [checked_action_names(environment_action_names(subject), action_names) for subject, _ in panels]
     axes = axes_for([raster for _, raster in panels], ax)
     for (subject, raster), panel, named in zip(panels, axes, names, strict=True):
         greedy, handles = subject.greedy_actions(raster.rows), list[Any]()
         shade_unknown(panel, raster, greedy)
-        if raster.is_map and any(name in DIRECTIONS for name in named):
+        if raster.is_map and raster.has_moves and any(name in DIRECTIONS for name in named):
             draw_moves(panel, raster, greedy[..., np.newaxis] == np.arange(len(named)), named)
         else:
             handles = draw_regions(panel, raster, greedy, named)
-        note = joined(raster.note, _initials(named) if raster.is_map else "")
+        note = joined(raster.note, _initials(named) if raster.is_map and not handles else "")
         finish_panel(panel, raster, subject.name if title is None else title, note)
         if handles:
             _add_legend(panel, handles)
@@ -158,7 +160,7 @@ def draw_regions(ax: "Axes", raster: Raster, greedy: NDArray[np.int64], names: S
     if raster.parts:
         _label_regions(ax, raster, greedy, names, colors)
         return []
-    if raster.has_numbers:
+    if raster.has_numbers and (raster.has_moves or not raster.is_map):
         write_numbers(ax, raster, known, image, lambda action: names[int(action)], "small")
         return []
     present = [index for index in range(len(names)) if (greedy == index).any() or len(names) <= 8]

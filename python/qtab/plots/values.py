@@ -46,9 +46,11 @@ def values(
     preferences it is the largest preference, as the color bar states.
 
     States are shown along the axes of the observation, or on the map of the environment; Taxi's by the place of the
-    passenger and the destination, Blackjack's as in Sutton & Barto (2nd ed., Figure 5.2). Tile coding is sampled on
-    200 x 200 points. States in which nothing was learned are grey: never visited, if the run counted visits, and
-    otherwise still at ``initial_q``, if that is one number. With tile coding this holds for most tiles of a grey point.
+    passenger and the destination, Blackjack's as in Sutton & Barto (2nd ed., Figure 5.2). The states of a table that
+    :func:`qtab.tabulate` made are on a map of two of their components, one for each value of the others. Tile coding is
+    sampled on 200 x 200 points. States in which nothing was learned are grey: never visited, if the run counted visits,
+    and otherwise still at ``initial_q``, if that is one number. With tile coding this holds for most tiles of a grey
+    point.
 
     Args:
         run: A run; the runs of many seeds with their tables, whose mean is shown; an optimum; or the result of

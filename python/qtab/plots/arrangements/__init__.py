@@ -9,6 +9,7 @@ from qtab.plots.arrangements.grid_map import Layout, checked_layout, grid_map, k
 from qtab.plots.arrangements.plane import plane
 from qtab.plots.arrangements.raster import Raster
 from qtab.plots.arrangements.taxi import taxi
+from qtab.plots.arrangements.tuples import tuples
 from qtab.plots.parts.subject import Subject
 
 __all__ = ["Raster", "arrange"]
@@ -23,6 +24,8 @@ def arrange(
     sampled: bool = False,
 ) -> Raster:
     """Returns the raster for a picture of a subject.
+
+    States whose names have components, such as those of a tabulated environment, are on a map of two of these.
 
     Args:
         subject: The subject to draw.
@@ -52,4 +55,6 @@ def arrange(
         return blackjack.blackjack()
     if kind == "taxi" and shape == (TAXI_STATES,):
         return taxi()
-    return plane(subject, at, sampled)
+    [names] = [axis.values for axis in subject.axes] if numbered else [()]
+    by_name = tuples(names) if len(names) == shape[0] else None
+    return by_name or plane(subject, at, sampled)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from qtab._utils import checks
 from qtab._utils.shown import did_you_mean
 from qtab.plots.arrangements.raster import Raster, outline
+from qtab.plots.arrangements.ticks import line_height, name_ticks
 from qtab.plots.parts.subject import Subject
 from qtab.results.axes import Axis
 
@@ -119,7 +120,7 @@ def plane(subject: Subject, at: Mapping[str, float] | None, sampled: bool = Fals
         decorate=lambda ax, ink: _decorate(ax, ink, subject, chosen),
         has_numbers=len(chosen) == 1 and shape[1] <= 20,
         observations=observations,
-        size=(6.4, 4.5) if len(chosen) > 1 else (8.0, 2.0),
+        size=(6.4, 4.5) if len(chosen) > 1 else (8.0, line_height(subject.axes[0].values)),
     )
 
 
@@ -136,7 +137,10 @@ def _decorate(ax: "Axes", ink: str, subject: Subject, chosen: list[Coordinate]) 
     for axis, one in zip((ax.xaxis, ax.yaxis), chosen, strict=False):
         values = next((known.values for known in subject.axes if known.name == one.name), ())
         if values and len(values) <= round(one.high - one.low):
-            axis.set_ticks(one.low + 0.5 + np.arange(len(values)), values)
+            if axis is ax.xaxis:
+                name_ticks(ax, values, one.low + 0.5)
+            else:
+                axis.set_ticks(one.low + 0.5 + np.arange(len(values)), values)
         if one.edges is None:
             axis.set_ticks([-np.pi, -np.pi / 2, 0, np.pi / 2, np.pi], ["-π", "-π/2", "0", "π/2", "π"])
     if len(chosen) == 1:

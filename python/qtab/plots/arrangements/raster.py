@@ -60,6 +60,8 @@ class Raster:
     """The rows of each part, for a picture with labeled regions."""
     is_map: bool = False
     """Whether columns and rows are places, so that moves are arrows; the rows then run downwards."""
+    has_moves: bool = True
+    """Whether moves are arrows on a map: not if it is unknown which way they lead."""
     has_numbers: bool = False
     """Whether there is room for a number in each cell."""
     has_gaps: bool = False

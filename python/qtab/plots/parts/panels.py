@@ -12,7 +12,7 @@ from qtab.plots.arrangements.grid_map import Layout
 from qtab.plots.arrangements.raster import DARK, LIGHT
 from qtab.plots.parts.axes import axes_or_new, shown_figure
 from qtab.plots.parts.colors import SEQUENTIAL, brightness, is_dark
-from qtab.plots.parts.labels import check_title
+from qtab.plots.parts.labels import check_title, fitted
 from qtab.plots.parts.subject import Drawable, Subject, subject_of
 
 if TYPE_CHECKING:
@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from matplotlib.colors import Normalize
 
 MAX_PANELS_IN_A_ROW = 3
+LEAST_LABEL = 60.0
+"""The label of a color bar has lines of this length, in points, also beside a lower picture."""
 
 
 def arranged(
@@ -131,7 +133,11 @@ def color_bar(axes: "Sequence[Axes]", raster: Raster, image: Any, label: str, ex
         place: dict[str, Any] = {"cax": axes[0].inset_axes((raster.bar_at, 0.0, 0.03, 1.0))}
     else:
         place = {"ax": list(axes), "pad": 0.02, "fraction": 0.05}
-    bar = figure.colorbar(image, label=label, extend=extend, **place)
+    bar = figure.colorbar(image, extend=extend, **place)
+    # The label of a low picture is broken into lines.
+    axes[0].apply_aspect()
+    height = sum(ax.get_window_extent().height for ax in axes) * 72 / figure.dpi
+    bar.set_label(fitted(label, max(height, LEAST_LABEL), float(bar.ax.yaxis.label.get_fontsize())))
     bar.outline.set_visible(False)
     return bar
 

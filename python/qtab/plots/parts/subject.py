@@ -15,7 +15,8 @@ from qtab.config.options import PREFERENCES, WITH_STATE_VALUES
 from qtab.discretizers import Discretizer
 from qtab.discretizers.edges import Edges
 from qtab.envs.actions import Actions
-from qtab.envs.metadata.quantities import Quantities, quantities_of
+from qtab.envs.metadata.quantities import Quantities, quantities_of, tabulated_quantities
+from qtab.envs.registry import TABULATED
 from qtab.planning.optimum import Optimum
 from qtab.results.action_values import read_by_policy
 from qtab.results.axes import Axis, action_names, axes_of, run_quantities
@@ -205,7 +206,9 @@ def _of_optimum(best: Optimum) -> Subject:
         solver: Any = best.solver  # of a transition table
         discretizer, actions = solver.cells, solver.actions
     tables = best.q_values.reshape(1, -1, len(actions))
-    quantities = quantities_of(best.env)
+    environment = best.environment
+    is_table = environment is not None and environment.cls == TABULATED
+    quantities = tabulated_quantities(environment.attributes) if environment and is_table else quantities_of(best.env)
     names = action_names(quantities, actions)
     name = f"{best.env}: {best.label}"
     return Subject(best, best.env, best.env_kwargs, quantities, name, discretizer, tables, None, names, best.discount)
