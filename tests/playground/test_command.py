@@ -176,6 +176,7 @@ def test_lines_of_comments_are_left_out_and_no_others():
         ({"side.js": "export default 1;\n"}, "side.js: 'export default 1;' is not a form of import or export"),
         ({"side.js": 'import x from "./part.js";\n'}, "is not a form of import or export that can be bundled"),
         ({"main.js": 'import { a } from "./parts.js";\n'}, "the module parts.js is missing"),
+        ({"side.js": "const text = `one\n  two`;\n"}, "side.js: 'const text = `one' begins or ends a text that spans"),
     ],
 )
 def test_modules_that_cannot_be_bundled_are_refused(changed, message):

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from support.lessons import Claims, Lesson, Lessons, control, grids, lakes
+from support.lessons import Claims, Lesson, Lessons, control, games, grids, lakes
 from support.playground import Playground
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
@@ -15,7 +15,7 @@ STATES = """() => {
   return Object.entries(EXAMPLES).flatMap(([environment, examples]) =>
     examples.map((example, index) => ({ ...example, ...exampleState(store, environment, index) })));
 }"""
-CLAIMS: Claims = {**control.CLAIMS, **lakes.CLAIMS, **grids.CLAIMS}
+CLAIMS: Claims = {**control.CLAIMS, **lakes.CLAIMS, **grids.CLAIMS, **games.CLAIMS}
 
 
 @pytest.fixture(scope="module")

@@ -64,6 +64,7 @@ def _is_grey(color: list[int]) -> bool:
         ("#env=MountainCar-v0&example=2", "it reached the flag."),
         ("#env=CartPole-v1&example=0", "the pole fell."),
         ("#env=CartPole-v1&example=2&seed=0", "time is up."),
+        ("#env=Taxi-v4&example=1", "the passenger arrived."),
     ],
 )
 def test_the_end_of_an_episode_is_said_in_words(playground: Playground, fragment: str, end: str) -> None:
@@ -116,3 +117,46 @@ def test_lines_that_coincide_have_one_label(playground: Playground) -> None:
         ([["threshold", -16], ["optimal", -13]], ["threshold −16", "optimal −13"]),
     ):
         assert playground.page.evaluate(labels, marks) == expected
+
+
+def test_the_end_of_a_game_follows_from_its_hand_and_its_return(playground: Playground) -> None:
+    playground.open("#env=Blackjack-v1&episodes=3000")
+    ends = set()
+    for seed in range(20):
+        playground.page.evaluate("seed => playground.store.update({ seed })", seed)
+        playground.settled()
+        total, earned = playground.page.evaluate(
+            "() => { const { observations, return: earned } = playground.view.episode;"
+            " return [Math.floor(observations.at(-1) / 22), earned]; }"
+        )
+        end = "it went over 21" if total > 21 else {1: "it won", 0: "a draw", -1: "the dealer won"}[earned]
+        assert playground.text("motion-caption").endswith(f": {end}.")
+        ends.add(end)
+    assert len(ends) >= 3
+
+
+@pytest.mark.parametrize(
+    ("environment", "words"),
+    [
+        (
+            "Taxi-v4",
+            {0: "The taxi is in row 1, column 1, before the pick-up:", 5: "No state.", 54: "with the passenger"},
+        ),
+        (
+            "Blackjack-v1",
+            {
+                0: "Sum 21, without a usable ace, the dealer shows A:",
+                10: "No state.",
+                11: "Sum 21, with a usable ace, the dealer shows A:",
+                30: "Sum 20, without a usable ace, the dealer shows 10:",
+                377: "No state.",
+            },
+        ),
+    ],
+)
+def test_the_states_of_a_game_are_said_in_words(
+    playground: Playground, environment: str, words: dict[int, str]
+) -> None:
+    playground.open(f"#env={environment}&episodes=300")
+    for cell, text in words.items():
+        assert text in playground.page.evaluate("cell => playground.view.describe(cell)", cell), cell

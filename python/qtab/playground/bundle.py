@@ -10,11 +10,12 @@ _IMPORT = re.compile(
 )
 _DECLARED = re.compile(r"^export\s+(?=(?:async\s+)?(?:function\*?|class|const)\s+(?P<name>\w+))", re.MULTILINE)
 _OTHER = re.compile(r"^(?:import|export)\b.*$", re.MULTILINE)
+_INDENTATION = re.compile(r"^[ \t]+", re.MULTILINE)
 _COMMENT_LINES = re.compile(r"^[ \t]*(?://.*|/\*\*(?:[^*]|\*(?!/))*\*/[ \t]*)\n", re.MULTILINE)
 
 
 def bundle(sources: Mapping[str, str], entry: str) -> str:
-    """Returns one script equivalent to the module ``entry``, without the lines that only hold a comment.
+    """Returns one script equivalent to the module ``entry``, without indentation and lines that only hold a comment.
 
     Args:
         sources: The text of each module by its path. The modules may use ``import { a, b as c } from "./a.js"``,
@@ -22,7 +23,8 @@ def bundle(sources: Mapping[str, str], entry: str) -> str:
         entry: The module to begin with.
 
     Raises:
-        ValueError: for other imports and exports, a missing module, or modules that import each other in a circle.
+        ValueError: for other imports and exports, a missing module, modules that import each other in a circle, or a
+            text in backticks that spans lines, whose indentation would be lost.
     """
     needed: dict[str, set[str]] = {}
     waiting = [entry]
@@ -49,7 +51,10 @@ def _imported(name: str, found: re.Match[str]) -> str:
 def _wrapped(name: str, source: str) -> str:
     """A module as a function that returns what the module exports."""
     exported = [found["name"] for found in _DECLARED.finditer(source)]
-    body = _DECLARED.sub("", _IMPORT.sub(lambda found: _destructured(name, found), _COMMENT_LINES.sub("", source)))
+    code = _INDENTATION.sub("", _COMMENT_LINES.sub("", source))
+    if spanning := next((line for line in code.splitlines() if line.count("`") % 2), None):
+        raise ValueError(f"{name}: {spanning!r} begins or ends a text that spans lines")
+    body = _DECLARED.sub("", _IMPORT.sub(lambda found: _destructured(name, found), code))
     if other := _OTHER.search(body):
         raise ValueError(f"{name}: {other[0]!r} is not a form of import or export that can be bundled")
     return f"modules[{name!r}] = (() => {{\n{body}\nreturn {{ {', '.join(exported)} }};\n}})();"

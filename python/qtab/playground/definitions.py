@@ -78,9 +78,10 @@ def _gymnasium(entry: Entry) -> dict[str, Any]:
     description = quantities_of(entry.env)
     space: Any = env.observation_space
     tabular = isinstance(space, gym.spaces.Discrete)
+    numbered = tabular or isinstance(space, gym.spaces.Tuple)
     given = {
         name: {setting: value for setting, value in preset.items() if setting not in LEFT_OUT}
-        for name, preset in presets(entry.env).items()
+        for name, preset in (entry.presets or presets(entry.env)).items()
         if not preset.get("time_aware")  # the page cannot show the additional axis of its table
     }
     made = {
@@ -88,11 +89,14 @@ def _gymnasium(entry: Entry) -> dict[str, Any]:
         "max_episode_steps": spec.max_episode_steps or GRID_TIME_LIMIT,
         "threshold": spec.reward_threshold,
         "presets": {
-            name: _plain({"discretizer": "identity" if tabular else "round", **preset})
+            name: _plain({"discretizer": "identity" if numbered else "round", **preset})
             for name, preset in given.items()
         },
     }
     env.close()
+    if entry.layout:
+        parts = [space] if tabular else space
+        return {**made, "states": int(np.prod([part.n for part in parts])), "layout": [*entry.layout]}
     if tabular:
         return {**made, "states": int(space.n), "layout": _layout(unwrapped), "table": _table(unwrapped)}
     low, high = space.low, space.high
@@ -140,13 +144,21 @@ def _table(env: Any) -> dict[str, Any]:
         "probabilities": probabilities,
         "outcomes": [
             [
-                [[probabilities.index(float(p)), int(state), float(reward), int(end)] for p, state, reward, end in cell]
+                [
+                    [probabilities.index(float(p)), int(state), _short(reward), int(end)]
+                    for p, state, reward, end in cell
+                ]
                 for cell in row
             ]
             for row in outcomes
         ],
         "initial": [float(probability) for probability in env.initial_state_distrib],
     }
+
+
+def _short(number: float) -> float:
+    """Returns a number as an integer if it is one, which takes fewer letters."""
+    return int(number) if float(number).is_integer() else float(number)
 
 
 def _finite(value: float) -> float | None:

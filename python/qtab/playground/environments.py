@@ -7,7 +7,7 @@ from typing import Any, Literal, TypeAlias
 from qtab.envs.grid_worlds import DYNA_MAZE, WIND, WINDY_GRID_WORLD
 from qtab.envs.metadata.goals import BEST_KNOWN_MOUNTAIN_CAR
 
-Drawing: TypeAlias = Literal["mountain_car", "cart_pole", "frozen_lake", "cliff", "grid"]
+Drawing: TypeAlias = Literal["mountain_car", "cart_pole", "frozen_lake", "cliff", "grid", "taxi", "blackjack"]
 
 
 @dataclass(frozen=True)
@@ -37,6 +37,10 @@ class Entry:
     """The expected return of the best known policy, if the page does not compute the optimal one."""
     grids: Mapping[str, GridWorld] = field(default_factory=dict)
     """Grid worlds to start from, by title."""
+    presets: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    """Settings in place of the package's presets, if those train longer than the page does."""
+    layout: tuple[str, ...] = ()
+    """The map of the states that the page shows if not all are cells of one map; a blank is no state."""
 
 
 _WINDY = GridWorld(WINDY_GRID_WORLD, WIND, step_reward=-1.0, goal_reward=-1.0)
@@ -73,6 +77,18 @@ _OPEN = GridWorld(
     goal_reward=10.0,
 )
 
+# The stands of the taxi, red, green, yellow and blue, are lower-case letters: G is a goal.
+_TAXI = ("r...g", ".....", ".....", ".....", "y..b.")
+_BLACKJACK: Mapping[str, Any] = {
+    "learning_rate": 0.05,
+    "learning_rate_schedule": "linear",
+    "discount": 1.0,
+    "epsilon": 1.0,
+    "epsilon_schedule": "linear",
+    "initial_q": 0.0,
+    "episodes": 50_000,
+}
+
 _LAKE = "Cross the frozen lake to the goal without falling into a hole. The reward is 1 at the goal and 0 elsewhere{}"
 _SLIPPERY = "; the ice is slippery, so only one move in three goes in the intended direction."
 _ICE = {"is_slippery": False}
@@ -104,6 +120,24 @@ ENVIRONMENTS: Mapping[str, Entry] = {
         "Walk to the goal along a cliff. Each step costs 1; a fall costs 100 and leads back to the start.",
         "cliff",
         "CliffWalking-v1",
+    ),
+    "Taxi-v4": Entry(
+        "Taxi",
+        "Pick up a passenger and drive to the destination. A step costs 1, a pick-up or drop-off at a wrong place "
+        "costs 10, and the ride earns 20. The map shows the states of the first ride: on the left the passenger "
+        "waits, on the right the taxi has picked up the passenger.",
+        "taxi",
+        "Taxi-v4",
+        layout=tuple(f"{row} {row}" for row in _TAXI),
+    ),
+    "Blackjack-v1": Entry(
+        "Blackjack",
+        "Get closer to 21 than the dealer without going over. Winning earns 1 and losing costs 1. On the map a row is "
+        "your sum, from 21 to 4, and a column the dealer's card, from ace to 10; on the right you have a usable ace.",
+        "blackjack",
+        "Blackjack-v1",
+        presets={"learns": _BLACKJACK},
+        layout=tuple(f"{'.' * 10} {'.' * 10 if total >= 12 else ' ' * 10}" for total in range(21, 3, -1)),
     ),
     "WindyGridWorld": Entry(
         "Windy grid world",

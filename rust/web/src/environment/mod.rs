@@ -1,11 +1,16 @@
 //! The environment of a request.
 
+mod blackjack;
+mod board;
 mod grid_world;
+mod taxi;
 
 use qtab_core::envs::classic_control::{CartPole, MountainCar};
 use qtab_core::envs::tabular::{Outcome, TabularMdp};
 use serde_json::Value;
 
+pub(crate) use self::blackjack::NumberedBlackjack;
+pub(crate) use self::board::Board;
 use self::grid_world::{GridWorld, MAX_SIDE};
 use crate::json::{integer, numbers};
 
@@ -16,15 +21,10 @@ const MAX_OUTCOMES: usize = 100_000;
 pub(crate) enum Environment {
     MountainCar(MountainCar),
     CartPole(CartPole),
-    Table(TableMap),
-}
-
-/// A transition table whose states are the cells of a map, counted row by row.
-pub(crate) struct TableMap {
-    pub(crate) mdp: TabularMdp,
-    pub(crate) columns: usize,
-    /// Whether each cell is a wall, which the agent never enters.
-    pub(crate) walls: Vec<bool>,
+    Blackjack(NumberedBlackjack),
+    /// A transition table, with a map whose cells are its states.
+    Table(TabularMdp, Board),
+    Taxi(TabularMdp),
 }
 
 /// The range of each component of the observations.
@@ -35,10 +35,12 @@ impl Environment {
         match environment.get("kind").and_then(Value::as_str) {
             Some("mountain_car") => Ok(Self::MountainCar(MountainCar::default())),
             Some("cart_pole") => Ok(Self::CartPole(CartPole::default())),
-            Some("table") => table(environment).map(Self::Table),
+            Some("blackjack") => Ok(Self::Blackjack(NumberedBlackjack::V1)),
+            Some("taxi") => taxi::table().map(Self::Taxi),
+            Some("table") => table(environment),
             Some("grid") => {
                 let grid = GridWorld::parse(environment)?;
-                Ok(Self::Table(TableMap { mdp: grid.mdp()?, columns: grid.columns(), walls: grid.walls() }))
+                Ok(Self::Table(grid.mdp()?, Board::of_states(grid.columns(), &grid.walls())))
             }
             _ => Err("environment must be one of the playground's".into()),
         }
@@ -54,13 +56,31 @@ impl Environment {
                 (-0.418_879_03, 0.418_879_03),
                 (f32::NEG_INFINITY, f32::INFINITY),
             ]),
-            Self::Table(_) => None,
+            Self::Blackjack(_) | Self::Table(..) | Self::Taxi(_) => None,
+        }
+    }
+
+    /// The transition table, if there is one.
+    pub(crate) fn mdp(&self) -> Option<&TabularMdp> {
+        match self {
+            Self::Table(mdp, _) | Self::Taxi(mdp) => Some(mdp),
+            Self::MountainCar(_) | Self::CartPole(_) | Self::Blackjack(_) => None,
+        }
+    }
+
+    /// The map of numbered states for a run that begins in a state; `None` for other observations.
+    pub(crate) fn board(&self, first: usize) -> Option<Board> {
+        match self {
+            Self::Table(_, board) => Some(board.clone()),
+            Self::Taxi(_) => Some(taxi::board(first)),
+            Self::Blackjack(_) => Some(NumberedBlackjack::board()),
+            Self::MountainCar(_) | Self::CartPole(_) => None,
         }
     }
 }
 
 /// A table in the form that `definitions.py` writes: `P` refers to the probabilities by index.
-fn table(environment: &Value) -> Result<TableMap, String> {
+fn table(environment: &Value) -> Result<Environment, String> {
     let invalid = || "table must hold probabilities, outcomes and initial".to_string();
     let table = environment.get("table").ok_or_else(invalid)?;
     let numbers = |name: &str| table.get(name).and_then(numbers).ok_or_else(invalid);
@@ -87,7 +107,8 @@ fn table(environment: &Value) -> Result<TableMap, String> {
         return Err(format!("columns must divide the {} states", states.len()));
     }
     let mdp = TabularMdp::new(num_actions, &initial, &pairs).map_err(|error| error.to_string())?;
-    Ok(TableMap { walls: vec![false; mdp.num_states()], mdp, columns })
+    let board = Board::of_states(columns, &vec![false; mdp.num_states()]);
+    Ok(Environment::Table(mdp, board))
 }
 
 fn outcome(entry: &Value, probabilities: &[f64]) -> Option<Outcome> {

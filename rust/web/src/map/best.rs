@@ -4,11 +4,12 @@
 use std::cell::OnceCell;
 
 use qtab_core::envs::classic_control::MountainCar;
+use qtab_core::envs::tabular::TabularMdp;
 use qtab_core::planning::finite_horizon;
 use qtab_core::planning::grid::GridValues;
 use qtab_core::{Env, StopFlag};
 
-use crate::environment::{Environment, TableMap};
+use crate::environment::Environment;
 use crate::map::Cells;
 use crate::runs::Training;
 use crate::settings::Settings;
@@ -41,9 +42,8 @@ impl Planner {
     pub(crate) fn of(&self, training: &Training) -> Option<Best> {
         let Training { environment, settings, cells, .. } = training;
         match environment {
-            Environment::Table(table) => of_table(table, settings),
             Environment::MountainCar(car) => self.of_mountain_car(*car, settings, cells),
-            Environment::CartPole(_) => None,
+            _ => of_table(environment.mdp()?, settings, cells),
         }
     }
 
@@ -71,21 +71,25 @@ impl Planner {
     }
 }
 
-fn of_table(table: &TableMap, settings: &Settings) -> Option<Best> {
+fn of_table(mdp: &TabularMdp, settings: &Settings, cells: &Cells) -> Option<Best> {
+    let Cells::States(board) = cells else { return None };
     let (steps, stop) = (settings.max_episode_steps, StopFlag::new());
-    let backups = steps.saturating_mul((table.mdp.num_outcomes().max(table.mdp.num_actions())) as u64);
+    let backups = steps.saturating_mul((mdp.num_outcomes().max(mdp.num_actions())) as u64);
     if backups > MAX_BACKUPS {
         return None;
     }
-    let undiscounted = finite_horizon(&table.mdp, 1.0, steps, &stop).ok()?;
+    let undiscounted = finite_horizon(mdp, 1.0, steps, &stop).ok()?;
     let expected_return = Some(undiscounted.expected_return);
     let discounted = if settings.discount == 1.0 {
         undiscounted
     } else {
-        finite_horizon(&table.mdp, settings.discount, steps, &stop).ok()?
+        finite_horizon(mdp, settings.discount, steps, &stop).ok()?
     };
-    let is_wall = |state: usize| table.walls.get(state).copied().unwrap_or(false);
-    let values = discounted.values.iter().enumerate().map(|(state, &v)| if is_wall(state) { f64::NAN } else { v });
-    let greedy = discounted.policy.iter().enumerate().map(|(state, &a)| if is_wall(state) { u8::MAX } else { a as u8 });
-    Some(Best { kind: "optimal", values: values.collect(), greedy: greedy.collect(), expected_return })
+    let of_cell = |state: &Option<u32>| {
+        state.map_or((f64::NAN, u8::MAX), |state| {
+            (discounted.values[state as usize], discounted.policy[state as usize] as u8)
+        })
+    };
+    let (values, greedy) = board.states.iter().map(of_cell).unzip();
+    Some(Best { kind: "optimal", values, greedy, expected_return })
 }

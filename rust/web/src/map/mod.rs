@@ -4,7 +4,7 @@ pub(crate) mod best;
 
 use serde_json::Value;
 
-use crate::environment::{Bounds, Environment};
+use crate::environment::{Board, Bounds, Environment};
 use crate::json::{integer, numbers};
 use crate::settings::Discretizer;
 
@@ -16,8 +16,8 @@ const DEFAULT_CELLS: u32 = 48;
 /// The cells of a map, counted row by row from the upper left corner.
 #[derive(Clone, Debug)]
 pub(crate) enum Cells {
-    /// The states of a table, some of which are walls.
-    States { columns: usize, walls: Vec<bool> },
+    /// Numbered states.
+    States(Board),
     /// Cells of a plane through the observations.
     Plane(Plane),
 }
@@ -34,14 +34,15 @@ pub(crate) struct Plane {
 }
 
 impl Cells {
-    /// The cells that a request specifies in `map`, or the default ones.
+    /// The cells that a request specifies in `map`, or the default ones, for runs whose first observation is this one.
     pub(crate) fn new(
         environment: &Environment,
         discretizer: &Discretizer,
         map: Option<&Value>,
+        first: &[f64],
     ) -> Result<Self, String> {
-        if let Environment::Table(table) = environment {
-            return Ok(Self::States { columns: table.columns, walls: table.walls.clone() });
+        if let Some(board) = environment.board(first.first().map_or(0, |&state| state as usize)) {
+            return Ok(Self::States(board));
         }
         let bounds = environment.bounds().unwrap_or_default();
         let get = |name: &str| map.and_then(|map| map.get(name));
@@ -67,14 +68,14 @@ impl Cells {
 
     pub(crate) fn columns(&self) -> usize {
         match self {
-            Self::States { columns, .. } => *columns,
+            Self::States(board) => board.columns,
             Self::Plane(plane) => plane.x_edges.len() - 1,
         }
     }
 
     pub(crate) fn rows(&self) -> usize {
         match self {
-            Self::States { columns, walls } => walls.len() / columns,
+            Self::States(board) => board.states.len() / board.columns,
             Self::Plane(plane) => plane.y_edges.len() - 1,
         }
     }
@@ -86,7 +87,7 @@ impl Cells {
     /// The observation in the middle of a cell; `None` for walls and invalid cells.
     pub(crate) fn observation(&self, cell: usize) -> Option<Vec<f64>> {
         match self {
-            Self::States { walls, .. } => walls.get(cell).filter(|wall| !**wall).map(|_| vec![cell as f64]),
+            Self::States(board) => board.states.get(cell).copied().flatten().map(|state| vec![state.into()]),
             Self::Plane(plane) => {
                 if cell >= self.count() {
                     return None;
@@ -103,7 +104,9 @@ impl Cells {
     /// The cell of an observation; observations outside the plane belong to the outermost cells.
     pub(crate) fn cell(&self, observation: &[f64]) -> usize {
         match self {
-            Self::States { walls, .. } => observation.first().map_or(0, |&state| (state as usize).min(walls.len() - 1)),
+            Self::States(board) => {
+                observation.first().and_then(|&state| board.cells.get(state as usize)).copied().unwrap_or(0)
+            }
             Self::Plane(plane) => {
                 let [x, y] = plane.components.map(|component| observation.get(component).copied().unwrap_or(0.0));
                 let column = plane.x_edges[1..self.columns()].partition_point(|&edge| edge <= x);

@@ -83,7 +83,8 @@ impl Training {
         let subject = subject(&environment, &settings.discretizer);
         let subject = subject.ok_or_else(|| "the discretizer does not fit the environment".to_string())?;
         memory::check(&settings, (subject.n_rows(), subject.num_actions()), seeds.len())?;
-        let cells = Cells::new(&environment, &settings.discretizer, request.get("map"))?;
+        let first = subject.first_observation(seeds[0]);
+        let cells = Cells::new(&environment, &settings.discretizer, request.get("map"), &first)?;
         let mut training =
             Self { environment, settings, subject, cells, seeds, runs: Vec::new(), watched: None, replay: None };
         training.start(request.get("inspect"))?;

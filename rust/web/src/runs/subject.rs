@@ -9,7 +9,7 @@ use qtab_core::random::{Pcg64, SeedSequence};
 use qtab_core::tasks::{BoxedTask, NativeTask, TimedState, Transition, VisitCounter};
 use qtab_core::{Env, StopFlag, Task, Trainer};
 
-use crate::environment::Environment;
+use crate::environment::{Environment, NumberedBlackjack};
 use crate::failure::Failure;
 use crate::runs::any_learner::AnyLearner;
 use crate::runs::episode::{Episode, greedy_action};
@@ -82,9 +82,12 @@ struct EnvWithFeatures<E, F> {
 pub(crate) fn subject(environment: &Environment, discretizer: &Discretizer) -> Option<Box<dyn Subject>> {
     let n_active = discretizer.n_active();
     Some(match (environment, discretizer) {
-        (Environment::Table(table), Discretizer::Identity) => {
-            let features = Identity(u32::try_from(table.mdp.num_states()).ok()?);
-            Box::new(EnvWithFeatures { env: table.mdp.clone(), features, n_active })
+        (Environment::Table(mdp, _) | Environment::Taxi(mdp), Discretizer::Identity) => {
+            let features = Identity(u32::try_from(mdp.num_states()).ok()?);
+            Box::new(EnvWithFeatures { env: mdp.clone(), features, n_active })
+        }
+        (&Environment::Blackjack(env), Discretizer::Identity) => {
+            Box::new(EnvWithFeatures { env, features: Identity(NumberedBlackjack::NUM_STATES), n_active })
         }
         (&Environment::MountainCar(env), Discretizer::Grid(grid)) => {
             Box::new(EnvWithFeatures { env, features: grid.features.clone(), n_active })

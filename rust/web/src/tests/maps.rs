@@ -1,5 +1,7 @@
 //! The values in a report, and the optimal or best known values to compare them with.
 
+use serde_json::Value;
+
 use super::{ARTICLE, GRID, MOUNTAIN_CAR, call, finish, inspect, of_table, start, table};
 use crate::Playground;
 
@@ -50,5 +52,54 @@ fn the_best_known_values_of_mountain_car_need_its_time_limit() {
         assert_eq!(values.is_some(), known, "{limit}");
         // The flag is reached from everywhere within 200 steps.
         assert!(values.unwrap_or_default().iter().all(|&value| value > -200.0));
+    }
+}
+
+#[test]
+fn the_map_of_the_taxi_shows_the_states_of_its_first_ride() {
+    let mut playground = Playground::default();
+    start(&mut playground, r#"{"kind": "taxi"}"#, &of_table(r#""q_learning""#), "[3]");
+    finish(&mut playground, 100_000);
+    let values = table(&mut playground, 0);
+    let report = call(&mut playground, r#"{"call": "report", "map": true, "best": true, "episode": true}"#);
+    assert_eq!(report.get("columns").and_then(Value::as_u64), Some(11));
+    let first = playground.floats("observations").expect("an episode")[0] as usize;
+    let (ride, square) = (first % 20, first / 20);
+    let shown = playground.floats("values").expect("values").to_vec();
+    let best = playground.floats("bestValues").expect("best values");
+    for (cell, &shown) in shown.iter().enumerate() {
+        let (row, column) = (cell / 11, cell % 11);
+        let state = match column {
+            5 => {
+                assert!(shown.is_nan() && best[cell].is_nan());
+                continue;
+            }
+            0..5 => (row * 5 + column) * 20 + ride,
+            _ => (row * 5 + column - 6) * 20 + 16 + ride % 4,
+        };
+        let largest = values[state * 6..][..6].iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        assert_eq!(shown.to_bits(), largest.to_bits(), "{cell}");
+    }
+    assert!(shown[square / 5 * 11 + square % 5].is_finite());
+}
+
+#[test]
+fn the_map_of_blackjack_shows_each_state_once() {
+    let mut playground = Playground::default();
+    start(&mut playground, r#"{"kind": "blackjack"}"#, &of_table(r#""sarsa""#), "[3]");
+    finish(&mut playground, 100_000);
+    let values = table(&mut playground, 0);
+    let report = call(&mut playground, r#"{"call": "report", "map": true}"#);
+    let size = ["rows", "columns"].map(|name| report.get(name).and_then(Value::as_u64));
+    assert_eq!(size, [Some(18), Some(21)]);
+    let shown = playground.floats("values").expect("values");
+    for (cell, &shown) in shown.iter().enumerate() {
+        let (sum, ace) = (21 - cell / 21, usize::from(cell % 21 > 10));
+        if cell % 21 == 10 || (ace == 1 && sum < 12) {
+            assert!(shown.is_nan(), "{cell}");
+            continue;
+        }
+        let state = (sum * 11 + cell % 21 % 11 + 1) * 2 + ace;
+        assert_eq!(shown.to_bits(), values[2 * state].max(values[2 * state + 1]).to_bits(), "{cell}");
     }
 }

@@ -13,6 +13,8 @@ const DRAWINGS = {
   cart_pole: `<path d="M2 29h40" ${STROKE}/><rect x="13" y="21" width="18" height="7" rx="2" fill="currentColor"/><path d="M22 21 L28 2" ${STROKE}/>`,
   frozen_lake: BOARD + '<circle cx="17.500" cy="11.500" r="3" fill="currentColor"/><circle cx="33.500" cy="11.500" r="3" fill="currentColor"/><circle cx="33.500" cy="19.500" r="3" fill="currentColor"/>',
   cliff: BOARD + cells([[1, 3], [2, 3]]),
+  taxi: `<path d="M4 24h36v-7l-7-2-5-8H16l-5 8-7 2z" fill="currentColor" opacity=".85"/><circle cx="13" cy="25" r="4" fill="currentColor"/><circle cx="31" cy="25" r="4" fill="currentColor"/>`,
+  blackjack: `<rect x="8" y="3" width="17" height="24" rx="2.500" ${STROKE}/><rect x="19" y="6" width="17" height="24" rx="2.500" fill="currentColor" opacity=".8"/>`,
   windy: `<path d="M10 30V12m-4 4 4-4 4 4M22 30V4m-4 4 4-4 4 4M34 30V12m-4 4 4-4 4 4" ${STROKE}/>`,
   grid: BOARD + cells([[1, 0], [1, 1], [2, 1], [2, 3]]),
 };

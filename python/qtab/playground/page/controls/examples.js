@@ -96,6 +96,32 @@ export const EXAMPLES = {
     },
     { preset: "tuned", title: "ε falls to 0", look: "As ε falls, falls from the cliff become rare, and the return of most episodes reaches the optimum of −13." },
   ],
+  "Taxi-v4": [
+    {
+      preset: "tuned",
+      title: "ε falls to 0",
+      look: "Ordinary Q-learning. At first, pick-ups and drop-offs at wrong places make a ride cost hundreds; after about 500 rides it begins to earn, and in the end nearly as much as an optimal driver earns. On the map, P and D stand for pick up and drop off.",
+    },
+    {
+      preset: "solved",
+      settings: { episodes: 5000 },
+      title: "Optimistic: solved",
+      look: "Initial values of 20, more than any ride can earn: whatever has been tried looks worse than what has not, so the agent tries everything without ε. After half as many rides the greedy agent drives every ride at the least cost.",
+    },
+  ],
+  "Blackjack-v1": [
+    {
+      preset: "learns",
+      title: "ε falls to 0",
+      look: "H is hit and S is stick: the agent learns to stick at high sums, and with a usable ace, which cannot make it go over, at higher ones. Returns of single games are +1, 0 or −1: only their mean shows what is learned, and even the best player loses a little on average.",
+    },
+    {
+      preset: "learns",
+      settings: { episodes: 1000 },
+      title: "Too few games: luck",
+      look: "After 1,000 games each state has been seen a few times at most, and luck decides on the action: with a usable ace there is no clear border between H and S, and the greedy agent loses more.",
+    },
+  ],
   WindyGridWorld: [
     {
       preset: "learns",

@@ -1,5 +1,6 @@
 // A map on its canvas: the positions of its cells, its axes, and the content of the cells.
 
+import { TAXI_WALLS } from "./games.js";
 import { arrow, disc, dot, line, roundBox } from "./shapes.js";
 import { FONT, scale, ticks } from "./surface.js";
 import { css, inkOn, shade, themeColors } from "./theme.js";
@@ -72,21 +73,26 @@ function named({ name, unit }) {
   return unit ? `${name} (${unit})` : name;
 }
 
-const DIRECTIONS = { left: [-1, 0], right: [1, 0], up: [0, -1], down: [0, 1] };
+const DIRECTIONS = { left: [-1, 0], right: [1, 0], up: [0, -1], down: [0, 1], west: [-1, 0], east: [1, 0], north: [0, -1], south: [0, 1] };
 const NO_ACTION = 255;
 const MIN_ARROW_CELL = 13;
 const HATCH = 6; // pixels between the lines of cells that were never visited
 
-/** The direction of an action by the last word of its name; null without one, as for "no push". */
+/** The direction of an action by the last word of its name; null without one, as for "no push" and "pick up". */
 function direction(action) {
   const words = action.split(" ");
-  return words.includes("no") ? null : (DIRECTIONS[words.at(-1)] ?? null);
+  return words.includes("no") || words.includes("pick") ? null : (DIRECTIONS[words.at(-1)] ?? null);
+}
+
+/** The letter of a cell; undefined without a layout. */
+function letterAt(layout, cell) {
+  const columns = layout?.[0].length;
+  return layout?.[Math.floor(cell / columns)][cell % columns];
 }
 
 /** Whether the agent never chooses an action in a cell: the goal, a hole, or the cliff, which resets it. */
 export function isEnd(layout, cell) {
-  const columns = layout?.[0].length;
-  return columns !== undefined && "GHC".includes(layout[Math.floor(cell / columns)][cell % columns]);
+  return layout !== null && "GHC".includes(letterAt(layout, cell));
 }
 
 /** Fills the cells: `share` gives a number from 0 to 1, NaN for a wall; those with `isUnvisited` are hatched. */
@@ -95,6 +101,7 @@ export function drawCells(g, frame, cells, palette, { share, isUnvisited, layout
   const hatched = new Path2D();
   for (let index = 0; index < cells; index++) {
     const { x, y, width, height } = frame.cell(index);
+    if (letterAt(layout, index) === " ") continue;
     const part = share(index);
     const isBlank = isEnd(layout, index);
     const isHatched = !Number.isNaN(part) && !isBlank && isUnvisited(index);
@@ -138,18 +145,43 @@ export function drawPolicy(g, frame, map, palette, { actions, greedy, share, isU
       if (greedy[index] === NO_ACTION || Number.isNaN(share(index)) || isEnd(layout, index) || isUnvisited(index)) continue;
       const { x, y, width, height } = frame.cell(index);
       const size = Math.min(width * everyColumn, height * everyRow, 40) * 0.3;
-      arrow(g, x + width / 2, y + height / 2, size, directions[greedy[index]], inkOn(shade(palette, share(index))), 1.4);
+      const towards = directions[greedy[index]];
+      const ink = inkOn(shade(palette, share(index)));
+      if (towards || frame.plane) arrow(g, x + width / 2, y + height / 2, size, towards, ink, 1.4);
+      else drawInitial(g, x + width / 2, y + height / 2, size, actions[greedy[index]], ink);
     }
   }
   g.globalAlpha = 1;
 }
 
-/** Draws the letters of a grid world: S start, in its corner, and G goal, H hole, C cliff, which have no value. */
+/** Draws the first letter of an action that has no direction. */
+function drawInitial(g, x, y, size, action, color) {
+  g.font = `600 ${Math.max(size * 1.7, 8)}px ${FONT}`;
+  g.textAlign = "center";
+  g.fillStyle = color;
+  g.fillText(action[0].toUpperCase(), x, y + 1);
+  g.font = `12px ${FONT}`;
+}
+
+/** Draws the walls between the squares of the taxi's two boards. */
+export function drawTaxiWalls(g, frame, columns) {
+  for (const [row, column] of TAXI_WALLS) {
+    for (const board of [0, (columns + 1) / 2]) {
+      const { x, y, width, height } = frame.cell(row * columns + board + column);
+      line(g, [[x + width - 0.5, y], [x + width - 0.5, y + height]], themeColors().ink, 3);
+    }
+  }
+}
+
+/**
+ * Draws the letters of a grid world: S start, in its corner, like the stands of the taxi in lower case; and G goal, H
+ * hole, C cliff, which have no value.
+ */
 export function drawLetters(g, frame, layout) {
   layout.join("").split("").forEach((letter, index) => {
-    if (!"SGHC".includes(letter)) return;
+    if (!"SGHCrgyb".includes(letter)) return;
     const { x, y, width } = frame.cell(index);
-    const isLarge = letter !== "S";
+    const isLarge = "GHC".includes(letter);
     const size = isLarge ? Math.max(Math.min(width * 0.42, 17), 9) : Math.max(Math.min(width * 0.3, 13), 8);
     g.font = `700 ${size}px ${FONT}`;
     g.textAlign = "center";
@@ -160,7 +192,7 @@ export function drawLetters(g, frame, layout) {
     }
     disc(g, x + size * 0.9, y + size * 0.9, size * 0.75, "rgba(255, 255, 255, 0.88)");
     g.fillStyle = "#1f4f8f";
-    g.fillText(letter, x + size * 0.9, y + size * 0.95);
+    g.fillText(letter.toUpperCase(), x + size * 0.9, y + size * 0.95);
   });
   g.font = `12px ${FONT}`;
 }
@@ -181,7 +213,7 @@ export function drawRewards(g, frame, columns, rewards) {
   g.font = `12px ${FONT}`;
 }
 
-/** Draws a path through points with a light edge, to be visible on every color, and a dot at its start. */
+/** Draws a path through points, whose parts end at null, with a light edge, to be visible on every color, and a dot at its start. */
 export function drawPath(g, frame, points) {
   if (!points.length) return;
   const { warm } = themeColors();
@@ -190,8 +222,15 @@ export function drawPath(g, frame, points) {
   g.rect(frame.box.left, frame.box.top, frame.box.right - frame.box.left, frame.box.bottom - frame.box.top);
   g.clip();
   const thin = points.length > 250 ? 0.5 : 1;
-  line(g, points, "rgba(255, 255, 255, 0.85)", 3.6 * thin);
-  line(g, points, warm, 1.8 * thin);
+  const parts = [[]];
+  for (const point of points) {
+    if (point === null) parts.push([]);
+    else parts.at(-1).push(point);
+  }
+  for (const part of parts) {
+    line(g, part, "rgba(255, 255, 255, 0.85)", 3.6 * thin);
+    line(g, part, warm, 1.8 * thin);
+  }
   dot(g, points[0], 4, warm);
   g.restore();
 }

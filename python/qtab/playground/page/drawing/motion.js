@@ -1,11 +1,12 @@
 // The greedy agent in motion: an episode on a canvas, with a pause button and a slider for its steps.
 
+import { blackjack, taxi } from "./games.js";
 import { cartPole, gridWorld, mountainCar } from "./scenes.js";
 import { onResize, surface } from "./surface.js";
 import { onThemeChange } from "./theme.js";
 import { counted, number } from "../format.js";
 
-const SCENES = { mountain_car: mountainCar, cart_pole: cartPole };
+const SCENES = { mountain_car: mountainCar, cart_pole: cartPole, taxi, blackjack };
 const PAUSE_AT_END = 1.2;
 const MAX_TRAIL = 60;
 
@@ -56,7 +57,7 @@ export class Motion {
     const steps = counted(episode.actions.length, "step");
     const name = `Greedy episode${when}: return ${number(episode.return)}`;
     if (!episode.terminated && !episode.truncated) return `${name} in its first ${steps}; the rest is not shown.`;
-    const end = episode.terminated ? this.scene.outcome(this.momentAt(episode.actions.length, episode)) : "time is up";
+    const end = episode.terminated ? this.scene.outcome(this.momentAt(episode.actions.length, episode), episode) : "time is up";
     return `${name} in ${steps}: ${end}.`;
   }
 

@@ -1,6 +1,6 @@
 // A map of the states: values, visits or the optimum, with the policy and the greedy agent's path, and a cell to select.
 
-import { drawCells, drawLetters, drawOutline, drawPath, drawPlaneAxes, drawPolicy, drawRewards, frameOf } from "./map_drawing.js";
+import { drawCells, drawLetters, drawOutline, drawPath, drawPlaneAxes, drawPolicy, drawRewards, drawTaxiWalls, frameOf } from "./map_drawing.js";
 import { dot } from "./shapes.js";
 import { onResize, surface } from "./surface.js";
 import { onThemeChange, themeColors } from "./theme.js";
@@ -70,15 +70,16 @@ export class StateMap {
   /** Draws everything but the agent and the selection, which move often, on a separate canvas. */
   drawStates() {
     const { g, width, height } = surface(this.states, this.canvas);
-    const { map, plane, layout, rewards, greedy, palette, path } = this.content;
+    const { map, plane, layout, rewards, greedy, palette, path, drawing } = this.content;
     const frame = frameOf(map, plane, width, height);
     this.frame = frame;
     drawCells(g, frame, map.columns * map.rows, palette, this.content);
     if (greedy) drawPolicy(g, frame, map, palette, this.content);
     if (plane) drawPlaneAxes(g, frame, map);
     if (layout) drawLetters(g, frame, layout);
+    if (drawing === "taxi") drawTaxiWalls(g, frame, map.columns);
     if (rewards) drawRewards(g, frame, map.columns, rewards);
-    if (path) drawPath(g, frame, path.map((place) => this.point(frame, place)));
+    if (path) drawPath(g, frame, path.map((place) => place === null ? null : this.point(frame, place)));
   }
 
   drawMarks() {

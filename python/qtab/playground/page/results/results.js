@@ -92,10 +92,13 @@ export function showLegend(place, palette, low, high, unvisited = false) {
   place.replaceChildren(low, bar, high, ...(unvisited ? [hatched()] : []));
 }
 
-/** The greedy episode as a path on a map: positions on a plane, or cells. */
-export function pathOf(episode, plane) {
-  if (!episode) return null;
-  if (!plane) return Array.from(episode.cells);
+/** The greedy episode as a path on a map: positions on a plane, or cells. Null ends a part of it. */
+export function pathOf(episode, { plane, drawing, layout }) {
+  if (!episode || drawing === "blackjack") return null;
+  if (!plane) {
+    const isApart = (cell, before) => drawing === "taxi" && Math.abs((cell % layout[0].length) - (before % layout[0].length)) > 1;
+    return Array.from(episode.cells).flatMap((cell, step, cells) => (step && isApart(cell, cells[step - 1]) ? [null, cell] : [cell]));
+  }
   const { observations, components } = episode;
   const places = [];
   for (let at = 0; at < observations.length; at += components) {

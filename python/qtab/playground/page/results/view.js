@@ -3,6 +3,7 @@
 import { radioButtons } from "../controls/elements.js";
 import { Painter } from "../controls/painter.js";
 import { bestReturn, LearningCurve, Marks } from "../drawing/curve.js";
+import { stateWords } from "../drawing/games.js";
 import { Motion } from "../drawing/motion.js";
 import { forgetSizes } from "../drawing/surface.js";
 import { onThemeChange } from "../drawing/theme.js";
@@ -240,7 +241,7 @@ export class View {
     const { observations, map, actions } = entry;
     const plane = map && { x: observations[map.x], y: observations[map.y], xIndex: map.x, yIndex: map.y };
     const rewards = environment === PAINTED ? grid.rewards : null;
-    return { plane, layout, rewards, actions };
+    return { plane, layout, rewards, actions, drawing: entry.drawing };
   }
 
   showMaps(result) {
@@ -260,7 +261,7 @@ export class View {
     element("other-panel").hidden = !isCompared;
     forgetSizes();
     const inTraining = this.isInTraining(result);
-    const path = inTraining ? null : pathOf(this.past?.episode ?? this.episode, frame.plane);
+    const path = inTraining ? null : pathOf(this.past?.episode ?? this.episode, frame);
     // The newest maps decide on the colors, so that looking back does not change them.
     const range = valueRange([result.map, ...(isCompared ? [other.map] : [])], result.best, layout);
     this.values.show(learnedContent(map, range, frame, path));
@@ -279,7 +280,7 @@ export class View {
   showOtherMap(frame, range, limits, inTraining) {
     const { result, episode: newest, past } = this.other;
     const episode = past?.episode ?? newest;
-    this.otherValues.show(learnedContent(past?.map ?? result.map, range, frame, inTraining ? null : pathOf(episode, frame.plane)));
+    this.otherValues.show(learnedContent(past?.map ?? result.map, range, frame, inTraining ? null : pathOf(episode, frame)));
     showLegend(element("other-legend"), "values", ...limits, true);
     element("other-title").textContent = `What ${this.names[1]} learned`;
     const when = past ? ` after ${counted(past.episodes, "episode")}` : "";
@@ -321,7 +322,9 @@ export class View {
     const map = this.past?.map ?? this.result.map;
     const { layout, actions } = this.frame();
     const [row, column] = [Math.floor(cell / map.columns), cell % map.columns];
-    const place = `Row ${row + 1}, column ${column + 1}`;
+    if (layout?.[row][column] === " ") return "No state.";
+    const words = stateWords(this.store.entry.drawing, cell, map.columns);
+    const place = words[0].toUpperCase() + words.slice(1);
     if (Number.isNaN(map.values[cell])) return `${place}: wall.`;
     const kind = { S: ", start", G: ", goal", H: ", hole", C: ", cliff" }[layout?.[row]?.[column]] ?? "";
     const greedy = actions[map.greedy[cell]];
@@ -331,9 +334,8 @@ export class View {
 
   /** The state of an inspected cell: its observation, or its position on the grid. */
   stateText({ cell, observation }) {
-    const { observations } = this.store.entry;
-    const { columns } = this.result.map;
-    if (!observations) return `row ${Math.floor(cell / columns) + 1}, column ${(cell % columns) + 1}`;
+    const { observations, drawing } = this.store.entry;
+    if (!observations) return stateWords(drawing, cell, this.result.map.columns);
     const parts = observations.map(({ name, unit }, index) => `${name} ${number(Number(observation[index].toFixed(6)), 3)}${unit ? ` ${unit}` : ""}`);
     return parts.join(", ");
   }
