@@ -5,7 +5,7 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
-from qtab.compilation.cache.numba_memory import provide_runtime
+from qtab.compilation.cache.numba_symbols import provide
 from qtab.compilation.interface.qtab_env import FAILED
 
 _LIBRARY_CALLS = re.compile(r"llvm\.(exp|exp2|log|log2|log10|pow|sin|cos|tan|fma|floor|ceil|trunc|rint|round)\.f64")
@@ -87,8 +87,7 @@ def load(code: MachineCode, names: tuple[str, ...]) -> LoadedCode:
     import llvmlite.binding as llvm
 
     _initialize(llvm)
-    if any(name.startswith("NRT_") for name in _missing(llvm, code.needed)):
-        provide_runtime(llvm)
+    provide(llvm, _missing(llvm, code.needed))
     if _missing(llvm, code.needed):
         from numba.core.registry import cpu_target
 
