@@ -34,6 +34,7 @@ extensions = [
     "short_signatures",
 ]
 exclude_patterns = ["_build", "_checks", "_extensions", "_inventories", "_templates", "**/_*.md"]
+exclude_patterns += ["notebooks/walkthroughs"]  # downloads of pages that are in Markdown
 templates_path = ["_templates"]
 nitpicky = True
 suppress_warnings = [

@@ -19,7 +19,11 @@ from support.repository import ROOT
 WITH_PYTHON = [
     path for path in pages.pages() if path.parent != ROOT and [*pages.blocks(path.read_text(encoding="utf-8"))]
 ]
-NEEDS = {"docs/how_to/stable_baselines3.md": "stable_baselines3", "docs/how_to/cluster.md": "distributed"}
+NEEDS = {
+    "docs/how_to/stable_baselines3.md": "stable_baselines3",
+    "docs/how_to/cluster.md": "distributed",
+    "docs/walkthroughs/lunar_lander.md": "Box2D",
+}
 """Libraries without which a page is skipped."""
 FEWER = {
     "docs/index.md": {r"seeds=\d+": "seeds=20"},

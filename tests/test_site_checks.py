@@ -108,6 +108,8 @@ def test_links_out_of_the_documentation_become_pages_of_the_site() -> None:
     assert links.rewrite(text, "docs/how_to") == (
         "[a](../notebooks/study.ipynb) [b](../reference/contributing.md) [c](spaces.md) ![d](../gallery/x.png)"
     )
+    made = "[a notebook](../../examples/walkthroughs/taxi.ipynb)"
+    assert links.rewrite(made, "docs/walkthroughs") == made.replace("](", "](path:")
     assert (
         links.rewrite_notebook("[e](chapters/chapter_6.ipynb) [f](../docs/book.md#x)")
         == "[e](chapters/chapter_6.ipynb) [f](../book.md#x)"

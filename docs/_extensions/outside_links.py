@@ -2,6 +2,7 @@
 
 ``[a notebook](../../examples/study.ipynb)`` becomes the page of that notebook, ``[README](../../README.md#install)``
 the page with the same text, and any other file a download. So the links of a page work in both places.
+A notebook that is made from a page is a download, too.
 """
 
 import json
@@ -21,6 +22,9 @@ PAGES = {
     "README.md#install": "docs/install.md",
 }
 """The page that the site shows instead of a file outside of ``docs/``, or of a section of such a file."""
+
+MADE_FROM_PAGES = "examples/walkthroughs/"
+"""The folder of the notebooks that are made from pages: their links lead to the files."""
 
 LINK = re.compile(r"(?<!!)(\[(?:[^\[\]]|\[[^\]]*\])*\]\()([^)\s#:]+)(#[^)\s]*)?(\))")
 
@@ -48,6 +52,8 @@ def rewrite(text: str, folder: str) -> str:
         path = os.path.normpath(f"{folder}/{target}").replace(os.sep, "/")
         if path.startswith("docs/"):
             return found.group()
+        if path.startswith(MADE_FROM_PAGES):
+            return f"{before}path:{target}{after}"  # MyST's prefix for a download
         page = on_the_site(path, fragment)
         if page is None:
             return found.group()

@@ -22,13 +22,13 @@ def blocks(page: Path) -> dict[str, str]:
     return {found["picture"]: found["code"] for found in BLOCK.finditer(page.read_text(encoding="utf-8"))}
 
 
-def draw(code: str, namespace: dict[str, Any], path: Path) -> None:
+def draw(code: str, namespace: dict[str, Any], path: Path, *, dots_per_inch: int = DOTS_PER_INCH) -> None:
     """Runs a block and writes its ``ax`` or ``figure`` to a file."""
     namespace.pop("ax", None)
     namespace.pop("figure", None)
     exec(code, namespace)  # noqa: S102 - the page's own code
     figure = namespace["ax"].figure if "ax" in namespace else namespace["figure"]
-    figure.savefig(path, dpi=DOTS_PER_INCH)
+    figure.savefig(path, dpi=dots_per_inch)
     Image.open(path).convert("RGB").quantize(COLORS, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(
         path, optimize=True
     )
