@@ -18,6 +18,11 @@ PICTURES = {
     "chapter_4": "evaluation in-place jack gambler coins lake",
     "chapter_5": "values error control control-gap off-policy",
     "chapter_6": "windy-policy cliff cliff-policies bias",
+    "chapter_8": "maze policies blocking shortcut updates",
+    "chapter_9": "staircase sizes tilings",
+    "chapter_10": "cost tables steps queue",
+    "chapter_12": "one td-lambda true-online control kinds",
+    "chapter_13": "corridor reinforce paths baseline",
 }
 """The cells that show one picture each."""
 TABLES = {"chapter_6": "windy compare experiment"}
@@ -104,11 +109,100 @@ def check_chapter_6(executed: Executed) -> None:
     assert str(qtab.book.run("figure-6.5", runs=1000)).splitlines()[-2] in executed.text("bias-table")
 
 
+def check_chapter_8(executed: Executed) -> None:
+    known = [int(cells) for cells in re.findall(r"cells with a value above 0: (\d+)", executed.text("policies"))]
+    assert known[0] == 2
+    assert known[1] > 40
+    lines = {line.name: line.mean for line in qtab.book.run("figure-8.2").lines}
+    assert min(values[0] for values in lines.values()) > 500
+    assert lines["n = 50"][2] < 20
+    for name, change in (("figure-8.4", 1000), ("figure-8.5", 3000)):
+        reward = {line.name: line.mean[-1] for line in qtab.book.run(name, runs=10).lines}
+        assert reward["Dyna-Q+"] > reward["Dyna-Q"], change
+
+
+def check_chapter_9(executed: Executed) -> None:
+    """An episode takes 83 steps, and the errors are in the order that the sentences state."""
+    assert executed.text("walk").strip() == ""
+    walk: dict[str, Any] = {"env_kwargs": {"states": 1000, "reach": 100}}
+    exact = qtab.policy_values("qtab/RandomWalk-v0", "random", **walk)
+    assert exact.visits.sum() == pytest.approx(83, abs=0.5)
+    assert exact.state_distribution.max() == pytest.approx(0.014, abs=0.001)
+    features = {
+        **{width: qtab.prediction.state_aggregation(1000, width) for width in (500, 50)},
+        "tilings": qtab.prediction.tile_coding(1000, width=200, tilings=50, offset=4),
+    }
+    errors = {
+        name: qtab.estimate_values(
+            "qtab/RandomWalk-v0",
+            "random",
+            method="monte_carlo",
+            features=active,
+            learning_rate=1e-4,
+            episodes=3000,
+            record=[100, 3000],
+            max_episode_steps=10_000,
+            **walk,
+        ).rms_error(exact, exact.state_distribution)[0]
+        for name, active in features.items()
+    }
+    assert errors[500][0] < errors[50][0]
+    assert errors[500][1] > errors[50][1] > errors["tilings"][1]
+
+
+def check_chapter_10(executed: Executed) -> None:
+    coarse, fine, tiles = (
+        float(mean) for mean in re.findall(r"episodes: (-[\d.]+) \[", executed.text("table-returns"))
+    )
+    assert coarse < fine < -150 < -120 < tiles
+
+
+def check_chapter_12(executed: Executed) -> None:
+    means = dict(re.findall(r"([\d.]+): ([\d.]+)", executed.text("control")))
+    assert min(means, key=lambda decay: float(means[decay])) == "0.95"
+    for decay, learned in ((0.0, 1), (0.5, 5), (0.9, 14)):
+        values = qtab.estimate_values(
+            "qtab/RandomWalk-v0",
+            "random",
+            method="td_lambda",
+            trace_decay=decay,
+            learning_rate=0.3,
+            episodes=1,
+            seeds=[1],
+            max_episode_steps=10_000,
+        ).mean
+        assert (values > 0.005).sum() >= learned
+        assert (values[:-1] != 0).any() == (decay > 0)
+        assert values.argmax() + 1 == (15 if decay == 0.9 else 19)
+
+
+def check_chapter_13(executed: Executed) -> None:
+    assert re.findall(r"greedy policy (-?\d+)", executed.text("values")) == ["-1000", "-1000"]
+    assert min(float(mean) for mean in re.findall(r"episodes (-[\d.]+),", executed.text("values"))) > -44
+    rights = []
+    for seed in range(20):
+        run = qtab.train(
+            "qtab/ShortCorridor-v0", preset="book", learning_rate=2.0**-12, seed=seed, max_episode_steps=1000
+        )
+        left, right = run.q_table[0]
+        rights.append(1 / (1 + np.exp(left - right)))
+    assert sum(right > 0.95 for right in rights) == 1
+    assert 0.5 < np.median(rights) < 0.65
+    figure = qtab.book.run("figure-13.2")
+    with_baseline, without = (line.mean for line in figure.lines[:2])
+    assert abs(with_baseline[90:110].mean() - without[-100:].mean()) < 3
+
+
 CHECKS: dict[str, Callable[[Executed], None]] = {
     "chapter_2": check_chapter_2,
     "chapter_4": check_chapter_4,
     "chapter_5": check_chapter_5,
     "chapter_6": check_chapter_6,
+    "chapter_8": check_chapter_8,
+    "chapter_9": check_chapter_9,
+    "chapter_10": check_chapter_10,
+    "chapter_12": check_chapter_12,
+    "chapter_13": check_chapter_13,
 }
 
 
