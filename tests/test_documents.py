@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from support.pages import page_id, pages
+from support.documents.pages import page_id, pages
 from support.repository import ROOT
 
 PAGES = pages()

@@ -13,7 +13,7 @@ import pytest
 from PIL import Image
 
 import qtab
-from support import pages
+from support.documents import pages
 from support.repository import ROOT
 
 WITH_PYTHON = [

@@ -25,7 +25,7 @@ import vector_envs
 from loops import c_loop, numba_loops
 from qtab._utils.versions import versions
 from qtab.cli.commands import bench
-from support.command import environment, qtab_here, refused
+from support.processes.command import environment, qtab_here, refused
 from support.repository import ROOT
 from tables import Benchmark, Column, Table
 

@@ -9,8 +9,8 @@ import pytest
 
 import qtab
 from qtab.callbacks import Checkpoint, CSVLogger, EvaluateEvery, StopAtReturn, TensorBoardLogger
+from support.files.tensorboard import curves, purged_from
 from support.parity import assert_same_run
-from support.tensorboard import curves, purged_from
 
 CAR = "MountainCar-v0"
 SHORT: dict[str, Any] = {"seed": 6, "episodes": 10, "max_episode_steps": 30}

@@ -20,7 +20,7 @@ from qtab.callbacks import (
     TensorBoardLogger,
 )
 from support.environments import Walk
-from support.learner_settings import run_settings
+from support.learners.learner_settings import run_settings
 from support.parity import assert_same_run, run_of
 
 CAR = "MountainCar-v0"

@@ -7,7 +7,7 @@ import pytest
 
 from qtab.cli import main
 from qtab.cli.errors import as_flags
-from support.command import qtab, qtab_here, refused
+from support.processes.command import qtab, qtab_here, refused
 
 FILES = {
     "deep.toml": "actions = " + "[" * 5000 + "]" * 5000,

@@ -6,8 +6,8 @@ import sys
 import pytest
 
 import qtab
-from support.command import environment, qtab_here, refused
-from support.posix import posix_only
+from support.processes.command import environment, qtab_here, refused
+from support.processes.posix import posix_only
 
 
 def test_without_a_name_the_experiments_are_listed(tmp_path):

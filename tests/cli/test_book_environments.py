@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 import qtab as package
-from support.command import qtab_here
+from support.processes.command import qtab_here
 
 ENVS = ("qtab/KArmedBandit-v0", "qtab/MaximizationBias-v0", "qtab/ShortCorridor-v0")
 

@@ -9,7 +9,7 @@ import pytest
 from qtab.cli.command import SUBCOMMANDS
 from qtab.cli.commands.completion import script
 from qtab.config import DEFAULTS
-from support.command import qtab_here, refused
+from support.processes.command import qtab_here, refused
 
 LINES = {
     "tr": "train",

@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 
 import qtab
-from support.command import qtab_here, refused
+from support.processes.command import qtab_here, refused
 
 
 def test_it_reports_the_findings_and_tries_the_changes(tmp_path: Path) -> None:

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import qtab
-from support.command import qtab_here, refused
+from support.processes.command import qtab_here, refused
 
 
 def test_it_shows_the_steps_of_a_saved_run(tmp_path: Path) -> None:

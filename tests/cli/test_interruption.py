@@ -14,9 +14,9 @@ import pytest
 import qtab
 from qtab.cli import main
 from qtab.results.run import Run
-from support.command import QTAB, environment, qtab_here, refused
 from support.parity import assert_same_run
-from support.posix import posix_only
+from support.processes.command import QTAB, environment, qtab_here, refused
+from support.processes.posix import posix_only
 
 LAKE = ("FrozenLake-v1", "--seed", "0", "--episodes", "2000")
 

@@ -11,7 +11,7 @@ import pytest
 import qtab
 from qtab.cli.command import SUBCOMMANDS
 from qtab.cli.reporting import json_text
-from support.command import qtab_here, refused, with_run
+from support.processes.command import qtab_here, refused, with_run
 from support.repository import ROOT
 
 

@@ -11,8 +11,8 @@ import pytest
 from gymnasium.envs.registration import EnvSpec
 
 import qtab
-from support.command import qtab_here, refused
 from support.parity import assert_same_run
+from support.processes.command import qtab_here, refused
 
 LAKE = "FrozenLake-v1"
 

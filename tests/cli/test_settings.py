@@ -9,7 +9,7 @@ from qtab.cli.commands import train
 from qtab.cli.commands.train import env_and_settings
 from qtab.cli.errors import UsageError
 from qtab.config.help import explanations
-from support.command import qtab_here
+from support.processes.command import qtab_here
 
 
 def help_of(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import qtab as package
-from support.command import QTAB, environment, qtab, qtab_here, refused
-from support.posix import posix_only
+from support.processes.command import QTAB, environment, qtab, qtab_here, refused
+from support.processes.posix import posix_only
 
 
 def test_train_prints_the_articles_averages_and_saves_the_run(tmp_path: Path) -> None:

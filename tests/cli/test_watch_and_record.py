@@ -8,7 +8,7 @@ from PIL import Image
 import qtab
 from qtab.cli.commands import watch
 from qtab.rendering import play
-from support.command import qtab_here, refused, with_run
+from support.processes.command import qtab_here, refused, with_run
 
 
 @pytest.fixture

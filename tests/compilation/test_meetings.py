@@ -14,8 +14,8 @@ import pytest
 
 import qtab
 from qtab.callbacks import Checkpoint, EvaluateEvery
+from support.environments.stairs import OrdinaryStairs, Stairs, register
 from support.parity import run_of
-from support.stairs import OrdinaryStairs, Stairs, register
 
 pytest.importorskip("numba")
 

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from support import own_environments as own
-from support.twins import assert_equal_steps
+from support.environments import own
+from support.lockstep.twins import assert_equal_steps
 
 pytest.importorskip("numba")
 

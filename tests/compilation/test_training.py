@@ -11,7 +11,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import qtab
-from support import own_environments as own
+from support.environments import own
 
 pytest.importorskip("numba")
 
@@ -70,7 +70,7 @@ def test_threads_and_callbacks_change_nothing() -> None:
 
 
 def test_a_sweep() -> None:
-    gym.register("own/Walk-v0", "support.own_environments:RandomWalk", max_episode_steps=60)
+    gym.register("own/Walk-v0", "support.environments.own:RandomWalk", max_episode_steps=60)
     try:
         grid = {"learning_rate": [0.1, 0.5]}
         one, other = (

@@ -13,7 +13,7 @@ import pytest
 
 import qtab
 from support.environments import ScriptedEnv, Walk
-from support.posix import posix_only
+from support.processes.posix import posix_only
 
 NO_NUMBERS: list[Any] = ["0.5", b"0.5", None, True, np.True_, 0.5j, [0.5], (0.5,), np.array([0.5]), {}]
 NO_INTEGERS = [1.0, 2.5, float("nan"), "5", True, np.True_, [5], np.array([5]), Fraction(5)]

@@ -9,7 +9,7 @@ import pytest
 
 import qtab
 from qtab.results.rates import epsilons
-from support.gridworld import Room
+from support.environments.gridworld import Room
 
 LAKE = "FrozenLake-v1"
 

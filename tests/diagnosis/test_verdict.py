@@ -12,7 +12,7 @@ from gymnasium.envs.classic_control import MountainCarEnv
 import qtab
 from qtab.envs.metadata.goals import reward_threshold, threshold_of
 from qtab.training.verdict import judge
-from support.command import qtab_here
+from support.processes.command import qtab_here
 from support.repository import PACKAGE
 
 LAKE, TAXI, CAR = "FrozenLake-v1", "Taxi-v4", "MountainCar-v0"

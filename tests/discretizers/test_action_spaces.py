@@ -12,7 +12,7 @@ from gymnasium import spaces
 import qtab
 from qtab.envs.actions import choose_actions, flat
 from qtab.rendering.replay import replay_episode
-from support.run_files import Members, members_of, with_header, without_digest, write_members
+from support.files.run_files import Members, members_of, with_header, without_digest, write_members
 
 
 class Picky(gym.Env[Any, Any]):

@@ -11,9 +11,9 @@ import pytest
 from gymnasium import wrappers
 from gymnasium.utils.env_checker import check_env
 
-from support.classic_control import IDS as CLASSIC
 from support.exact import bitwise, identical
-from support.toy_text import IDS as TOYS
+from support.lockstep.classic_control import IDS as CLASSIC
+from support.lockstep.toy_text import IDS as TOYS
 
 IDS = [*CLASSIC, *TOYS]
 REGISTERED = sorted(name for name in gym.registry if name.startswith("qtab/"))

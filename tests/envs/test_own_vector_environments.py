@@ -15,9 +15,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import qtab
-from support import own_environments
-from support.own_vectors import in_lockstep, make, same_streams
-from support.vector import MODES, assert_equal
+from support.environments import own as own_environments
+from support.lockstep.own_vectors import in_lockstep, make, same_streams
+from support.lockstep.vector import MODES, assert_equal
 
 pytest.importorskip("numba")
 

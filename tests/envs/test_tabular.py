@@ -12,7 +12,7 @@ from gymnasium.utils.env_checker import check_env
 import qtab
 from support.exact import bitwise, identical
 from support.ids import short_repr
-from support.toy_text import TABLES
+from support.lockstep.toy_text import TABLES
 
 
 @pytest.mark.parametrize("name", [name for name in TABLES if name != "Taxi-v4"])

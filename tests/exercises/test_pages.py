@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from qtab.exercises import EXERCISES, Report, check
-from support import pages
+from support.documents import pages
 from support.repository import ROOT
 
 PAGES = [path for path in pages.pages() if path.parent == ROOT / "docs/exercises"]

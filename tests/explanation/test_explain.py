@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 import qtab
 from qtab.explanation.records import ExplainedStep, Update
-from support.explained_algorithms import STEP_BY_STEP
-from support.gridworld import Room
-from support.learner_settings import run_settings
+from support.environments.gridworld import Room
+from support.learners.explained_algorithms import STEP_BY_STEP
+from support.learners.learner_settings import run_settings
 
 CAR = "MountainCar-v0"
 ALGORITHMS = STEP_BY_STEP

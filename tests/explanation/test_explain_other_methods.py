@@ -12,8 +12,8 @@ import qtab
 from qtab.config.options import AVERAGE_REWARD, MONTE_CARLO, PREFERENCES, WITH_STATE_VALUES, fixed_settings
 from qtab.explanation.policy_update import PolicyUpdate
 from qtab.explanation.records import Update
-from support.explained_algorithms import PLANNED
-from support.learner_settings import run_settings
+from support.learners.explained_algorithms import PLANNED
+from support.learners.learner_settings import run_settings
 
 LAKE = "FrozenLake-v1"
 CORRIDOR = "qtab/ShortCorridor-v0"

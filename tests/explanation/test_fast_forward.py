@@ -9,8 +9,8 @@ from hypothesis import given, settings
 import qtab
 from qtab.explanation import explain as module
 from qtab.explanation.fast_forward import Start, start_of
-from support.explained_algorithms import STEP_BY_STEP, WITH_TILES
-from support.learner_settings import run_settings
+from support.learners.explained_algorithms import STEP_BY_STEP, WITH_TILES
+from support.learners.learner_settings import run_settings
 
 CAR = "MountainCar-v0"
 ALGORITHMS = (*STEP_BY_STEP, *WITH_TILES)

@@ -16,9 +16,9 @@ from qtab.config.options import AVERAGE_REWARD, ONE_STEP, PREFERENCES, TABLES_ON
 from qtab.explanation.equations import bootstrap_symbol, gain
 from qtab.explanation.policy_update import PolicyUpdate
 from qtab.explanation.records import Choice, ExplainedStep, Update
-from support.learner_settings import run_settings
-from support.masked import MASKS, MaskedGraph
-from support.printed_equations import NotNumericError, check_equations, check_symbols, evaluated, printed
+from support.environments.masked import MASKS, MaskedGraph
+from support.learners.learner_settings import run_settings
+from support.learners.printed_equations import NotNumericError, check_equations, check_symbols, evaluated, printed
 
 ALGORITHMS = CHOICES["algorithm"]
 EXAMPLES = max(1, (settings.default or settings()).max_examples // 10)

@@ -12,8 +12,14 @@ from numpy.typing import NDArray
 import qtab
 from qtab.config.choices import Algorithm
 from qtab.config.options import NO_MASKED_TILES, PREFERENCES, TABLES_ONLY, WITH_PROBABILITIES
-from support.learner_settings import BY_EPISODE, explorations, learning_rates, own_options, possible_explorations
-from support.masked import MASKS, SHORT, TILES, MaskedGraph
+from support.environments.masked import MASKS, SHORT, TILES, MaskedGraph
+from support.learners.learner_settings import (
+    BY_EPISODE,
+    explorations,
+    learning_rates,
+    own_options,
+    possible_explorations,
+)
 from support.parity import assert_same_run
 
 ALGORITHMS = get_args(Algorithm)

@@ -13,7 +13,13 @@ from hypothesis import strategies as st
 import qtab
 from qtab.config.choices import Algorithm
 from qtab.config.options import PREFERENCES
-from support.learner_settings import BY_EPISODE, explorations, learning_rates, own_options, possible_explorations
+from support.learners.learner_settings import (
+    BY_EPISODE,
+    explorations,
+    learning_rates,
+    own_options,
+    possible_explorations,
+)
 
 BIAS = "qtab/MaximizationBias-v0"
 ALGORITHMS = [name for name in get_args(Algorithm) if name not in PREFERENCES]

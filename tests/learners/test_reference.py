@@ -11,7 +11,7 @@ from qtab.config.choices import Algorithm
 from qtab.config.options import PREFERENCES, TABLES_ONLY, fixed_settings
 from qtab.reference import LEARNERS
 from support.environments import Chain
-from support.learner_settings import CAR, TRAINED, run_settings
+from support.learners.learner_settings import CAR, TRAINED, run_settings
 
 ALGORITHMS = get_args(Algorithm)
 PROFILE: Any = settings.default

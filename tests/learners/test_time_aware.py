@@ -12,7 +12,13 @@ from hypothesis import strategies as st
 import qtab
 from qtab.config.choices import Algorithm
 from support.environments import Chain
-from support.learner_settings import BY_EPISODE, explorations, learning_rates, own_options, possible_explorations
+from support.learners.learner_settings import (
+    BY_EPISODE,
+    explorations,
+    learning_rates,
+    own_options,
+    possible_explorations,
+)
 
 LAKE = "FrozenLake-v1"
 ALGORITHMS = get_args(Algorithm)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import qtab
-from support.toy_text import IDS
+from support.lockstep.toy_text import IDS
 
 MINT = qtab.TabularEnv({0: {0: [(1.0, 0, 1.0, False)], 1: [(1.0, 0, 0.0, True)]}}, [1.0])
 """A reward of 1 for every step."""

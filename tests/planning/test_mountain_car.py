@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import qtab
-from support.command import qtab_here, refused
-from support.interrupts import in_a_process
-from support.posix import posix_only
+from support.processes.command import qtab_here, refused
+from support.processes.interrupts import in_a_process
+from support.processes.posix import posix_only
 
 EPISODES = 40
 

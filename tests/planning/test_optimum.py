@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 import qtab
 from qtab.reference import dynamic_programming as plain
-from support.toy_text import IDS
+from support.lockstep.toy_text import IDS
 
 CONTINUOUS = "MountainCarContinuous-v0"
 METHODS = ["value_iteration", "policy_iteration", "finite_horizon"]

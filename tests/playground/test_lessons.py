@@ -5,8 +5,8 @@ from typing import Any
 
 import pytest
 
-from support.lessons import Claims, Lesson, Lessons, control, games, grids, lakes
 from support.playground import Playground
+from support.playground.lessons import Claims, Lesson, Lessons, control, games, grids, lakes
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 

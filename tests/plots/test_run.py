@@ -10,7 +10,7 @@ import pytest
 import qtab
 from qtab.plots.parts.axes import check_format
 from qtab.plots.run import save_plot
-from support.command import QTAB, environment
+from support.processes.command import QTAB, environment
 
 
 def curve(run: qtab.Run, block: int = 100) -> tuple[list[float], list[float]]:

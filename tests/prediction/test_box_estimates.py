@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import qtab
-from support.box_prediction import CAR, FAST, PENDULUM, POLE, TILES, with_the_velocity
+from support.learners.box_prediction import CAR, FAST, PENDULUM, POLE, TILES, with_the_velocity
 
 
 def test_estimates_are_saved_with_what_divides_the_observations(tmp_path: Any) -> None:

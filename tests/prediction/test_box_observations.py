@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 import qtab
 from qtab.prediction import METHODS
 from qtab.prediction.verification import verify_values
-from support.box_prediction import CAR, FAST, PENDULUM, POLE, TILES, with_the_velocity
+from support.learners.box_prediction import CAR, FAST, PENDULUM, POLE, TILES, with_the_velocity
 
 AVERAGES = ("importance_sampling", "batch_td")
 

@@ -13,7 +13,7 @@ from qtab.cli import outputs
 from qtab.rendering import video
 from qtab.rendering.replay import make_render_env, replay_all, replay_episode
 from qtab.rendering.video import VideoRecorder
-from support.command import qtab, qtab_here, refused
+from support.processes.command import qtab, qtab_here, refused
 
 
 @pytest.mark.parametrize("backend", ["rust", "gymnasium"])

@@ -11,7 +11,7 @@ from gymnasium.vector.utils import concatenate, create_empty_array
 
 import qtab
 from support.environments import Sampled
-from support.masked import MASKS, SHORT, TILES, MaskedGraph
+from support.environments.masked import MASKS, SHORT, TILES, MaskedGraph
 from support.parity import assert_same_run
 
 

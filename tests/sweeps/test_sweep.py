@@ -12,7 +12,7 @@ import pytest
 
 import qtab
 from support.parity import run_of
-from support.posix import posix_only
+from support.processes.posix import posix_only
 from support.sweeps import CAR, GRID, SMALL, assert_equal
 
 

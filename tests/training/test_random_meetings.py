@@ -19,7 +19,7 @@ from hypothesis import strategies as st
 
 import qtab
 from qtab.config.config import DEFAULTS
-from support.meetings import CASES, Case, meetings
+from support.environments.meetings import CASES, Case, meetings
 from support.parity import assert_same_run
 
 ARGUMENTS = {

@@ -15,8 +15,8 @@ from qtab.config.choices import Algorithm
 from qtab.reference import LEARNERS
 from qtab.reference.parts.actions import actions
 from qtab.reference.parts.observations import discretizer
-from support.learner_settings import CAR, TRAINED, run_settings
-from support.run_files import members_of, with_right_digest, write_members
+from support.files.run_files import members_of, with_right_digest, write_members
+from support.learners.learner_settings import CAR, TRAINED, run_settings
 
 ALGORITHMS = get_args(Algorithm)
 

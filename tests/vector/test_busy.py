@@ -7,7 +7,7 @@ import gymnasium as gym
 import numpy as np
 import pytest
 
-from support.vector import ours
+from support.lockstep.vector import ours
 
 
 def test_two_threads_cannot_step_the_same_sub_environments_at_once():

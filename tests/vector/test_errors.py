@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import data_equivalence
 
-from support import classic_control, toy_text
-from support.vector import IDS, ours, position
+from support.lockstep import classic_control, toy_text
+from support.lockstep.vector import IDS, ours, position
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*CartPole-v0 is out of date")
 DISCRETE = ["MountainCar-v0", "CartPole-v1", "Acrobot-v1", *toy_text.IDS]
@@ -112,7 +112,7 @@ def test_bad_forces_change_no_state(name, actions, error, match):
 
 @pytest.mark.parametrize("name", classic_control.CONTINUOUS)
 def test_forces_that_gymnasium_accepts_are_accepted(name):
-    from support.vector import LockstepVectorEnv
+    from support.lockstep.vector import LockstepVectorEnv
 
     vectors = LockstepVectorEnv(name, 3)
     vectors.reset(seed=1)

@@ -12,7 +12,7 @@ from gymnasium.utils.env_checker import data_equivalence
 from gymnasium.vector import AutoresetMode, SyncVectorEnv
 
 from support.exact import bitwise
-from support.vector import IDS, MODES, LockstepVectorEnv, assert_equal, ours, theirs
+from support.lockstep.vector import IDS, MODES, LockstepVectorEnv, assert_equal, ours, theirs
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*CartPole-v0 is out of date")
 

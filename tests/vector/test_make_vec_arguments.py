@@ -12,7 +12,7 @@ from gymnasium.utils.env_checker import data_equivalence
 from gymnasium.vector import AutoresetMode, SyncVectorEnv
 
 import qtab
-from support.vector import assert_equal
+from support.lockstep.vector import assert_equal
 
 WRAPPED: list[dict[str, Any]] = [
     {"wrappers": [gym.wrappers.TimeAwareObservation]},

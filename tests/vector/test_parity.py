@@ -10,9 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import qtab
-from support import classic_control
-from support.machine import MACHINE
-from support.vector import IDS, MODES, LockstepVectorEnv
+from support.lockstep import classic_control
+from support.lockstep.vector import IDS, MODES, LockstepVectorEnv
+from support.processes.machine import MACHINE
 
 STEPS = 220
 """Steps of all sub-environments together, in each of four examples of each of three modes."""

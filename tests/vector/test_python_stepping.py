@@ -10,7 +10,7 @@ import pytest
 from gymnasium.utils.env_checker import data_equivalence
 from gymnasium.vector import AutoresetMode
 
-from support.vector import IDS, MODES, LockstepVectorEnv, ours, theirs
+from support.lockstep.vector import IDS, MODES, LockstepVectorEnv, ours, theirs
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*CartPole-v0 is out of date")
 

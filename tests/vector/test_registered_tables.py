@@ -9,7 +9,7 @@ from gymnasium.vector import SyncVectorEnv
 
 import qtab
 from support.environments import Walk
-from support.vector import assert_equal
+from support.lockstep.vector import assert_equal
 
 LAKE: Any = gym.make("FrozenLake-v1").unwrapped
 MAZE = "QtabTests/Maze-v0"

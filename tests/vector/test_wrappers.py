@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import data_equivalence
 
-from support import classic_control
-from support.vector import LockstepVectorEnv, ours, theirs
+from support.lockstep import classic_control
+from support.lockstep.vector import LockstepVectorEnv, ours, theirs
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*CartPole-v0 is out of date")
 

@@ -15,7 +15,7 @@ from qtab.compilation import functional, ordinary
 from qtab.compilation.cache.store import Store
 from qtab.compilation.functional import compiled_env
 from qtab.compilation.rewriting import helpers
-from support.gym_classes import grids
+from support.environments.gym_classes import grids
 
 pytest.importorskip("numba")
 

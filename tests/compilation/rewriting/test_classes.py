@@ -7,8 +7,8 @@ import gymnasium as gym
 import pytest
 
 from qtab.compilation.rewriting import rewrite
-from support.gym_classes import control, games, grids, operations
-from support.lockstep_rewriting import assert_equal_steps, assert_nothing_refused, compiled_with_checks
+from support.environments.gym_classes import control, games, grids, operations
+from support.lockstep.rewriting import assert_equal_steps, assert_nothing_refused, compiled_with_checks
 
 CLASSES: dict[str, Callable[[], gym.Env]] = {
     "grid world of the documentation": grids.GridWorldEnv,

@@ -9,7 +9,7 @@ from gymnasium.utils import seeding
 
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting import rewrite
-from support.lockstep_rewriting import assert_nothing_refused, compiled_with_checks
+from support.lockstep.rewriting import assert_nothing_refused, compiled_with_checks
 
 CALLS = {
     "normal": "normal(0.0, self.x)",

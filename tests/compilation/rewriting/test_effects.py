@@ -7,8 +7,8 @@ import pytest
 
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting import rewrite
-from support.gym_classes import left_out
-from support.lockstep_rewriting import assert_equal_steps
+from support.environments.gym_classes import left_out
+from support.lockstep.rewriting import assert_equal_steps
 
 REFUSED = [
     value

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from qtab.compilation.rewriting import rewrite
-from support.gym_classes import large_integers
-from support.lockstep_rewriting import assert_nothing_refused, compiled_with_checks
+from support.environments.gym_classes import large_integers
+from support.lockstep.rewriting import assert_nothing_refused, compiled_with_checks
 
 CLASSES = [
     value

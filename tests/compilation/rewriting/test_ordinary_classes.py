@@ -14,7 +14,7 @@ from qtab.compilation.cache.store import Store
 from qtab.compilation.interface.compiled_env import Stepper
 from qtab.compilation.ordinary import OrdinaryEnv
 from qtab.compilation.twins.class_twin import ClassTwin
-from support.gym_classes import control, failing, games, grids, operations
+from support.environments.gym_classes import control, failing, games, grids, operations
 
 pytest.importorskip("numba")
 
@@ -109,7 +109,7 @@ def test_attributes_that_outlive_episodes_are_refused() -> None:
 
 
 def test_a_refusal_names_the_users_line() -> None:
-    from support.gym_classes import refused
+    from support.environments.gym_classes import refused
 
     with pytest.raises(ValueError, match=r"refused\.py:\d+: np\.exp rounds differently.*write math\.exp for np\.exp"):
         qtab.train(refused.NumpyExp(), episodes=10, backend="numba")

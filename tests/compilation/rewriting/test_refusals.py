@@ -11,8 +11,8 @@ import pytest
 
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting import rewrite
-from support.gym_classes import control, games, grids, refused, shared, walk
-from support.lockstep_rewriting import assert_equal_steps
+from support.environments.gym_classes import control, games, grids, refused, shared, walk
+from support.lockstep.rewriting import assert_equal_steps
 
 REFUSALS = {
     refused.NumpyExp: ("np.exp rounds differently", "write math.exp for np.exp"),

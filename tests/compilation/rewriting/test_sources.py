@@ -9,7 +9,7 @@ import pytest
 
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting import rewrite
-from support.lockstep_rewriting import assert_equal_steps
+from support.lockstep.rewriting import assert_equal_steps
 
 SOURCE = """
 import gymnasium as gym

@@ -11,7 +11,7 @@ import qtab
 from qtab.compilation.functional import compiled_env
 from qtab.compilation.interface.compiled_env import Stepper
 from qtab.compilation.interface.qtab_env import FAILED
-from support.own_environments import Gambler, TicTacToe
+from support.environments.own import Gambler, TicTacToe
 
 pytest.importorskip("numba")
 

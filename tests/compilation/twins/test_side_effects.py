@@ -14,8 +14,16 @@ import qtab
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.twins.class_twin import restored, twin_of
 from qtab.compilation.twins.side_effects import refuse_effects
-from support.gym_classes import effects
-from support.gym_classes.effects import CHANGING_DATA, OUTPUT, RAN, REFUSED, CallsAttribute, Quiet, StepPrints
+from support.environments.gym_classes import effects
+from support.environments.gym_classes.effects import (
+    CHANGING_DATA,
+    OUTPUT,
+    RAN,
+    REFUSED,
+    CallsAttribute,
+    Quiet,
+    StepPrints,
+)
 
 
 def line_of(cls: type) -> int:

@@ -14,8 +14,8 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 from gymnasium.wrappers import NormalizeObservation, RecordEpisodeStatistics
 
-from support.classic_control import EDITS, IDS, LockstepClassicControl, heuristic_policy
 from support.exact import bitwise
+from support.lockstep.classic_control import EDITS, IDS, LockstepClassicControl, heuristic_policy
 
 os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
 

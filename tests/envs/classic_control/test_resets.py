@@ -7,8 +7,8 @@ import gymnasium as gym
 import numpy as np
 import pytest
 
-from support.classic_control import CONTINUOUS, IDS, LockstepClassicControl
 from support.exact import bitwise
+from support.lockstep.classic_control import CONTINUOUS, IDS, LockstepClassicControl
 
 ATTRIBUTES = ["state", "steps_beyond_terminated", "last_u"]
 

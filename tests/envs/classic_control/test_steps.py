@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 
 from qtab import _core
 from qtab.envs.classic_control import AcrobotEnv
-from support.classic_control import CONTINUOUS, EDITS, IDS, LockstepClassicControl, heuristic_policy
-from support.machine import MACHINE
+from support.lockstep.classic_control import CONTINUOUS, EDITS, IDS, LockstepClassicControl, heuristic_policy
+from support.processes.machine import MACHINE
 
 STEPS = 4_000
 """Random steps; as many are taken by a policy that reaches the goal."""

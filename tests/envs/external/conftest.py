@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from support.libraries import EXAMPLES, compile_c
+from support.native.libraries import EXAMPLES, compile_c
 
 
 @pytest.fixture(scope="session")

@@ -10,8 +10,8 @@ import pytest
 import qtab
 from qtab import _core
 from qtab.envs.in_rust.matching import NotInRustError
-from support.board import SETTINGS, Board, board_library
-from support.libraries import capsule_of, needs_compiler
+from support.native.board import SETTINGS, Board, board_library
+from support.native.libraries import capsule_of, needs_compiler
 
 pytestmark = needs_compiler
 

@@ -13,7 +13,7 @@ import pytest
 
 import qtab
 from qtab.envs.external import library, trial
-from support.libraries import SOURCES, capsule_of, compile_c, needs_compiler
+from support.native.libraries import SOURCES, capsule_of, compile_c, needs_compiler
 
 pytestmark = needs_compiler
 

@@ -6,8 +6,8 @@ from typing import Any
 import pytest
 
 import qtab
-from support.libraries import build_rust, compile_c, needs_cargo, needs_compiler
-from support.pages import blocks
+from support.documents.pages import blocks
+from support.native.libraries import build_rust, compile_c, needs_cargo, needs_compiler
 from support.repository import ROOT
 
 PAGE = ROOT / "docs" / "how_to" / "native_libraries.md"

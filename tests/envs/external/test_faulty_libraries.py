@@ -6,8 +6,8 @@ from typing import Any
 import pytest
 
 import qtab
-from support.board import board_library
-from support.libraries import compile_c, needs_compiler
+from support.native.board import board_library
+from support.native.libraries import compile_c, needs_compiler
 
 pytestmark = needs_compiler
 FLOATS = {"TYPE": "QTAB_FLOAT64", "NUMBER": "double"}

@@ -13,9 +13,9 @@ import pytest
 
 import qtab
 from qtab.callbacks import BaseCallback
-from support.board import SETTINGS, board_library
-from support.libraries import EXAMPLES, compile_c, needs_compiler
-from support.posix import posix_only
+from support.native.board import SETTINGS, board_library
+from support.native.libraries import EXAMPLES, compile_c, needs_compiler
+from support.processes.posix import posix_only
 
 pytestmark = needs_compiler
 ID = "own/Lander-v0"

@@ -11,8 +11,8 @@ from gymnasium import spaces
 from gymnasium.utils.env_checker import check_env
 
 import qtab
-from support.board import Board, board_library
-from support.libraries import example_class, needs_compiler
+from support.native.board import Board, board_library
+from support.native.libraries import example_class, needs_compiler
 
 pytestmark = needs_compiler
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import qtab
-from support.libraries import EXAMPLES, build_rust, example_class, needs_cargo
+from support.native.libraries import EXAMPLES, build_rust, example_class, needs_cargo
 
 pytestmark = [needs_cargo, pytest.mark.slow]
 SETTINGS: dict[str, Any] = {"episodes": 40, "max_episode_steps": 56, "action_mask": True}

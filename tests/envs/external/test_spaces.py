@@ -8,8 +8,8 @@ import pytest
 from gymnasium import spaces
 
 import qtab
-from support.board import SETTINGS, Board, board_library
-from support.libraries import capsule_of, needs_compiler
+from support.native.board import SETTINGS, Board, board_library
+from support.native.libraries import capsule_of, needs_compiler
 
 pytestmark = needs_compiler
 X, Y = spaces.Discrete(5, start=-2), spaces.Discrete(3, start=3)

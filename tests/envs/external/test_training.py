@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import qtab
-from support.libraries import compile_c, example_class, needs_compiler
+from support.native.libraries import compile_c, example_class, needs_compiler
 from support.repository import ROOT
 
 pytestmark = needs_compiler

@@ -12,10 +12,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import qtab
-from support.board import Board, board_library
-from support.libraries import needs_compiler
-from support.own_vectors import in_lockstep, make, same_streams
-from support.vector import MODES, assert_equal
+from support.lockstep.own_vectors import in_lockstep, make, same_streams
+from support.lockstep.vector import MODES, assert_equal
+from support.native.board import Board, board_library
+from support.native.libraries import needs_compiler
 
 pytestmark = needs_compiler
 

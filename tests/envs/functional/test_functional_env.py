@@ -11,9 +11,9 @@ from gymnasium import spaces
 from gymnasium.utils.env_checker import check_env
 
 import qtab
-from support.own_environments.key_and_door import KeyAndDoor
-from support.own_environments.mountain_car import MountainCar
-from support.own_environments.tic_tac_toe import TicTacToe
+from support.environments.own.control.mountain_car import MountainCar
+from support.environments.own.games.tic_tac_toe import TicTacToe
+from support.environments.own.grids.key_and_door import KeyAndDoor
 
 
 class Counter(qtab.FunctionalEnv):
@@ -99,7 +99,10 @@ def test_it_equals_gymnasiums_mountain_car() -> None:
 
 def test_it_works_with_register_make_and_wrappers() -> None:
     gym.register(
-        "KeyAndDoor-v0", "support.own_environments.key_and_door:KeyAndDoor", max_episode_steps=9, kwargs={"length": 5}
+        "KeyAndDoor-v0",
+        "support.environments.own.grids.key_and_door:KeyAndDoor",
+        max_episode_steps=9,
+        kwargs={"length": 5},
     )
     try:
         env = gym.wrappers.RecordEpisodeStatistics(gym.make("KeyAndDoor-v0", slip=0.0))

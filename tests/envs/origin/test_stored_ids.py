@@ -16,7 +16,7 @@ from qtab.envs.registry import StoredId, stored_id
 from qtab.rendering.sweep_report import write_report
 from qtab.sweeps.run_records import study_digest, to_text
 from support.environments import Walk
-from support.run_files import members_of, with_header, with_right_digest, write_members
+from support.files.run_files import members_of, with_header, with_right_digest, write_members
 
 MODULE = "imported_by_a_file"
 

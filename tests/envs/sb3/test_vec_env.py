@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import qtab
-from support import classic_control, toy_text
+from support.lockstep import classic_control, toy_text
 from support.stable_baselines3 import OneByOne, install
 
 IDS = [*classic_control.IDS, *toy_text.IDS]

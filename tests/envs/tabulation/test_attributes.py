@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import qtab
-from support.own_environments.small import Line, line
+from support.environments.own.small import Line, line
 
 
 def test_other_steps_and_resets_than_those_of_a_functional_environment_are_refused():

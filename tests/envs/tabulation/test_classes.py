@@ -9,7 +9,7 @@ from gymnasium.envs.toy_text.frozen_lake import FrozenLakeEnv
 from gymnasium.wrappers import TimeLimit
 
 import qtab
-from support.own_environments.gymnasium_class import Corridor, corridor
+from support.environments.own.gymnasium_class import Corridor, corridor
 
 
 def best_values(length=5, slip=0.25):

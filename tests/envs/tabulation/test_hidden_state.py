@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import qtab
-from support.own_environments.gymnasium_class import Corridor, corridor
+from support.environments.own.gymnasium_class import Corridor, corridor
 
 
 class Board(list[int]):

@@ -9,8 +9,8 @@ from gymnasium.envs.toy_text.frozen_lake import FrozenLakeEnv
 from gymnasium.wrappers import TimeLimit, TransformReward
 
 import qtab
-from support.own_environments.mountain_car import MountainCar
-from support.own_environments.small import Line, NoisyWalk, WindyGrid, line
+from support.environments.own.control.mountain_car import MountainCar
+from support.environments.own.small import Line, NoisyWalk, WindyGrid, line
 
 
 def drawing(draw):

@@ -10,10 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import qtab
-from support.own_environments.key_and_door import KeyAndDoor
-from support.own_environments.small import Gambler, NoisyWalk, Pig, WindyGrid
-from support.own_environments.tic_tac_toe import LINES, TicTacToe
-from support.toy_text import TABLES
+from support.environments.own.games.tic_tac_toe import LINES, TicTacToe
+from support.environments.own.grids.key_and_door import KeyAndDoor
+from support.environments.own.small import Gambler, NoisyWalk, Pig, WindyGrid
+from support.lockstep.toy_text import TABLES
 
 SETTINGS: Any = {"learning_rate": 0.5, "discount": 0.9, "initial_q": 0.0, "epsilon": 0.2, "preset": None}
 

@@ -13,7 +13,7 @@ from gymnasium.wrappers import RecordEpisodeStatistics
 
 from qtab.envs.toy_text import FrozenLakeEnv, TaxiEnv
 from support.exact import bitwise
-from support.toy_text import IDS, TABLES, LockstepToyText
+from support.lockstep.toy_text import IDS, TABLES, LockstepToyText
 
 
 @pytest.mark.parametrize("name", IDS)

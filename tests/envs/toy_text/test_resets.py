@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 import qtab
 from support.exact import bitwise
-from support.toy_text import TABLES, LockstepToyText
+from support.lockstep.toy_text import TABLES, LockstepToyText
 
 PAIRS = {name: LockstepToyText(name) for name in TABLES}
 

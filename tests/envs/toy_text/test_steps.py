@@ -9,7 +9,7 @@ import pytest
 from gymnasium.envs.toy_text.frozen_lake import generate_random_map
 
 import qtab
-from support.toy_text import IDS, TABLES, LockstepToyText
+from support.lockstep.toy_text import IDS, TABLES, LockstepToyText
 
 STEPS = 2_000
 GOAL_STEPS = 6_000

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import qtab
-from support.command import qtab_here
-from support.run_files import Members, members_of, with_header, with_right_digest, without_digest, write_members
+from support.files.run_files import Members, members_of, with_header, with_right_digest, without_digest, write_members
+from support.processes.command import qtab_here
 
 REFUSED = "is not a run file that this version of qtab can read: "
 

@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import qtab
-from support.run_files import (
+from support.files.run_files import (
     assert_every_part_is_refused,
     load_with_flipped_bytes,
     members_of,

@@ -20,7 +20,7 @@ from hypothesis import strategies as st
 
 import qtab
 from support.environments import Sampled
-from support.run_files import members_of, with_header, with_right_digest, without_digest
+from support.files.run_files import members_of, with_header, with_right_digest, without_digest
 
 REFUSED = "is not a run file that this version of qtab can read: "
 

@@ -13,8 +13,8 @@ import pytest
 
 import qtab
 from qtab._utils.files import replacing
-from support import kill_saves
-from support.command import refused
+from support.files import kill_saves
+from support.processes.command import refused
 
 posix = pytest.mark.skipif(os.name != "posix", reason="needs the files of POSIX systems")
 

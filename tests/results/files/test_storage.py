@@ -13,7 +13,7 @@ import qtab
 from support.environments import Walk
 from support.ids import short_repr
 from support.parity import assert_same_run, table_to_go_on_from
-from support.posix import posix_only
+from support.processes.posix import posix_only
 
 
 def fields(value):

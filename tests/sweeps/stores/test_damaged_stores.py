@@ -15,7 +15,7 @@ from hypothesis import HealthCheck, given, settings
 import qtab
 from qtab.cli import main
 from qtab.sweeps import worker
-from support.damage import DAMAGE, NESTED, STATEMENTS, Damage, execute
+from support.files.damage import DAMAGE, NESTED, STATEMENTS, Damage, execute
 from support.sweeps import assert_equal
 
 LAKE = "FrozenLake-v1"

@@ -17,7 +17,7 @@ from qtab.cli import main
 from qtab.rendering.sweep_report import report_page
 from qtab.sweeps import store as store_module
 from qtab.sweeps import worker
-from support.damage import execute
+from support.files.damage import execute
 from support.sweeps import assert_equal
 
 LAKE = "FrozenLake-v1"

@@ -12,7 +12,7 @@ from hypothesis.stateful import RuleBasedStateMachine, precondition, rule
 
 import qtab
 from qtab.sweeps import worker
-from support.damage import DAMAGE, STATEMENTS, Damage, execute
+from support.files.damage import DAMAGE, STATEMENTS, Damage, execute
 from support.sweeps import assert_equal
 
 LAKE = "FrozenLake-v1"

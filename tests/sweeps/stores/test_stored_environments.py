@@ -141,7 +141,7 @@ def test_arguments_of_an_id_keep_their_types(tmp_path: Path) -> None:
     ],
 )
 def test_damaged_descriptions_are_refused(tmp_path: Path, change: str, message: str) -> None:
-    from support.damage import execute
+    from support.files.damage import execute
 
     swept(CAR, tmp_path / "a.db")
     execute(tmp_path / "a.db", change)

@@ -10,8 +10,8 @@ from gymnasium.spaces import Box, Discrete, MultiDiscrete, Tuple
 import qtab
 from qtab.config.options import PREFERENCES, n_tables
 from qtab.reference import LEARNERS
+from support.lockstep.toy_text import IDS
 from support.parity import assert_same_run
-from support.toy_text import IDS
 
 SETTINGS: dict[str, Any] = {"episodes": 150, "seed": 5, "epsilon": 0.5, "learning_rate": 0.3, "initial_q": (-1.0, 1.0)}
 

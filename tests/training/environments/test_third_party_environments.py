@@ -9,10 +9,10 @@ import pytest
 
 import qtab
 from qtab.rendering.replay import replay_episode
-from support.gridworld import SHORTEST
+from support.environments.gridworld import SHORTEST
 from support.parity import assert_same_run
 
-gym.register("qtab-tests/Room-v0", "support.gridworld:Room", max_episode_steps=100)
+gym.register("qtab-tests/Room-v0", "support.environments.gridworld:Room", max_episode_steps=100)
 ROOM: dict[str, Any] = {
     "episodes": 250,
     "learning_rate": 0.5,

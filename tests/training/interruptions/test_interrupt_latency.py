@@ -4,8 +4,8 @@ import json
 
 import pytest
 
-from support.interrupts import in_a_process
-from support.posix import posix_only
+from support.processes.interrupts import in_a_process
+from support.processes.posix import posix_only
 
 WORK = {
     "Q-learning": "qtab.train('MountainCar-v0', episodes=10**8)",

@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from support.interrupts import PRELUDE, in_a_process
-from support.posix import posix_only
+from support.processes.interrupts import PRELUDE, in_a_process
+from support.processes.posix import posix_only
 
 pytestmark = posix_only
 

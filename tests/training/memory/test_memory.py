@@ -7,9 +7,9 @@ from typing import Any
 import pytest
 
 import qtab
-from support.interrupts import in_a_process
 from support.parity import run_of
-from support.posix import posix_only
+from support.processes.interrupts import in_a_process
+from support.processes.posix import posix_only
 
 CAR = "MountainCar-v0"
 

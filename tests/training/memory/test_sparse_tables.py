@@ -10,7 +10,7 @@ from gymnasium.spaces import Box, Dict, Discrete, MultiDiscrete, Tuple
 
 import qtab
 from support.environments import Sampled
-from support.gridworld import Tutorial
+from support.environments.gridworld import Tutorial
 from support.parity import assert_same_run
 
 SETTINGS: dict[str, Any] = {"episodes": 30, "seed": 5, "max_episode_steps": 40, "initial_q": 0.0}

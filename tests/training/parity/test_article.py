@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import qtab
-from support.article import OldApi, QLearning
+from support.learners.article import OldApi, QLearning
 
 
 def the_articles(seed, *, max_episode_steps=200, learning, discount, epsilon, min_eps, episodes):

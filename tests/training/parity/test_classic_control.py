@@ -10,9 +10,9 @@ import qtab
 from qtab import _core
 from qtab.config.choices import Algorithm
 from qtab.config.options import TABLES_ONLY, fixed_settings
-from support.learner_settings import CAR, KEYWORDS, LIMITS, TRAINED
-from support.machine import MACHINE
+from support.learners.learner_settings import CAR, KEYWORDS, LIMITS, TRAINED
 from support.parity import assert_same_run
+from support.processes.machine import MACHINE
 
 ALGORITHMS = get_args(Algorithm)
 OTHERS = [env for env in TRAINED if env.values != (CAR,)]

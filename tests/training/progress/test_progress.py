@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 import qtab
 from qtab.config.choices import CHOICES
-from support.learner_settings import run_settings
+from support.learners.learner_settings import run_settings
 from support.parity import assert_same_run
 
 ALGORITHMS = sorted(CHOICES["algorithm"])

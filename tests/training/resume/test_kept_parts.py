@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 
 import qtab
 from qtab.callbacks import Checkpoint
-from support.gridworld import Room
+from support.environments.gridworld import Room
+from support.files.run_files import members_of, with_header, with_right_digest, write_members
 from support.parity import assert_same_run, run_of
-from support.run_files import members_of, with_header, with_right_digest, write_members
 
 CAR = "MountainCar-v0"
 LAKE: dict[str, Any] = {"seed": 0, "episodes": 20, "visits": True, "snapshots": [0, 3, 7, 12, 20]}

@@ -15,10 +15,10 @@ from hypothesis import strategies as st
 import qtab
 from qtab.callbacks import BaseCallback, Checkpoint
 from qtab.config.choices import Algorithm
-from support.gridworld import Room, StoppedError, StoppingRoom
-from support.learner_settings import run_settings
+from support.environments.gridworld import Room, StoppedError, StoppingRoom
+from support.learners.learner_settings import run_settings
 from support.parity import assert_same_run, run_of
-from support.posix import posix_only
+from support.processes.posix import posix_only
 
 
 def stopped(env: Any, after: int, **config: Any) -> qtab.Run:

@@ -11,7 +11,7 @@ from gymnasium.vector.utils import concatenate, create_empty_array
 
 import qtab
 from support.environments import Sampled
-from support.gridworld import Tutorial
+from support.environments.gridworld import Tutorial
 from support.parity import assert_same_run
 
 SETTINGS: dict[str, Any] = {"episodes": 3, "seed": 5, "max_episode_steps": 40}

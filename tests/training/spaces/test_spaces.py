@@ -16,7 +16,7 @@ import qtab
 from qtab.discretizers.identity import Identity
 from qtab.reference.parts.observations import discretizer as numpy_discretizer
 from support.environments import Sampled
-from support.gridworld import Tutorial
+from support.environments.gridworld import Tutorial
 from support.parity import assert_same_run
 
 SETTINGS: dict[str, Any] = {"episodes": 3, "seed": 5, "epsilon": 0.5, "learning_rate": 0.3, "max_episode_steps": 20}

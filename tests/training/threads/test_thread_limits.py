@@ -5,8 +5,8 @@ import sys
 
 import pytest
 
-from support.interrupts import in_a_process
-from support.posix import posix_only
+from support.processes.interrupts import in_a_process
+from support.processes.posix import posix_only
 
 LIMIT = """
 import resource, hashlib

@@ -14,7 +14,7 @@ import pytest
 import qtab
 from support.environments import make_brittle
 from support.parity import assert_same_as_single_runs, run_of
-from support.posix import posix_only
+from support.processes.posix import posix_only
 
 CAR = "MountainCar-v0"
 SHORT: dict[str, Any] = {"episodes": 30}

@@ -17,7 +17,7 @@ from support.repository import ROOT
 SUFFIX = {"darwin": ".dylib", "win32": ".dll"}.get(sys.platform, ".so")
 COMPILER = os.environ.get("CC") or shutil.which("cc")
 CAPSULE = b"qtab.env.1"
-SOURCES = Path(__file__).parent / "native"
+SOURCES = Path(__file__).parent
 EXAMPLES = ROOT / "examples"
 
 needs_compiler = pytest.mark.skipif(COMPILER is None or sys.platform == "win32", reason="needs a C compiler")

@@ -8,7 +8,7 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 
-from support.gym_classes.walk import Base
+from support.environments.gym_classes.walk import Base
 
 COUNTER = [0]
 SCORES: dict[str, int] = {}

@@ -3,7 +3,7 @@
 import gymnasium as gym
 import numpy as np
 
-from support.gym_classes.walk import Base
+from support.environments.gym_classes.walk import Base
 
 
 class FollowsAttribute(Base):

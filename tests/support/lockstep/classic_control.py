@@ -7,7 +7,7 @@ import numpy as np
 
 from support.exact import identical
 from support.lockstep import Lockstep
-from support.machine import MACHINE
+from support.processes.machine import MACHINE
 
 IDS = ["MountainCar-v0", "MountainCarContinuous-v0", "CartPole-v1", "Acrobot-v1", "Pendulum-v1"]
 CONTINUOUS = ["MountainCarContinuous-v0", "Pendulum-v1"]

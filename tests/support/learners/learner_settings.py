@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from qtab import _core
 from qtab.config.options import ONE_STEP, PREFERENCES, TABLES_ONLY, WITH_PROBABILITIES, fixed_settings
 from qtab.envs.registry import ENTRIES
-from support.machine import MACHINE
+from support.processes.machine import MACHINE
 
 CAR = "MountainCar-v0"
 LIMITS: dict[str, tuple[tuple[float, ...], tuple[float, ...]]] = {

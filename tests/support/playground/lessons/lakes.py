@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 
 import qtab
 from qtab.playground import definitions
-from support.lessons import SEEDS, Claims, Lesson, Lessons, last
+from support.playground.lessons import SEEDS, Claims, Lesson, Lessons, last
 
 MOVES = [(0, -1), (1, 0), (0, 1), (-1, 0)]
 """FrozenLake's actions: left, down, right, up."""

@@ -9,8 +9,8 @@ from gymnasium.utils.env_checker import data_equivalence
 from gymnasium.vector import AutoresetMode, SyncVectorEnv
 
 import qtab
-from support import classic_control, toy_text
-from support.machine import MACHINE
+from support.lockstep import classic_control, toy_text
+from support.processes.machine import MACHINE
 
 IDS = [*classic_control.IDS, "CartPole-v0", *toy_text.IDS]
 MODES = list(AutoresetMode)

@@ -1,4 +1,4 @@
-"""The environment of ``native/board.c`` in Python, and its library with options that make it break a rule."""
+"""The environment of ``board.c`` in Python, and its library with options that make it break a rule."""
 
 from pathlib import Path
 from typing import Any
@@ -7,7 +7,7 @@ import gymnasium as gym
 import numpy as np
 from gymnasium import spaces
 
-from support.libraries import SOURCES, compile_c
+from support.native.libraries import SOURCES, compile_c
 
 SOURCE = SOURCES / "board.c"
 SETTINGS: dict[str, Any] = {"episodes": 80, "max_episode_steps": 40, "action_mask": True}

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from support.lessons import Claims, Lesson, Lessons, last
+from support.playground.lessons import Claims, Lesson, Lessons, last
 
 
 def article(lesson: Lesson, _: Lessons) -> None:

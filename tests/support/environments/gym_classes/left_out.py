@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from support.gym_classes.walk import Base
+from support.environments.gym_classes.walk import Base
 
 
 class Moves(Base):

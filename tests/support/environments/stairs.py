@@ -13,8 +13,8 @@ FIRST, LAST = 3, 9
 
 def register() -> None:
     """Registers both forms with Gymnasium, also in a worker process."""
-    gym.register("tests/Stairs-v0", "support.stairs:Stairs", max_episode_steps=30)
-    gym.register("tests/OrdinaryStairs-v0", "support.stairs:OrdinaryStairs", max_episode_steps=30)
+    gym.register("tests/Stairs-v0", "support.environments.stairs:Stairs", max_episode_steps=30)
+    gym.register("tests/OrdinaryStairs-v0", "support.environments.stairs:OrdinaryStairs", max_episode_steps=30)
 
 
 class Stairs(qtab.FunctionalEnv):

@@ -1,6 +1,6 @@
 """Kills processes that save a run again and again, and loads what they left each time.
 
-python tests/support/kill_saves.py FOLDER KILLS
+python tests/support/files/kill_saves.py FOLDER KILLS
 """
 
 import os

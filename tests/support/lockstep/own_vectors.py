@@ -7,7 +7,7 @@ import numpy as np
 from gymnasium.vector import AutoresetMode, SyncVectorEnv
 
 import qtab
-from support.vector import assert_equal, position
+from support.lockstep.vector import assert_equal, position
 
 
 def make(name: str, num_envs: int, mode: AutoresetMode = AutoresetMode.NEXT_STEP, **kwargs: Any) -> tuple[Any, Any]:

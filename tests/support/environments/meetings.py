@@ -13,8 +13,9 @@ from hypothesis import strategies as st
 from qtab.config.choices import Algorithm
 from qtab.config.options import ONE_STEP, PREFERENCES, TABLES_ONLY
 from support.environments import Chain, Walk
-from support.gridworld import Room, Tutorial
-from support.learner_settings import (
+from support.environments.gridworld import Room, Tutorial
+from support.environments.masked import MASKS, MaskedGraph
+from support.learners.learner_settings import (
     BY_EPISODE,
     LIMITS,
     explorations,
@@ -22,7 +23,6 @@ from support.learner_settings import (
     own_options,
     possible_explorations,
 )
-from support.masked import MASKS, MaskedGraph
 
 CAR = "MountainCar-v0"
 ALGORITHMS = get_args(Algorithm)

@@ -7,7 +7,7 @@ from typing import Any
 import gymnasium as gym
 
 from support.exact import bitwise
-from support.machine import MACHINE
+from support.processes.machine import MACHINE
 
 
 def outcome(call: Any, env: Any) -> Any:
