@@ -1,4 +1,4 @@
-"""The pictures of docs/gallery/motion.md; `tests/test_page_code.py` runs its code."""
+"""The pictures of docs/gallery/motion.md; `tests/docs/test_page_code.py` runs its code."""
 
 from support.repository import ROOT
 
