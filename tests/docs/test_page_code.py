@@ -71,7 +71,7 @@ def check_motion(namespace: dict[str, Any]) -> None:
     assert Path("run.html").stat().st_size < 1_000_000
     with Image.open("learning.gif") as gif:
         assert gif.n_frames == 2
-    with Image.open("agent.gif") as made, Image.open(ROOT / "docs/gallery/agent.gif") as stored:
+    with Image.open("agent.gif") as made, Image.open(ROOT / "docs/gallery/pictures/agent.gif") as stored:
         assert (made.size, made.n_frames) == (stored.size, stored.n_frames)
 
 

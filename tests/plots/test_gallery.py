@@ -24,12 +24,12 @@ def test_a_block_of_the_page_makes_its_picture(tmp_path: Path) -> None:
     gallery = script()
     found = gallery.blocks(PAGE)
     imports = "import qtab\n"
-    gallery.draw(imports + found["lake.png"], {}, tmp_path / "lake.png")
-    with Image.open(tmp_path / "lake.png") as drawn, Image.open(PAGE.parent / "lake.png") as stored:
+    gallery.draw(imports + found["pictures/lake.png"], {}, tmp_path / "lake.png")
+    with Image.open(tmp_path / "lake.png") as drawn, Image.open(PAGE.parent / "pictures/lake.png") as stored:
         assert drawn.size == stored.size
 
 
 def test_every_picture_of_the_gallery_has_its_code_and_is_small() -> None:
-    pictures = {path.name for path in PAGE.parent.glob("*.png")}
+    pictures = {f"pictures/{path.name}" for path in PAGE.parent.glob("pictures/*.png")}
     assert set(script().blocks(PAGE)) == pictures
-    assert max(path.stat().st_size for path in PAGE.parent.glob("*.png")) < 100_000
+    assert max(path.stat().st_size for path in PAGE.parent.glob("pictures/*.png")) < 100_000

@@ -1,7 +1,7 @@
-"""Reproduces the book's figures: prints each table and writes each picture to docs/book.
+"""Reproduces the book's figures: prints each table and writes each picture to docs/book/pictures.
 
-python docs/book.py            # all of them
-python docs/book.py 6.3 10.4   # some of them
+python docs/book/pictures.py            # all of them
+python docs/book/pictures.py 6.3 10.4   # some of them
 """
 
 import sys
@@ -14,7 +14,7 @@ import qtab
 
 DOTS_PER_INCH = 110
 
-folder = Path(__file__).parent / "book"
+folder = Path(__file__).parent / "pictures"
 folder.mkdir(exist_ok=True)
 for name in sys.argv[1:] or qtab.book.EXPERIMENTS:
     experiment = qtab.book.find(name)
