@@ -39,7 +39,7 @@ def main() -> None:
     parser.add_argument("--browser", action=argparse.BooleanOptionalAction, default=True, help="open every page")
     asked = parser.parse_args()
     quick = asked.quick
-    sys.path.insert(0, str(HERE / "_checks"))
+    sys.path.insert(0, str(HERE / "_site" / "checks"))
     import browser
     import links
     import static

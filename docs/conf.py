@@ -9,7 +9,7 @@ import qtab
 sys.modules["qtab.designs"] = qtab.designs
 
 HERE = Path(__file__).parent
-sys.path.insert(0, str(HERE / "_extensions"))
+sys.path.insert(0, str(HERE / "_site" / "extensions"))
 
 project = "qtab"
 author = "The qtab developers"
@@ -25,7 +25,7 @@ extensions = [
     "sphinx.ext.napoleon",
     "sphinx_copybutton",
     "sphinx_design",
-    # From docs/_extensions:
+    # From docs/_site/extensions:
     "local_mathjax",
     "notebooks",
     "outside_links",
@@ -33,9 +33,9 @@ extensions = [
     "public_names",
     "short_signatures",
 ]
-exclude_patterns = ["_build", "_checks", "_extensions", "_inventories", "_templates", "**/_*.md"]
+exclude_patterns = ["_build", "_site", "**/_*.md"]
 exclude_patterns += ["notebooks/walkthroughs"]  # downloads of pages that are in Markdown
-templates_path = ["_templates"]
+templates_path = ["_site/templates"]
 nitpicky = True
 suppress_warnings = [
     "config.cache",  # functions in the configuration
@@ -71,7 +71,7 @@ napoleon_custom_sections = [
 
 # The inventories are kept here because the build has no network. They list only the names that our pages use.
 intersphinx_mapping = {
-    name: (url, str(HERE / "_inventories" / f"{name}.txt"))
+    name: (url, str(HERE / "_site" / "inventories" / f"{name}.txt"))
     for name, url in {
         "python": "https://docs.python.org/3/",
         "numpy": "https://numpy.org/doc/stable/",

@@ -19,14 +19,14 @@ def load(path: str) -> Any:
 
 
 def problems(site: Path) -> list[str]:
-    static = load("docs/_checks/static.py")
+    static = load("docs/_site/checks/static.py")
     found: list[str] = static.problems(site, static.read(site))
     return found
 
 
 def broken_links(site: Path) -> list[str]:
-    pages = load("docs/_checks/static.py").read(site)
-    return list(load("docs/_checks/links.py").problems(site, pages))
+    pages = load("docs/_site/checks/static.py").read(site)
+    return list(load("docs/_site/checks/links.py").problems(site, pages))
 
 
 @pytest.mark.parametrize(
@@ -103,7 +103,7 @@ def test_links_that_lead_somewhere_are_left_in_peace(tmp_path: Path) -> None:
 
 def test_links_out_of_the_documentation_become_pages_of_the_site() -> None:
     pytest.importorskip("sphinx")
-    links = load("docs/_extensions/outside_links.py")
+    links = load("docs/_site/extensions/outside_links.py")
     text = "[a](../../examples/study.ipynb) [b](../../CONTRIBUTING.md#tasks) [c](spaces.md) ![d](../gallery/x.png)"
     assert links.rewrite(text, "docs/how_to") == (
         "[a](../notebooks/study.ipynb) [b](../reference/contributing.md) [c](spaces.md) ![d](../gallery/x.png)"
