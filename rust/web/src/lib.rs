@@ -7,6 +7,7 @@ mod environment;
 pub mod exports;
 mod failure;
 mod json;
+mod learners;
 mod map;
 mod playground;
 mod report;

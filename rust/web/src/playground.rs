@@ -80,7 +80,11 @@ impl Playground {
             "step" => self.started()?.step()?,
             "report" => {
                 let Some(training) = &self.training else { return Err(not_started()) };
-                let best = if flag("best") { self.planner.of(training) } else { None };
+                let best = if flag("best") {
+                    self.planner.of(&training.environment, &training.settings, &training.cells)
+                } else {
+                    None
+                };
                 let parts = [flag("returns"), flag("map"), flag("episode")];
                 return Ok(written(&report(training, best, parts, &mut self.arrays)));
             }

@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use crate::learners::greedy::{Episode, mean_action_value};
 use crate::map::Cells;
 use crate::map::best::Best;
-use crate::runs::episode::{Episode, mean_action_value};
 use crate::runs::run::Progress;
 use crate::runs::{State, Training};
 use crate::updates::{Update, Watch};

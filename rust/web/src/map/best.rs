@@ -11,7 +11,6 @@ use qtab_core::{Env, StopFlag};
 
 use crate::environment::Environment;
 use crate::map::Cells;
-use crate::runs::Training;
 use crate::settings::Settings;
 
 /// The largest number of backups: about a tenth of a second.
@@ -38,9 +37,8 @@ pub(crate) struct Planner {
 }
 
 impl Planner {
-    /// The best values; `None` if they are not known, or computing them would take too long.
-    pub(crate) fn of(&self, training: &Training) -> Option<Best> {
-        let Training { environment, settings, cells, .. } = training;
+    /// The best values in the cells of a map; `None` if they are not known, or computing them would take too long.
+    pub(crate) fn of(&self, environment: &Environment, settings: &Settings, cells: &Cells) -> Option<Best> {
         match environment {
             Environment::MountainCar(car) => self.of_mountain_car(*car, settings, cells),
             _ => of_table(environment.mdp()?, settings, cells),

@@ -1,7 +1,5 @@
 //! Runs that differ only in their seeds, advanced in turn so that all of them have about the same number of episodes.
 
-pub(crate) mod any_learner;
-pub(crate) mod episode;
 mod memory;
 pub(crate) mod run;
 mod subject;

@@ -11,8 +11,8 @@ use qtab_core::{Env, StopFlag, Task, Trainer};
 
 use crate::environment::{Environment, NumberedBlackjack};
 use crate::failure::Failure;
-use crate::runs::any_learner::AnyLearner;
-use crate::runs::episode::{Episode, greedy_action};
+use crate::learners::AnyLearner;
+use crate::learners::greedy::{Episode, greedy_action};
 use crate::runs::run::Run;
 use crate::settings::{Discretizer, Settings};
 use crate::updates::Watch;

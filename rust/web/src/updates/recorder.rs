@@ -8,7 +8,7 @@ use qtab_core::schedules::LoggedUpdate;
 use qtab_core::tasks::Next;
 use qtab_core::{Learner, delegate_learner};
 
-use crate::runs::any_learner::AnyLearner;
+use crate::learners::AnyLearner;
 use crate::updates::step_terms::StepTerms;
 use crate::updates::{Update, UpdateKind, Watch};
 

@@ -5,8 +5,8 @@ use qtab_core::learners::{Agent, TraceKind, Traces};
 use qtab_core::schedules::{LearningRate, StepSize};
 use qtab_core::tasks::Next;
 
-use crate::runs::any_learner::AnyLearner;
-use crate::runs::episode::{action_value, greedy_action};
+use crate::learners::AnyLearner;
+use crate::learners::greedy::{action_value, greedy_action};
 use crate::updates::{StepEnd, Update, UpdateKind};
 
 /// The value of the next state, before the step.

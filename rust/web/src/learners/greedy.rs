@@ -1,4 +1,4 @@
-//! An episode of the greedy policy.
+//! The greedy policy of a table: action values, and an episode.
 
 /// The steps of an episode.
 #[derive(Clone, Debug, Default, PartialEq)]

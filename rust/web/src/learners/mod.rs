@@ -4,6 +4,8 @@
 //! inspection reads: traces, the second table, the logs of the learning rates. A page must load this module, so it stays
 //! small.
 
+pub(crate) mod greedy;
+
 use qtab_core::features::ActiveRows;
 use qtab_core::learners::{
     Agent, AnyAlgorithm, DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, Model, NStepSarsa, QLearning, Sarsa,
