@@ -67,6 +67,7 @@ def _own_code() -> str:
     return hashlib.sha256(b"".join(path.read_bytes() for path in files)).hexdigest()
 
 
+@functools.cache
 def numba_version() -> str:
     """Returns the version of Numba without its import, which takes longer than all else when code is loaded."""
     from importlib.metadata import version

@@ -5,6 +5,7 @@ file was edited since, and comments and formatting do not change it. It differs 
 """
 
 import dis
+import functools
 import hashlib
 import inspect
 import sys
@@ -133,9 +134,17 @@ def _stored_attributes(cls: type) -> Iterator[str]:
     """Yields the attributes that a method assigns; a class attribute of such a name is not a constant."""
     for member in vars(cls).values():
         for function in _functions(member):
-            for instruction in dis.get_instructions(function):
-                if instruction.opname == "STORE_ATTR":
-                    yield instruction.argval
+            yield from _stored(function.__code__)
+
+
+@functools.lru_cache(maxsize=4096)
+def _stored(code: CodeType) -> frozenset[str]:
+    """Returns the attributes that code assigns, without those of the functions that it defines.
+
+    Code never changes, and each run reads that of Gymnasium's base classes: without the cache, this takes a fifth of a
+    run of 5,000 episodes.
+    """
+    return frozenset(one.argval for one in dis.get_instructions(code) if one.opname == "STORE_ATTR")
 
 
 def state_attributes(cls: type) -> set[str]:
@@ -146,11 +155,11 @@ def state_attributes(cls: type) -> set[str]:
     assigned: set[str] = set()
     names = ["reset", "step", "render", "close"]
     for name in names:  # grows by the methods that are called
-        for function in chain.from_iterable(_functions(vars(base).get(name)) for base in cls.__mro__):
+        members = [vars(base)[name] for base in cls.__mro__ if name in vars(base)]
+        for function in chain.from_iterable(map(_functions, members)):
             for code in _nested(function.__code__):
-                stored = {one.argval for one in dis.get_instructions(code) if one.opname == "STORE_ATTR"}
-                assigned |= stored
-                names += sorted({*code.co_names} - stored - {*names})
+                assigned |= _stored(code)
+                names += sorted({*code.co_names} - _stored(code) - {*names})
     return assigned
 
 

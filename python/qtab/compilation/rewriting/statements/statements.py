@@ -2,6 +2,7 @@
 
 import ast
 import importlib
+from functools import cached_property
 from typing import Any
 
 from qtab.compilation.rewriting import specials
@@ -95,7 +96,7 @@ class Statements(Displays):
                 return True
         return False
 
-    @property
+    @cached_property
     def infos(self) -> set[str]:
         """The names of info dicts, which are left out."""
         return info_names(self.source.node) if self.role in ("reset", "step") else set()
