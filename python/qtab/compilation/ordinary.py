@@ -111,25 +111,22 @@ class OrdinaryEnv:
     def _make(self, observation: ObservationLayout) -> machine_code.MachineCode:
         from qtab.compilation.c_functions import compiler
         from qtab.compilation.c_functions.record_shims import compile_record
+        from qtab.compilation.rewriting.tuple_observations import with_tuple_observations
 
+        rewritten = with_tuple_observations(self.rewritten)
         space: Any = self.env.action_space
         name = type(self.env).__name__
 
         def compile_functions(report: compiler.Report) -> dict[str, Any]:
-            return compile_record(self.rewritten, self.record, observation, int(space.n), int(space.start), report)
+            return compile_record(rewritten, self.record, observation, int(space.n), int(space.start), report)
 
         try:
             return compiler.compiled(name, {f"<{name}>"}, compile_functions)
         except NotNow:
             raise
         except NotCompilable as refusal:
-            raise self._of_users_line(refusal) from None
-
-    def _of_users_line(self, refusal: NotCompilable) -> NotCompilable:
-        """Returns an error for the user's line, given one for a line of the rewritten functions."""
-        place = self.rewritten.lines.get(refusal.line or 0)
-        file, line = place if place is not None else (None, None)
-        return NotCompilable(refusal.reason, file, line, refusal.advice)
+            file, line = rewritten.lines.get(refusal.line or 0, (None, None))
+            raise NotCompilable(refusal.reason, file, line, refusal.advice) from None
 
     def _prove(self, compiled: CompiledEnv) -> None:
         twin = ClassTwin(self.env, self.record, compiled.observation)
