@@ -15,7 +15,7 @@ from qtab.compilation.called_functions import helper_methods, methods_of, names_
 from qtab.compilation.interface.qtab_env import FAILED, TERMINATED
 from qtab.compilation.layouts.observation_layout import ObservationLayout
 from qtab.compilation.layouts.parameters import Parameters
-from qtab.compilation.layouts.value_layout import Layout, Number
+from qtab.compilation.layouts.value_layout import Array, Layout, Number, Tuple
 from qtab.compilation.not_compilable import NotCompilable
 
 MOST_STATE_TYPES = 8
@@ -63,7 +63,14 @@ def compile_functional(
         mask = returned_type(functions["action_mask"], (given, of_state))
         scope["write_mask"] = mask_writer(int(env.action_space.n), mask)
     report()
-    return c_functions(_source("action_mask" in functions), scope, report), state
+    moved = returned_type(functions["transition"], (given, of_state, types.int64, GENERATOR)).types[0]
+    # Numbers that the transition returned need not be read again, for which the processor would wait.
+    following = "following" if moved == of_state and not _has_arrays(state) else "read_state(next_address)"
+    return c_functions(_source("action_mask" in functions, following), scope, report), state
+
+
+def _has_arrays(layout: Layout) -> bool:
+    return isinstance(layout, Array) or (isinstance(layout, Tuple) and any(map(_has_arrays, layout.items)))
 
 
 def _state_layout(functions: dict[str, Any], given: Any, example: Any) -> Layout:
@@ -92,7 +99,7 @@ def _check_transition(returned: Any) -> None:
         raise NotCompilable(f"transition returns {terminated} as terminated, not a boolean")
 
 
-def _source(masked: bool) -> str:
+def _source(masked: bool, following: str) -> str:
     mask = (
         """
     if not write_mask(mask_address, action_mask(self, state), {terminated}):
@@ -114,7 +121,7 @@ def qtab_step(parameters, rng, state_address, action, next_address, observation_
     following, reward, terminated = transition(self, read_state(state_address), action + start, generator_at(rng))
     write_state(next_address, following)
     write_reward(reward_address, reward)
-    state = read_state(next_address)
+    state = {following}
     if not write_observation(observation_address, observe(self, state)):
         return np.int32(FAILED){mask.format(terminated="terminated")}
     return np.int32(TERMINATED) if terminated else np.int32(0)
