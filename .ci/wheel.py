@@ -26,7 +26,7 @@ env.reset(seed=0)
 env.step(env.action_space.sample())
 
 if os.environ.get("QTAB_PLAYGROUND"):  # where it could be built
-    assert "AGFzbQ" in qtab.playground.page(), "the wheel lacks the WebAssembly module of the playground"
+    assert '"wasm":"H4sI' in qtab.playground.page(), "the wheel lacks the WebAssembly module of the playground"
 
 try:
     qtab.plot(run)

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import qtab
-from support.command import TOYS, environment
+from support.processes.command import TOYS, environment
 
 SCRIPT = "import sys\nfrom qtab.cli import main\nsys.exit(main())\n"
 """The installed command ``qtab``, whose folder Python puts on the search path instead of the current one."""

@@ -8,9 +8,9 @@ import gymnasium as gym
 import pytest
 
 import qtab
-from support.errand import SETTINGS, Errand, ErrandClass
-from support.libraries import EXAMPLES, compile_c, needs_compiler
-from support.own_environments import WindyGrid
+from support.environments.errand import SETTINGS, Errand, ErrandClass
+from support.environments.own import WindyGrid
+from support.native.libraries import EXAMPLES, compile_c, needs_compiler
 
 LIMIT = 1000
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import qtab
-from support.errand import SETTINGS, Errand, ErrandClass
-from support.own_environments.gymnasium_class import Corridor
+from support.environments.errand import SETTINGS, Errand, ErrandClass
+from support.environments.own.gymnasium_class import Corridor
 
 LIMIT = 200
 

@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from support import pages
+from support.documents import pages
 from support.playground import Playground
 from support.repository import ROOT
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import qtab
-from support.errand import SETTINGS, Errand, ErrandClass
-from support.own_environments import Cliff, WindyGrid
+from support.environments.errand import SETTINGS, Errand, ErrandClass
+from support.environments.own import Cliff, WindyGrid
 
 plt = pytest.importorskip("matplotlib.pyplot")
 from qtab.plots.arrangements.tuples import components, tuples  # noqa: E402 - after the check for matplotlib

@@ -2,8 +2,8 @@
 
 ``python tests/support/playground/slider_to_redraw.py`` trains 5,000 episodes of the article for each of 15 learning
 rates, in Chromium without a graphics card, and prints medians and ranges by the page's own clock. With the name of an
-algorithm, as in ``python tests/support/playground/slider_to_redraw.py sarsa``, it trains a second agent beside the first
-one. Nothing else should run meanwhile.
+algorithm, as in ``python tests/support/playground/slider_to_redraw.py sarsa``, it trains a second agent beside the
+first one. Nothing else should run meanwhile.
 """
 
 import os

@@ -3,7 +3,7 @@
 import numpy as np
 
 import qtab
-from support.lessons import SEEDS, Claims, Lesson, Lessons, last
+from support.playground.lessons import SEEDS, Claims, Lesson, Lessons, last
 
 
 def taxi_exploring(lesson: Lesson, _: Lessons) -> None:
