@@ -1,4 +1,4 @@
-"""The layout of the repository: few modules at the top, imports in one direction, short files."""
+"""The layout of the repository: few modules at the top, imports in one direction, short files and folders."""
 
 import ast
 import functools
@@ -14,6 +14,17 @@ from support.repository import PACKAGE, ROOT, tracked_files
 
 MAX_TOP_LEVEL_MODULES = 8
 MAX_LINES = 300
+MAX_ENTRIES = 16
+CROWDED = {
+    "docs/book/pictures": "one picture per figure of the book",
+    "docs/gallery/pictures": "one picture per block of code in the gallery",
+    "docs/how_to": "one page per question; the path of a page is its address",
+    "python/qtab": "one folder per subject; the path of a module is how it is imported",
+    "rust/core/src": "the modules of the crate, which users name in paths",
+    "rust/web/src": "the modules of the WebAssembly module, each in a file",
+    "tests": "the folders of python/qtab, and those of what has no folder there",
+}
+"""The folders with more entries than ``MAX_ENTRIES``, and the reason for each."""
 
 ORDER = (
     {"_utils"},
@@ -247,6 +258,17 @@ def test_no_two_rust_types_have_the_same_name(crate: str) -> None:
     names = Counter(name for path in sources for name in defined.findall(path.read_text(encoding="utf-8")))
     assert len(names) > 10, "the sources were not found"
     assert [name for name, count in names.items() if count > 1] == []
+
+
+def test_no_folder_has_many_entries() -> None:
+    entries: dict[str, set[str]] = {}
+    for path in tracked_files(""):
+        names = path.relative_to(ROOT).parts
+        for depth in range(1, len(names)):
+            entries.setdefault("/".join(names[:depth]), set()).add(names[depth])
+    assert len(entries) > 100, "the folders were not found"
+    crowded = {folder: len(names) for folder, names in entries.items() if len(names) > MAX_ENTRIES}
+    assert {folder: count for folder, count in crowded.items() if folder not in CROWDED} == {}
 
 
 def test_no_source_file_is_long() -> None:
