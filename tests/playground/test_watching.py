@@ -42,6 +42,7 @@ def test_a_slow_run_is_watched_and_ends_as_a_fast_one(playground: Playground) ->
     playground.page.wait_for_function("() => playground.view.result.current?.step > 3")
     assert playground.text("motion-title") == "The agent in training"
     assert playground.page.evaluate("() => playground.training.state") == "training"
+    assert playground.text("inspection").startswith("Stop the training to see")
     assert playground.page.evaluate(PACE, None) == "all at once"
     playground.page.wait_for_function("() => playground.training.state === 'finished'")
     assert playground.settled().result() == fast

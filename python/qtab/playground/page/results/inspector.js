@@ -57,11 +57,11 @@ const ENDS = {
   truncated_as_terminal: "the time limit ends the episode, and the next state counts as terminal",
 };
 
-/** Shows an inspection below a title; null shows how to select a state. */
-export function showInspection(title, place, inspection, actions, bootstraps) {
+/** Shows an inspection below a title; null shows a hint, such as how to select a state. */
+export function showInspection(title, place, inspection, actions, bootstraps, hint = HINT) {
   if (!inspection) {
     title.textContent = "A state and its numbers";
-    place.replaceChildren(make("p", { className: "hint", textContent: HINT }));
+    place.replaceChildren(make("p", { className: "hint", textContent: hint }));
     return;
   }
   title.textContent = `State: ${inspection.state}`;

@@ -25,6 +25,7 @@ import { PAINTED } from "../store.js";
 
 const element = (id) => document.getElementById(id);
 const FOLLOWED_PACE = 300; // steps a second
+const WHEN_STOPPED = "Stop the training to see how much each action of a state is worth, and its last updates.";
 
 /** Shows results: the last one of a run at once, and during training the newest one in each frame. */
 export class View {
@@ -352,8 +353,12 @@ export class View {
   }
 
   showState() {
-    const { inspection, state } = this.result;
-    if (!inspection && state === "training") return;
+    const { inspection, state, pace } = this.result;
+    if (!inspection && state === "training") {
+      // A slow run would keep the numbers of an earlier one for long.
+      if (pace !== Infinity) showInspection(element("inspector-title"), element("inspection"), null, null, null, WHEN_STOPPED);
+      return;
+    }
     if (this.values.selected !== (inspection?.cell ?? null) && inspection) this.values.select(inspection.cell);
     const { actions } = this.store.entry;
     const bootstraps = this.store.definitions.bootstraps[this.store.state.settings.algorithm];
