@@ -121,6 +121,11 @@ LARGE = [
     "1.0 if n * 2**54 > 1e18 else 0.0",
     "-((n - 61) << 63)",
     "abs((n - 61) << 63)",
+    "rng.uniform(0, n * 2**50 + 1)",
+    "rng.uniform(low=-n * 2**50, high=1.0)",
+    "rng.triangular(0, 1, n * 2**50 + 1)",
+    "rng.noncentral_f(n * 2**50 + 1, 3, 2)",
+    "rng.normal(n * 2**50 + 1, x)",
 ]
 
 

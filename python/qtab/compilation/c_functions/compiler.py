@@ -14,6 +14,7 @@ from numba.core.errors import NumbaError
 from qtab._utils.progress import ProgressBar
 from qtab.compilation.cache import machine_code
 from qtab.compilation.checks.checked_operations import OPTIONS
+from qtab.compilation.checks.mixed_numbers import callees
 from qtab.compilation.checks.numba_errors import not_compilable
 from qtab.compilation.checks.typed_code import refusals
 from qtab.compilation.not_compilable import NotCompilable, NotNow
@@ -47,18 +48,26 @@ def compiled(name: str, files: Iterable[str], compile_functions: Callable[[Repor
         CannotLoad: if the code refers to objects of this process.
     """
     refusals.clear()
+    callees.clear()
     started = time.perf_counter()
     with warnings.catch_warnings(), ProgressBar(STAGES, "stage", None, f"compiling {name}") as bar:
         warnings.simplefilter("ignore")
-        done = count(1)
 
-        def report() -> None:
-            bar.move_to(next(done))
-            if refusals:
-                raise refusals[0]
+        def functions() -> dict[str, Any]:
+            done = count(1)
+
+            def report() -> None:
+                bar.move_to(next(done))
+                if refusals:
+                    raise refusals[0]
+
+            callees.begin()
+            found: dict[str, Any] = compile_functions(report)
+            # Functions that were compiled before their callers may receive more than they were checked for.
+            return functions() if callees.is_stale else found
 
         try:
-            made = machine_code.make(compile_functions(report), ARGUMENTS)
+            made = machine_code.make(functions(), ARGUMENTS)
         except NumbaError as error:
             raise not_compilable(error, files) from None
         except (NotCompilable, machine_code.CannotLoad):

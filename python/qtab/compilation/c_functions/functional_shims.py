@@ -12,6 +12,8 @@ from qtab.compilation.c_functions.memory_access import layout_from, reader, type
 from qtab.compilation.c_functions.observation_writers import mask_writer, observation_writer
 from qtab.compilation.c_functions.self_type import self_at, self_type
 from qtab.compilation.called_functions import helper_methods, methods_of, names_of, reachable
+from qtab.compilation.checks.exact_values import exact_checker
+from qtab.compilation.checks.mixed_numbers import Paths, callees, converted
 from qtab.compilation.interface.qtab_env import FAILED, TERMINATED
 from qtab.compilation.layouts.observation_layout import ObservationLayout
 from qtab.compilation.layouts.parameters import Parameters
@@ -55,6 +57,10 @@ def compile_functional(
         "self_at": self_at(given),
         "read_state": reader(state),
         "write_state": writer(state),
+        "check_first": exact_checker(returned_type(functions["initial_state"], (given, GENERATOR)), of_state),
+        "check_next": exact_checker(
+            returned_type(functions["transition"], (given, of_state, types.int64, GENERATOR)).types[0], of_state
+        ),
         "write_observation": observation_writer(observation, seen),
         "write_reward": writer(Number(np.dtype(np.float64))),
         "start": int(env.action_space.start),
@@ -77,16 +83,28 @@ def _state_layout(functions: dict[str, Any], given: Any, example: Any) -> Layout
     """Returns the layout of the states: that of the first ones, until transitions from them return no other type."""
     try:
         layout = layout_from(returned_type(functions["initial_state"], (given, GENERATOR)), example)
+        _note_mixed_state(functions, callees.result(functions["initial_state"].py_func.__code__))
         for _ in range(MOST_STATE_TYPES):
             returned = returned_type(functions["transition"], (given, type_of(layout), types.int64, GENERATOR))
             _check_transition(returned)
             following = united(layout, layout_from(returned.types[0], example))
+            for one in (layout, layout_from(returned.types[0], example)):
+                _note_mixed_state(functions, frozenset(converted(type_of(one), type_of(following))))
+            results = callees.result(functions["transition"].py_func.__code__)
+            _note_mixed_state(functions, frozenset(path[1:] for path in results if path[:1] == (0,)))
             if following == layout:
                 return layout
             layout = following
     except TypeError as error:
         raise NotCompilable(str(error), advice="a state is a number, an array, or a tuple of them") from None
     raise NotCompilable("the type of the state does not settle")
+
+
+def _note_mixed_state(functions: dict[str, Any], paths: Paths) -> None:
+    """Notes the floats of the state that are sometimes integers in Python."""
+    for name in ("transition", "observe", "action_mask"):
+        if name in functions:
+            callees.give(functions[name].py_func.__code__, 1, paths)
 
 
 def _check_transition(returned: Any) -> None:
@@ -110,7 +128,9 @@ def _source(masked: bool, following: str) -> str:
     return f"""
 def qtab_reset(parameters, rng, state_address, observation_address, mask_address):
     self = self_at(parameters)
-    write_state(state_address, initial_state(self, generator_at(rng)))
+    first = initial_state(self, generator_at(rng))
+    check_first(first)
+    write_state(state_address, first)
     state = read_state(state_address)
     if not write_observation(observation_address, observe(self, state)):
         return np.int32(FAILED){mask.format(terminated=False)}
@@ -119,6 +139,7 @@ def qtab_reset(parameters, rng, state_address, observation_address, mask_address
 def qtab_step(parameters, rng, state_address, action, next_address, observation_address, reward_address, mask_address):
     self = self_at(parameters)
     following, reward, terminated = transition(self, read_state(state_address), action + start, generator_at(rng))
+    check_next(following)
     write_state(next_address, following)
     write_reward(reward_address, reward)
     state = {following}

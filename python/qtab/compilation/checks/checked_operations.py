@@ -56,10 +56,11 @@ def _exact(name: str) -> Any:
             raise OverflowError
         return result
 
-    return _compiled(exact)
+    return compiled(exact)
 
 
-def _compiled(function: Any) -> Any:
+def compiled(function: Any) -> Any:
+    """Returns a function for compiled code."""
     return numba.njit(**OPTIONS)(function)
 
 
@@ -122,12 +123,12 @@ INTEGER_OPERATIONS: dict[Any, Any] = {
     operator.add: _add,
     operator.sub: _subtract,
     operator.mul: _multiply,
-    operator.lshift: _compiled(_shift_left),
-    operator.rshift: _compiled(_shift_right),
-    operator.truediv: _compiled(_divide),
-    operator.floordiv: _compiled(_floor_divide),
-    operator.mod: _compiled(_remainder),
-    operator.pow: _compiled(_power),
+    operator.lshift: compiled(_shift_left),
+    operator.rshift: compiled(_shift_right),
+    operator.truediv: compiled(_divide),
+    operator.floordiv: compiled(_floor_divide),
+    operator.mod: compiled(_remainder),
+    operator.pow: compiled(_power),
 }
 """Operations of two int64 by their operators."""
 
@@ -136,7 +137,7 @@ def _negative(value: Any) -> Any:
     return _subtract(0, value)
 
 
-negative: Any = _compiled(_negative)
+negative: Any = compiled(_negative)
 """``-value`` of an int64."""
 
 
@@ -144,7 +145,7 @@ def _absolute(value: Any) -> Any:
     return negative(value) if value < 0 else value
 
 
-absolute: Any = _compiled(_absolute)
+absolute: Any = compiled(_absolute)
 """``abs`` of an int64."""
 
 
@@ -152,11 +153,13 @@ def _range_check(low: int, high: int) -> Any:
     source = f"def check(value):\n    if value < {low} or value > {high}:\n        raise OverflowError\n"
     scope: dict[str, Any] = {}
     exec(source, scope)  # noqa: S102 - code of this module
-    return _compiled(scope["check"])
+    return compiled(scope["check"])
 
 
 exact_integer: Any = _range_check(-LARGEST_EXACT, LARGEST_EXACT)
 """Raises an error for an integer that is no float."""
+exact_float: Any = _range_check(1 - LARGEST_EXACT, LARGEST_EXACT - 1)
+"""Raises an error for a float that was computed from integers, if the result may have been rounded."""
 RANGE_CHECKS: dict[Any, Any] = {
     numba.from_dtype(np.dtype(name)): _range_check(int(np.iinfo(name).min), min(int(np.iinfo(name).max), 2**63 - 1))
     for name in ("int8", "int16", "int32", "uint8", "uint16", "uint32", "uint64")
@@ -169,7 +172,7 @@ def _float_range_check(name: str) -> Any:
     source = f"def check(value):\n    if not ({float(low)!r} < value < {float(high)!r}):\n        raise OverflowError\n"
     scope: dict[str, Any] = {}
     exec(source, scope)  # noqa: S102 - code of this module
-    return _compiled(scope["check"])
+    return compiled(scope["check"])
 
 
 FLOAT_RANGE_CHECKS: dict[Any, Any] = {
@@ -185,7 +188,7 @@ def _to_int(value: Any) -> Any:
     return np.int64(value)
 
 
-to_int: Any = _compiled(_to_int)
+to_int: Any = compiled(_to_int)
 """``int`` of a float."""
 
 
@@ -193,7 +196,7 @@ def _round(value: Any) -> Any:
     return to_int(np.rint(value))
 
 
-rounded: Any = _compiled(_round)
+rounded: Any = compiled(_round)
 """``round`` of a float to an integer."""
 
 
@@ -206,7 +209,7 @@ def _defined(argument: Any, result: Any) -> Any:
 
 
 def _math_function(name: str) -> Any:
-    scope: dict[str, Any] = {"math": math, "np": np, "defined": _compiled(_defined), "to_int": to_int}
+    scope: dict[str, Any] = {"math": math, "np": np, "defined": compiled(_defined), "to_int": to_int}
     smallest = {"log": "0.0", "log10": "0.0", "log2": "0.0", "log1p": "-1.0"}
     if name in MATH_TWO:
         source = f"def f(x, y):\n    return math.{name}(np.float64(x), np.float64(y))\n"
@@ -220,8 +223,33 @@ def _math_function(name: str) -> Any:
             result = f"defined(z, {result})"
         source = f"def f(x):\n    z = np.float64(x)\n{check}    return {result}\n"
     exec(source, scope)  # noqa: S102 - code of this module
-    return _compiled(scope["f"])
+    return compiled(scope["f"])
 
+
+def _clip_check(with_arrays: bool) -> Any:
+    counted = """        if number == 0.0:
+            plus, minus = plus or math.copysign(1.0, number) > 0.0, minus or math.copysign(1.0, number) < 0.0
+"""
+    loops = [
+        f"    for number in {one}:\n{counted}"
+        for one in (["low.flat", "high.flat"] if with_arrays else ["(float(low), float(high))"])
+    ]
+    source = f"""def check(values, low, high):
+    plus = minus = False
+{"".join(loops)}    if not (plus or minus):
+        return
+    for number in values.flat:
+{counted}    if plus and minus:
+        raise ValueError
+"""
+    scope: dict[str, Any] = {"math": math}
+    exec(source, scope)  # noqa: S102 - code of this module
+    return compiled(scope["check"])
+
+
+CLIP_CHECKS = {with_arrays: _clip_check(with_arrays) for with_arrays in (False, True)}
+"""Functions of the arguments of ``np.clip``, whose bounds are numbers (False) or arrays (True). They raise an error
+where a zero may be replaced by one of the other sign: which of them is the result depends on the version of NumPy."""
 
 MATH: dict[Any, Any] = {getattr(math, name): _math_function(name) for name in MATH_NAMES}
 """Functions of ``math`` whose results have the same bits, with checks."""
@@ -234,6 +262,6 @@ INPLACE = {
 
 
 DRAW_CHECKS: dict[str, Any] = {
-    name: _compiled(draw_check(name)) for name, (_, condition) in DRAWS.items() if condition != "True"
+    name: compiled(draw_check(name)) for name, (_, condition) in DRAWS.items() if condition != "True"
 }
 """Functions of the arguments of a draw, which raise an error if NumPy may do so."""

@@ -21,7 +21,9 @@ from qtab.compilation.checks.checked_operations import (
     rounded,
     to_int,
 )
+from qtab.compilation.checks.exact_values import check_integers, check_mixed_operation, checks_after, compared
 from qtab.compilation.checks.known_functions import (
+    DRAWS,
     DRAWS_DIFFERENT,
     MATH_ADVICE,
     MATH_ROUNDED,
@@ -32,10 +34,14 @@ from qtab.compilation.checks.known_functions import (
     NUMPY_WRITES,
     OTHER_MATH,
 )
-from qtab.compilation.checks.number_types import NUMBERS, holds, is_narrow, leaf, mixed, of_integers
+from qtab.compilation.checks.made_arrays import check_made_array, check_numbers, check_of
+from qtab.compilation.checks.mixed_numbers import MIXED_OPERATIONS, NUMBER, MixedNumbers
+from qtab.compilation.checks.number_types import NUMBERS, holds, is_int64, is_narrow, leaf, mixed, of_integers
 from qtab.compilation.checks.typed_code import TypedCode
 
 CONVERT = "convert the numbers with np.int64(...) or np.float64(...)"
+MIXED = "a number that is sometimes an integer and sometimes a float: the sign of a zero would differ"
+WRITE_FLOATS = "write a float in every case, such as 0.0 for 0"
 COMPARISONS = (operator.lt, operator.le, operator.gt, operator.ge, operator.eq, operator.ne)
 
 
@@ -44,9 +50,13 @@ class Checks(TypedCode):
 
     def run(self) -> bool:
         """Changes the code; returns whether there were changes."""
+        self.mixed = MixedNumbers(self, self.state.func_id.func)
         for block in self.state.func_ir.blocks.values():
             body: list[Any] = []
+            after: list[Any] = []
             for statement in block.body:
+                if not (isinstance(statement, ir.Assign) and getattr(statement.value, "op", "") == "phi"):
+                    body, after = body + after, []
                 if isinstance(statement, ir.Assign) and isinstance(statement.value, ir.Expr):
                     body += self._expression(statement, block.scope)
                 elif isinstance(statement, ir.Assign) and isinstance(statement.value, ir.Var):
@@ -54,17 +64,21 @@ class Checks(TypedCode):
                 elif isinstance(statement, ir.SetItem | ir.StaticSetItem):
                     body += self._store(statement, block.scope)
                 body.append(statement)
-            block.body = body
+                if isinstance(statement, ir.Assign):
+                    after += checks_after(self, self.mixed, statement, block.scope)
+            block.body = body + after
         return self.made > 0
 
     def _store(self, statement: Any, scope: Any) -> list[Any]:
         of, value = self.type_of(statement.target), types.unliteral(self.type_of(statement.value))
         if isinstance(of, types.NumpyFlatType) and not of.array_type.mutable:
             self.refuse(statement, "array.flat changes an array of self", "copy the array first")
-        elif isinstance(of, types.Array) and is_narrow(of.dtype) and isinstance(value, types.Integer):
-            return self.check(RANGE_CHECKS[of.dtype], scope, [statement.value], statement.loc)
-        elif isinstance(of, types.Array) and of.dtype in FLOAT_RANGE_CHECKS and isinstance(value, types.Float):
-            return self.check(FLOAT_RANGE_CHECKS[of.dtype], scope, [statement.value], statement.loc)
+        elif isinstance(of, types.Array) and (check := check_of(of.dtype, value)) is not None:
+            return self.check(check, scope, [statement.value], statement.loc)
+        elif isinstance(of, types.Record) and isinstance(statement, ir.StaticSetItem):
+            field = of.typeof(statement.index) if isinstance(statement.index, str) else None
+            if isinstance(field, types.Float) and value == types.int64:
+                return self.check(exact_integer, scope, [statement.value], statement.loc)
         return []
 
     def _widening(self, statement: Any, sources: list[Any]) -> None:
@@ -90,6 +104,8 @@ class Checks(TypedCode):
                 self.refuse(expression, "arithmetic of booleans", "write not x, or convert it with int(...)")
             elif is_narrow(leaf(of)):
                 self.refuse(expression, mixed([leaf(of)]), "convert it with np.int64(...)")
+            elif expression.fn is operator.neg and self.mixed.is_mixed(expression.value):
+                self.refuse(expression, MIXED, WRITE_FLOATS)
             elif expression.fn is operator.neg and isinstance(of, types.Integer):
                 return self.replace(statement, scope, negative, [expression.value], [types.int64])
         return []
@@ -100,7 +116,8 @@ class Checks(TypedCode):
         given = [self.type_of(expression.lhs), self.type_of(expression.rhs)]
         kinds = [leaf(one) for one in given]
         if not all(isinstance(kind, NUMBERS) for kind in kinds):
-            return []
+            sides = compared(expression, *given) if function in (*COMPARISONS, operator.contains) else []
+            return [one for side, paths in sides for one in check_integers(self, scope, side, paths, expression.loc)]
         if function is operator.matmul:
             return self.refuse(expression, "a matrix product may add in another order", "add in a loop")
         if function not in INTEGER_OPERATIONS and function not in COMPARISONS:
@@ -109,6 +126,10 @@ class Checks(TypedCode):
             kinds = self._kinds_that_differ(expression, kinds)
         if reason := mixed(kinds):
             return self.refuse(expression, reason, CONVERT)
+        if self.mixed.differs(function, expression.lhs, expression.rhs):
+            return self.refuse(expression, MIXED, WRITE_FLOATS)
+        if function in MIXED_OPERATIONS and self.mixed.is_mixed_operation(expression.lhs, expression.rhs):
+            return check_mixed_operation(self, expression, scope)
         scalars = not any(isinstance(one, types.Array) for one in given)
         integers = scalars and all(isinstance(kind, types.Integer | types.Boolean) for kind in kinds)
         if function in COMPARISONS:
@@ -163,8 +184,9 @@ class Checks(TypedCode):
                 return self.replace(statement, scope, to_int, expression.args, [types.float64])
             if of in FLOAT_RANGE_CHECKS and isinstance(value, types.Float):
                 return self.check_arguments(expression, scope, FLOAT_RANGE_CHECKS[of])
-            if is_narrow(of) and isinstance(value, types.Integer):
-                return self.check_arguments(expression, scope, RANGE_CHECKS[of])
+            if (is_narrow(of) or of == types.float32) and isinstance(value, types.Integer):
+                check = check_of(of, value)
+                return [] if check is None else self.check_arguments(expression, scope, check)
             if of == types.int64 and value == types.uint64:
                 return self.check_arguments(expression, scope, RANGE_CHECKS[types.uint64])
             return []
@@ -181,6 +203,7 @@ class Checks(TypedCode):
             return self._math_call(statement, scope, key, name)
         elif isinstance(key, np.ufunc) or str(getattr(key, "__module__", "")).partition(".")[0] == "numpy":
             self._numpy_call(expression, key, name, given)
+            return check_made_array(self, statement, scope, name)
         return []
 
     def _builtin_call(self, statement: Any, scope: Any, key: Any, given: list[Any]) -> list[Any]:
@@ -196,6 +219,8 @@ class Checks(TypedCode):
             return self.replace(statement, scope, absolute, expression.args, [types.int64])
         elif key is sum and not of_integers(kinds[0]):
             self.refuse(expression, "a sum of floats may be added in another order", "add in a loop")
+        elif key is round and isinstance(kinds[0], types.Integer | types.Boolean):
+            statement.value = ir.Expr.cast(expression.args[0], expression.loc)  # as a float it might be rounded
         elif key in (int, round) and len(kinds) == 1 and isinstance(kinds[0], types.Float):
             return self.replace(statement, scope, to_int if key is int else rounded, expression.args, [types.float64])
         return []
@@ -238,8 +263,11 @@ class Checks(TypedCode):
                 self.refuse(expression, f"{name} can draw other numbers", "draw from another distribution")
             elif name == "shuffle" and not getattr(given[0], "mutable", True):
                 self.refuse(expression, "shuffle changes an array of self", "copy the array first")
-            elif name in DRAW_CHECKS:
-                return self.check_arguments(expression, scope, DRAW_CHECKS[name])
+            elif name in DRAWS:
+                floats = [] if name == "binomial" else [*expression.args, *(one for _, one in expression.kws)]
+                checks = [self.check_integer_argument(one, scope, expression.loc) for one in floats]
+                own = self.check_arguments(expression, scope, DRAW_CHECKS[name]) if name in DRAW_CHECKS else []
+                return [*(one for check in checks for one in check), *own]
         elif isinstance(of, types.Array):
             if name in NUMPY_SUMS and not of_integers(of):
                 self.refuse(expression, f"array.{name}() may add in another order", "add in a loop")
@@ -247,7 +275,14 @@ class Checks(TypedCode):
                 self.refuse(expression, f"array.{name}(): zeros may differ in sign", NUMPY_EXTREMES[name])
             elif name in ("sort", "fill", "partition", "put", "itemset") and not of.mutable:
                 self.refuse(expression, f"array.{name}() changes an array of self", "copy the array first")
+            elif name == "fill" and expression.args:
+                return check_numbers(self, scope, expression.args[0], of.dtype, expression)
         return []
+
+    def check_integer_argument(self, variable: Any, scope: Any, loc: Any) -> list[Any]:
+        """Returns the check of an integer that NumPy converts to a float before it computes with it."""
+        of = self.type_of(variable)
+        return check_integers(self, scope, variable, frozenset({NUMBER}), loc) if is_int64(of) else []
 
 
 def _draws_elsewhere(function: Any) -> bool:

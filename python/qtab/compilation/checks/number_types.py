@@ -14,6 +14,11 @@ def leaf(of: Any) -> Any:
     return of.dtype if isinstance(of, types.Array) else of
 
 
+def is_int64(of: Any) -> bool:
+    """Returns whether a type is int64, perhaps of a constant."""
+    return bool(types.unliteral(of) == types.int64)
+
+
 def is_narrow(of: Any) -> bool:
     """Returns whether a type is that of integers other than int64."""
     return isinstance(of, types.Integer) and (of.bitwidth < 64 or not of.signed)

@@ -9,45 +9,7 @@ from typing import Any
 
 import numpy as np
 
-
-def h_clip(value: Any, low: Any, high: Any) -> Any:
-    """Does what ``np.clip`` does with numbers, also with zeros of either sign and with NaN."""
-    raised = value if (value != value or value > low) else low
-    return raised if (raised != raised or raised < high) else high
-
-
-def h_clip_array(values: Any, low: Any, high: Any) -> Any:
-    """``np.clip`` for an array of any shape, with numbers as bounds."""
-    clipped = values.copy()
-    flat = clipped.reshape(clipped.size)
-    for i in range(flat.size):
-        flat[i] = h_clip(flat[i], low, high)
-    return clipped
-
-
-def h_clip_arrays(values: Any, low: Any, high: Any) -> Any:
-    """``np.clip`` for an array of any shape, with contiguous arrays of its shape as bounds."""
-    clipped = values.copy()
-    flat, lows, highs = clipped.reshape(clipped.size), low.reshape(low.size), high.reshape(high.size)
-    for i in range(flat.size):
-        flat[i] = h_clip(flat[i], lows[i], highs[i])
-    return clipped
-
-
-def h_clip_vector(values: Any, low: Any, high: Any) -> Any:
-    """``np.clip`` for a vector, with numbers as bounds; a loop compiles faster than functions of arrays."""
-    clipped = np.empty(values.shape[0], values.dtype)
-    for i in range(values.shape[0]):
-        clipped[i] = h_clip(values[i], low, high)
-    return clipped
-
-
-def h_clip_vectors(values: Any, low: Any, high: Any) -> Any:
-    """``np.clip`` for a vector, with vectors of its length as bounds."""
-    clipped = np.empty(values.shape[0], values.dtype)
-    for i in range(values.shape[0]):
-        clipped[i] = h_clip(values[i], low[i], high[i])
-    return clipped
+from qtab.compilation.rewriting import clip_helpers
 
 
 def h_store_vector(field: Any, values: Any) -> None:
@@ -135,5 +97,5 @@ def is_helper(function: FunctionType) -> bool:
     return function.__name__.startswith("h_")
 
 
-HELPERS = {name: value for name, value in list(globals().items()) if name.startswith("h_")}
+HELPERS = {name: value for name, value in [*vars(clip_helpers).items(), *globals().items()] if name.startswith("h_")}
 """The helpers of rewritten code by name."""

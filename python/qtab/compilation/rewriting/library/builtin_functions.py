@@ -82,8 +82,8 @@ def _extreme(function: Any) -> Handler:
             if kind is None:
                 advice = "convert them to int or float"
                 raise scope.refuse(node, f"{function.__name__} with {in_words(value.kind)}", advice)
-        codes = [f"float({one.code})" if kind in (FLOAT, MIXED) and one.kind == INT else one.code for one in lifted]
-        return Value(kind, f"{function.__name__}({', '.join(codes)})")
+        # Integers that are compared with floats stay integers, so that those beyond 2**53 are found.
+        return Value(kind, f"{function.__name__}({', '.join(one.code for one in lifted)})")
 
     return handler
 

@@ -90,7 +90,7 @@ def _clip_array(scope: "Expressions", node: ast.AST, value: Value, low: Value, h
         raise scope.refuse(node, "np.clip with a number and an array as bounds", "give two numbers or two arrays")
     names = ("h_clip_vector", "h_clip_vectors") if value.kind.ndim == 1 else ("h_clip_array", "h_clip_arrays")
     name = names[both[0]]
-    scope.compiled.uses |= {name, "h_clip"}
+    scope.compiled.uses.add(name)
     code = f"{name}({value.code}, {bounds[0].code}, {bounds[1].code})"
     return Value(value.kind, code, fresh=True)
 
