@@ -13,6 +13,8 @@ from qtab.compilation.rewriting.values import Array, Scalar, TupleKind, Value, k
 
 MAX_INLINE = 64
 """The most elements of a constant array that are written as numbers; larger ones are bytes."""
+MAX_BYTES = 1 << 24
+"""The most bytes of a constant array."""
 
 
 @dataclass
@@ -139,6 +141,9 @@ class Program:
         if isinstance(kind, Scalar):
             return Value(kind, literal(fixed), fixed=value.fixed)
         if isinstance(kind, Array):
+            if fixed.nbytes > MAX_BYTES:
+                reason = f"a constant array takes {fixed.nbytes / 2**20:,.0f} MiB, more than {MAX_BYTES // 2**20}"
+                raise refuse(reason, "use a smaller dtype, or compute its elements")
             return Value(kind, self.array(fixed), fixed=value.fixed)
         if isinstance(fixed, tuple | list):
             parts = tuple(self.lift(Value(fixed=part), refuse) for part in fixed)

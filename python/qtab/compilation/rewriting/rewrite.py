@@ -19,7 +19,7 @@ from qtab.compilation.rewriting.observations import observation_code
 from qtab.compilation.rewriting.program import Compiled, Program, as_float
 from qtab.compilation.rewriting.source.sources import Source, source_of
 from qtab.compilation.rewriting.user_functions import called, compiled_function
-from qtab.compilation.rewriting.values import INT, WIDE, Scalar, TupleKind, Value, constant, in_words
+from qtab.compilation.rewriting.values import BOOL, INT, Scalar, TupleKind, Value, constant, in_words
 from qtab.compilation.twins.class_twin import reset_twin
 
 MAX_ATTEMPTS = 200
@@ -54,6 +54,10 @@ class Rewritten:
     kept_between_episodes: tuple[str, ...]
     """The attributes that change, and that ``reset`` does not assign before it reads them: the first state of an
     episode depends on the episodes before."""
+    changed: frozenset[str]
+    """The attributes that ``reset`` or ``step`` assigns or changes in place, and that compiled code needs."""
+    changed_in_place: frozenset[str]
+    """Those of which elements are assigned."""
     lines: dict[int, tuple[str, int]]
     """For each line of ``source`` the file and the line of the class."""
     source: str
@@ -148,6 +152,8 @@ def _attempt(env: gym.Env, attributes: Attributes) -> Rewritten:
         dtype,
         initial,
         tuple(kept),
+        frozenset(program.stored | attributes.changed_in_place),
+        frozenset(attributes.changed_in_place),
         lines,
         source,
         namespace,
@@ -212,7 +218,7 @@ def _add_top(program: Program, name: str, method: Compiled) -> None:
     else:
         for i, what in ((1, "reward"), (2, "terminated"), (3, "truncated")):
             item = kind.items[i]
-            if not isinstance(item, Scalar) or (item not in WIDE and i > 1):
+            if not isinstance(item, Scalar) or (item != BOOL and i > 1):
                 raise refuse(
                     f"{what} is {in_words(item)}", "return a number" if i == 1 else "return a boolean: bool(...)"
                 )

@@ -13,19 +13,43 @@ import numpy as np
 from qtab.compilation.layouts.attribute_record import state_bytes
 from qtab.compilation.layouts.observation_layout import ObservationLayout
 from qtab.compilation.not_compilable import NotCompilable
-from qtab.compilation.twins.plain_data import is_plain, same
+from qtab.compilation.twins.plain_data import is_plain, mutable_parts, same
+
+LARGE = 1 << 20
+"""The bytes from which an array is shared by the copies of an environment, which cannot write into it."""
 
 
 def twin_of(env: gym.Env) -> Any:
     """Returns a copy of an environment, without a call of its methods.
 
-    Attributes that are data are copied. Other objects, such as windows and files, are shared: they must not be used.
+    Attributes that are data are copied, except for large arrays that no method assigns elements of: the copy has views
+    of them that are read-only. Other objects, such as windows and files, are shared: they must not be used.
     """
     twin = object.__new__(type(env))
-    known: dict[int, Any] = {}
+    known = _views_of_large_arrays(env)
     for name, value in vars(env).items():
         vars(twin)[name] = copy.deepcopy(value, known) if is_plain(value) else value
     return twin
+
+
+def _views_of_large_arrays(env: gym.Env) -> dict[int, Any]:
+    """Returns read-only views of the large arrays that no method assigns elements of, by the ids of the arrays."""
+    plain = [(name, value) for name, value in vars(env).items() if is_plain(value)]
+    large = [
+        (name, part)
+        for name, value in plain
+        for part in mutable_parts(value)
+        if isinstance(part, np.ndarray) and part.nbytes >= LARGE
+    ]
+    if not large:
+        return {}
+    from qtab.compilation.rewriting.attributes import Attributes
+
+    changed = Attributes(env, env).assigned
+    views = {id(part): part.view() for name, part in large if name not in changed}
+    for view in views.values():
+        view.flags.writeable = False
+    return views
 
 
 @contextmanager

@@ -1,6 +1,7 @@
 """Calls that failed in compiled code, repeated in Python."""
 
 import logging
+import math
 from typing import Any, TypeAlias
 
 import gymnasium as gym
@@ -15,6 +16,8 @@ from qtab.envs.external.positions import Position, generator_at, position_of
 Result: TypeAlias = tuple[bytes, bytes, float, int, Position]
 """The observation and the action mask, the reward, the code as of ``qtab_step``, and the position of the generator."""
 
+SHOWN = 80
+"""The most characters of a value in a message, as in ``rust/python/src/runs/answers.rs``."""
 ADVICE = "train with backend='gymnasium'"
 
 _logger = logging.getLogger("qtab")
@@ -29,11 +32,14 @@ class Repetition:
         record: The record with the observation.
         observation: The layout of its observations.
         seed: The seed of the run.
+        name: The name of the environment in messages, as Python stepping gives it.
     """
 
-    def __init__(self, env: gym.Env, record: np.dtype[Any], observation: ObservationLayout, seed: int) -> None:
+    def __init__(
+        self, env: gym.Env, record: np.dtype[Any], observation: ObservationLayout, seed: int, name: str
+    ) -> None:
         self._env, self._record, self._observation, self._seed = env, record, observation, seed
-        self._twin, self._name = ClassTwin(env, record, observation), type(env).__name__
+        self._twin, self._name, self._shown = ClassTwin(env, record, observation), type(env).__name__, name
         self._rng = np.random.default_rng(0)
 
     def reset(self, before: Position) -> Result:
@@ -79,6 +85,9 @@ class Repetition:
     def step(self, action: int) -> Result:
         """Takes an action, counted from 0."""
         observation, reward, terminated, truncated, _ = self._twin.step_class(action, self._rng)
+        if not _is_finite(reward):
+            expected = "a finite number as the reward, as Gymnasium's API requires"
+            raise ValueError(f"step of {self._shown} must return {expected}, got {_shortened(reward)}")
         return self._result(observation, float(reward), TERMINATED * bool(terminated) + TRUNCATED * bool(truncated))
 
     def log(self) -> None:
@@ -103,3 +112,15 @@ class Repetition:
                 f"{self._name} returned an observation outside its space, or a wrong action mask: {given!r}"
             )
         return observation.tobytes(), mask.tobytes(), reward, code, position_of(self._rng, self._seed)
+
+
+def _is_finite(reward: Any) -> bool:
+    try:
+        return math.isfinite(reward)
+    except OverflowError:  # an integer beyond all floats
+        return False
+
+
+def _shortened(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) <= SHOWN else f"{text[:SHOWN]}..."

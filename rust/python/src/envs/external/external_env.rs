@@ -97,7 +97,8 @@ impl ExternalEnv {
         failed: &FailedCall<'_>,
     ) -> PyResult<(Repeated, Py<PyAny>)> {
         let FailedCall { state, before, action, seed, played } = failed;
-        if error != CallError::Failed {
+        let is_repeated = self.repeats_episodes && matches!(error, CallError::Reward(_));
+        if error != CallError::Failed && !is_repeated {
             return Err(PyValueError::new_err(error.to_string()));
         }
         if let Some(on_failure) = &self.on_failure {

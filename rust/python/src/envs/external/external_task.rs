@@ -6,15 +6,16 @@ use std::sync::Arc;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use qtab_core::checkpoint::{Checkpoint, CheckpointError, Persist};
-use qtab_core::memory::{AllocationError, collect, out_of_memory, reserve, with_capacity};
+use qtab_core::memory::{AllocationError, collect, out_of_memory, with_capacity};
 use qtab_core::prediction::ObservableTask;
 use qtab_core::random::Pcg64;
 use qtab_core::tasks::{NextKind, RngSnapshot, Transition};
 use qtab_core::{Features, Task};
-use qtab_env::host::{CallError, Ending, Episode, RandomBits};
-use qtab_env::{CONTINUES, Number, TRUNCATED};
+use qtab_env::Number;
+use qtab_env::host::{Ending, Episode, RandomBits};
 
-use super::external_env::{EnvironmentBits, ExternalEnv, FailedCall, Position, Repeated, SharedEnv};
+use super::external_env::{EnvironmentBits, ExternalEnv, Position, SharedEnv};
+use super::repeated_episode::{EPISODE_SO_FAR, EpisodeSoFar};
 use crate::convert::Seed;
 use crate::error::{RunError, allocation};
 use crate::rng::environment_rng;
@@ -26,27 +27,19 @@ pub(super) struct TaskOptions {
     pub(super) has_masks: bool,
 }
 
-/// An episode so far.
-#[derive(Default)]
-struct EpisodeSoFar {
-    /// The position of the generator before the reset.
-    start: Position,
-    actions: Vec<u32>,
-}
-
 /// An environment with features of its observations, which are numbers of type `T`, its time limit and its generator.
 pub(super) struct ExternalTask<T, F> {
-    episode: Episode<SharedEnv>,
+    pub(super) episode: Episode<SharedEnv>,
     features: F,
-    max_episode_steps: u64,
-    bits: EnvironmentBits<Pcg64>,
-    seed: Seed,
+    pub(super) max_episode_steps: u64,
+    pub(super) bits: EnvironmentBits<Pcg64>,
+    pub(super) seed: Seed,
     /// The actions available in the last state that is not terminal; `None` if the learner does not use action masks.
     mask: Option<Vec<bool>>,
     /// The episode so far, for an environment that repeats it in Python where a step fails; `None` if it is not known.
-    played: Option<EpisodeSoFar>,
+    pub(super) played: Option<EpisodeSoFar>,
     /// A function of an action, which takes the next step in Python, after a step that failed.
-    next_step: Option<Py<PyAny>>,
+    pub(super) next_step: Option<Py<PyAny>>,
     numbers: PhantomData<T>,
 }
 
@@ -75,61 +68,19 @@ impl<T: Number, F: Features<[T]>> ExternalTask<T, F> {
     }
 
     /// The numbers of the observation.
-    fn numbers(&self) -> Result<Vec<f64>, AllocationError> {
+    pub(super) fn numbers(&self) -> Result<Vec<f64>, AllocationError> {
         collect(self.episode.observation::<T>().iter().map(|number| number.to_f64()))
     }
 
     /// The number of words that the generator has drawn, and its buffered half-word.
     #[inline]
-    fn position(&self) -> Position {
+    pub(super) fn position(&self) -> Position {
         (self.bits.0.words_drawn(), self.bits.0.buffered_u32())
-    }
-
-    /// Repeats a call that failed in Python. The generator is moved back to its position before the call.
-    #[cold]
-    fn repeat(&mut self, error: CallError, before: Position, action: Option<usize>) -> Result<(f64, Ending), RunError> {
-        self.bits.0.move_to(before.0, before.1);
-        let failed = FailedCall {
-            state: action.map(|_| self.episode.state()),
-            before,
-            action,
-            seed: &self.seed,
-            played: self.played.as_ref().map(|played| (played.start, played.actions.as_slice())),
-        };
-        let (result, next_step) = Python::attach(|py| self.episode.shared().0.repeat(py, error, &failed))?;
-        self.next_step = Some(next_step);
-        self.take_over(result)
-    }
-
-    /// Takes over the result of a call in Python.
-    #[cold]
-    fn take_over(&mut self, result: Repeated) -> Result<(f64, Ending), RunError> {
-        let (observation, mask, reward, code, (words_drawn, buffered_u32)) = result;
-        self.bits.0.move_to(words_drawn, buffered_u32);
-        self.episode.set_observation(&observation, &mask);
-        if !reward.is_finite() {
-            return Err(PyValueError::new_err(CallError::Reward(reward).to_string()).into());
-        }
-        let ending = match code {
-            CONTINUES => Ending::Continues,
-            TRUNCATED => Ending::Truncated,
-            _ => Ending::Terminated,
-        };
-        Ok((reward, ending))
-    }
-
-    /// Notes the action of a step, for an environment that repeats episodes.
-    #[inline]
-    fn note(&mut self, action: usize) -> Result<(), RunError> {
-        let Some(played) = &mut self.played else { return Ok(()) };
-        reserve(&mut played.actions, 1).map_err(RunError::Allocation)?;
-        played.actions.push(action as u32);
-        Ok(())
     }
 
     /// Reads the action mask of a state that is not terminal.
     #[inline]
-    fn read_mask(&mut self) -> Result<(), RunError> {
+    pub(super) fn read_mask(&mut self) -> Result<(), RunError> {
         let Some(mask) = &mut self.mask else { return Ok(()) };
         let given = self.episode.action_mask();
         let mut largest = 0;
@@ -153,20 +104,17 @@ impl<T: Number, F: Features<[T]>> ExternalTask<T, F> {
 
     /// Takes a step in the environment.
     #[inline]
-    fn take_step(&mut self, elapsed: &mut u64, action: usize) -> Result<(f64, NextKind), RunError> {
+    pub(super) fn take_step(&mut self, elapsed: &mut u64, action: usize) -> Result<(f64, NextKind), RunError> {
         let before = self.position();
-        let (reward, ending) = if let Some(step) = &self.next_step {
-            let result = Python::attach(|py| step.call1(py, (action,))?.extract(py))?;
-            self.take_over(result)?
+        let (reward, ending) = if self.next_step.is_some() {
+            self.step_in_python(action, before)?
         } else {
             match self.episode.step(action, &mut RandomBits::new(&mut self.bits)) {
-                Ok(stepped) => {
-                    self.note(action)?;
-                    stepped
-                }
+                Ok(stepped) => stepped,
                 Err(error) => self.repeat(error, before, Some(action))?,
             }
         };
+        self.note(action)?;
         *elapsed += 1;
         Ok((reward, self.next_kind(ending, *elapsed)))
     }
@@ -177,9 +125,18 @@ pub(super) fn saved_state(
     episode: &Episode<SharedEnv>,
     checkpoint: &mut Checkpoint<'_>,
 ) -> Result<Vec<u8>, CheckpointError> {
-    let state = episode.state();
-    let mut size = state.len() as u64;
+    let mut size = episode.state().len() as u64;
     size.persist(checkpoint)?;
+    saved_bytes(episode, size, checkpoint)
+}
+
+/// Saves the bytes of the state, of a number that was saved before, or reads the saved ones, and returns them.
+fn saved_bytes(
+    episode: &Episode<SharedEnv>,
+    size: u64,
+    checkpoint: &mut Checkpoint<'_>,
+) -> Result<Vec<u8>, CheckpointError> {
+    let state = episode.state();
     checkpoint.check(size == state.len() as u64, "size of the environment's state")?;
     let mut bytes = with_capacity(state.len()).map_err(|_| CheckpointError::OutOfMemory)?;
     bytes.extend_from_slice(state);
@@ -200,16 +157,7 @@ impl<T: Number, F: Features<[T]>> Task for ExternalTask<T, F> {
     type Error = RunError;
 
     fn reset(&mut self) -> Result<(u64, F::Active), RunError> {
-        let before = self.position();
-        self.next_step = None;
-        if self.episode.shared().0.repeats_episodes {
-            let played = self.played.get_or_insert_default();
-            played.start = before;
-            played.actions.clear();
-        }
-        if let Err(error) = self.episode.reset(&mut RandomBits::new(&mut self.bits)) {
-            self.repeat(error, before, None)?;
-        }
+        self.begin()?;
         let rows = self.features.active_rows(self.episode.observation())?;
         self.read_mask()?;
         Ok((0, rows))
@@ -253,15 +201,18 @@ impl<T: Number, F: Features<[T]>> Task for ExternalTask<T, F> {
     }
 
     /// The generator and, within an episode, the bytes of the state, with its observation: if the environment gives
-    /// another one for these bytes, its code has changed.
+    /// another one for these bytes, its code has changed. For an environment that repeats episodes in Python, the actions
+    /// so far; checkpoints of earlier versions have the bytes of the state there, too.
     fn persist(&mut self, state: Option<&mut u64>, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
         const INVALID: CheckpointError = CheckpointError::Invalid("state of the environment");
         self.bits.0.persist(checkpoint)?;
         let Some(elapsed) = state else { return Ok(()) };
-        if self.next_step.is_some() && !checkpoint.is_restoring() {
-            return Err(CheckpointError::Invalid("state of the environment, which is stepped in Python"));
+        let mut size = if self.played.is_some() { EPISODE_SO_FAR } else { self.episode.state().len() as u64 };
+        size.persist(checkpoint)?;
+        if size == EPISODE_SO_FAR && self.episode.shared().0.repeats_episodes {
+            return self.persist_played(elapsed, checkpoint);
         }
-        let bytes = saved_state(&self.episode, checkpoint)?;
+        let bytes = saved_bytes(&self.episode, size, checkpoint)?;
         // A failed step may have written an observation. Without `observe` a run is saved, too.
         let _ = if checkpoint.is_restoring() { Ok(()) } else { self.episode.observe() };
         let mut saved = self.numbers().map_err(|_| CheckpointError::OutOfMemory)?;

@@ -8,6 +8,7 @@ mod external_vector_env;
 mod observations;
 mod py_external_env;
 mod py_external_episode;
+mod repeated_episode;
 mod sub_env;
 
 pub(crate) use py_external_env::PyExternalEnv;
