@@ -3,7 +3,8 @@
 python docs/build.py                # everything, as `.ci/run docs` does
 python docs/build.py --quick        # without running the notebooks, and without the browser
 
-The checks: no warning of Sphinx, no broken link or anchor, no picture without a description, nothing from the network.
+The checks: no warning of Sphinx, no broken link or anchor, no picture without a description, nothing from the network,
+and the search finds what readers look for.
 """
 
 import argparse
@@ -42,6 +43,7 @@ def main() -> None:
     sys.path.insert(0, str(HERE / "_site" / "checks"))
     import browser
     import links
+    import search
     import static
 
     began = time.perf_counter()
@@ -50,7 +52,7 @@ def main() -> None:
     pages = static.read(SITE)
     problems = [*static.problems(SITE, pages), *links.problems(SITE, pages)]
     if asked.browser and not quick:
-        problems += browser.problems(SITE)
+        problems += browser.problems(SITE) or search.problems(SITE)
     print(*problems, sep="\n")
     print(f"{len(pages)} pages, {len(problems)} problems, {time.perf_counter() - began:.0f} s")
     sys.exit(failed or bool(problems))

@@ -31,6 +31,7 @@ extensions = [
     "outside_links",
     "playground",
     "public_names",
+    "search_words",
     "short_signatures",
 ]
 exclude_patterns = ["_build", "_site", "**/_*.md"]
@@ -92,6 +93,7 @@ html_favicon = "_static/icon.svg"
 html_copy_source = False
 html_show_sourcelink = False
 html_show_sphinx = False
+html_search_scorer = str(HERE / "_extensions" / "search_scorer.js")
 html_context = {"default_mode": "auto"}
 html_theme_options = {
     "logo": {"text": "qtab", "image_light": "_static/icon.svg", "image_dark": "_static/icon.svg", "alt_text": ""},

@@ -120,3 +120,21 @@ def test_links_out_of_the_documentation_become_pages_of_the_site() -> None:
     )
     with pytest.raises(Exception, match="not a file of the repository"):
         links.rewrite("[g](../../nothing.md)", "docs/how_to")
+
+
+def test_the_search_finds_names_in_both_spellings() -> None:
+    pytest.importorskip("sphinx")
+    split = load("docs/_extensions/search_words.py").BothSpellings({}).split
+    assert split("FrozenLake-v1") == ["FrozenLake", "v1", "Frozen", "Lake", "v", "1"]
+    assert split("a frozen lake") == ["a", "frozen", "lake", "frozenlake"]
+    assert split("Stable-Baselines3") == ["Stable", "Baselines3", "Baselines", "3"]
+    assert split("train_many") == ["train_many", "train", "many"]
+    assert split("large lakes") == ["large", "lakes"]
+
+
+def test_thirty_queries_are_tried_in_the_search() -> None:
+    expected = load("docs/_checks/search.py").EXPECTED
+    assert len(expected) >= 30
+    assert {"frozen lake", "lunar lander", "colab", "gpu", "stable baselines"} <= set(expected)
+    pages = {page.partition("#")[0] for page in expected.values() if "generated" not in page}
+    assert [page for page in pages if not (ROOT / "docs" / f"{page}.md").exists()] == []

@@ -47,16 +47,24 @@ def served(site: Path) -> Iterator[str]:
             thread.join()
 
 
+@contextmanager
+def browsed(site: Path) -> Iterator[tuple[Any, str]]:
+    """Serves a folder and starts Chromium; yields an empty page and the address of the folder."""
+    from playwright.sync_api import sync_playwright
+
+    with served(site) as address, sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox", NO_NETWORK])
+        yield browser.new_page(), address
+        browser.close()
+
+
 def problems(site: Path) -> list[str]:
     """Returns a line for each external request, failed request and error on the console."""
     if CHROMIUM is None:
         return ["no browser: install Chromium, or set CHROMIUM to its path"]
-    from playwright.sync_api import sync_playwright
 
     found: list[str] = []
-    with served(site) as address, sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox", NO_NETWORK])
-        page = browser.new_page()
+    with browsed(site) as (page, address):
         opened = ""
 
         def note(text: str) -> None:
@@ -69,7 +77,6 @@ def problems(site: Path) -> list[str]:
         for path in sorted(site.rglob("*.html")):
             opened = path.relative_to(site).as_posix()
             page.goto(address + opened, wait_until="load")
-        browser.close()
     return list(dict.fromkeys(found))
 
 
