@@ -19,9 +19,6 @@ from qtab.compilation.layouts.value_layout import Number
 from qtab.compilation.rewriting import Rewritten
 from qtab.compilation.rewriting.helpers import is_helper
 
-MOST_FIELDS = 64
-"""Records of more attributes are copied at once."""
-
 
 def compile_record(
     rewritten: Rewritten,
@@ -77,21 +74,7 @@ def compile_record(
         "TERMINATED": TERMINATED,
         "TRUNCATED": TRUNCATED,
     }
-    return c_functions(_source(rewritten.action_mask is not None, _copied(record), numbers), scope, report)
-
-
-def _copied(record: np.dtype[Any]) -> str:
-    """Returns the lines of ``qtab_step`` that copy the attributes, from which the next state is made.
-
-    Each number is copied by itself. The processor would wait for the stores of the step before if several were read at
-    once; this takes a tenth of the time of a step.
-    """
-    fields: Any = record.fields
-    places = [(fields[name][1], fields[name][0].itemsize) for name in record.names or () if name != OBSERVATION]
-    if len(places) > MOST_FIELDS:
-        places = [(0, record.itemsize)]
-    lines = [f"    copy_bytes(next_address + {place}, state_address + {place}, {size})" for place, size in places]
-    return "\n".join(lines)
+    return c_functions(_source(rewritten.action_mask is not None, numbers), scope, report)
 
 
 def _record_at(record: np.dtype[Any]) -> Any:
@@ -104,7 +87,7 @@ def _record_at(record: np.dtype[Any]) -> Any:
     return numba.njit(**OPTIONS)(record_at)
 
 
-def _source(masked: bool, copied: str, numbers: dict[str, int]) -> str:
+def _source(masked: bool, numbers: dict[str, int]) -> str:
     mask = "    if not write_mask(mask_address, action_mask(record), {ended}):\n        return np.int32(FAILED)\n"
     lines = f"""
 def qtab_reset(parameters, rng, state_address, observation_address, mask_address):
@@ -117,7 +100,7 @@ def qtab_reset(parameters, rng, state_address, observation_address, mask_address
 {mask.format(ended=False) if masked else ""}    return np.int32(0)
 
 def qtab_step(parameters, rng, state_address, action, next_address, observation_address, reward_address, mask_address):
-{copied}
+    copy_bytes(next_address, state_address, SIZE)
     record = record_at(next_address)
     observation, reward, terminated, truncated = step(record, action + START, generator_at(rng))
     write_reward(reward_address, reward)

@@ -1,6 +1,6 @@
 """Observations of rewritten functions as tuples, so that a step allocates no array for them.
 
-NumPy's arrays are allocated and freed by compiled code too, at a quarter of the time of a step of a small environment.
+NumPy's arrays are allocated and freed by compiled code too, which takes a fifth of the time of a step of MountainCar.
 Where ``reset`` or ``step`` returns a vector of floats that it makes itself, as in ``np.array([x, y], np.float32)``, by
 itself or by a method such as ``_get_obs``, compiled code returns its numbers instead.
 """

@@ -141,8 +141,7 @@ def _stored_attributes(cls: type) -> Iterator[str]:
 def _stored(code: CodeType) -> frozenset[str]:
     """Returns the attributes that code assigns, without those of the functions that it defines.
 
-    Code never changes, and each run reads that of Gymnasium's base classes: without the cache, this takes a fifth of a
-    run of 5,000 episodes.
+    Code never changes, and each run reads that of Gymnasium's base classes: without the cache, this takes 3 ms a run.
     """
     return frozenset(one.argval for one in dis.get_instructions(code) if one.opname == "STORE_ATTR")
 
