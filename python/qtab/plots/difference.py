@@ -1,7 +1,7 @@
 """A picture of the states in which a policy differs from an optimal one, and of the cost."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +24,8 @@ EXACT = 1e-9
 """A smaller cost, relative to the values of the two actions, is a tie between them."""
 CANCELLED = 1e-14
 """A smaller cost, relative to the largest value of all states, is a rounding error where rewards cancel to 0."""
+ZERO = 16
+"""The number of colors of the bar, of 256, that stand for a cost of 0."""
 APPROXIMATE = 1.0
 """For MountainCar's values, which are interpolated in a grid, a cost of up to one step counts as 0."""
 
@@ -79,7 +81,7 @@ def difference(
     cost = costs(subject, best, raster)
     [ax] = axes_for([raster], ax)
     from matplotlib import colormaps  # after the axes, whose error without matplotlib names the extra
-    from matplotlib.colors import ListedColormap, Normalize
+    from matplotlib.colors import ListedColormap, Normalize, to_rgba
 
     known = np.isfinite(cost)
     wrong = known & (cost > 0)
@@ -88,19 +90,41 @@ def difference(
         policy = "an optimal policy" if optimum.exact else "the best known policy"
         title = f"{env}: cost against {policy}"
     shade_unknown(ax, raster, cost)
-    # The end of the map that looks like the background is left out.
-    cmap = ListedColormap(colormaps["magma" if is_dark(ax) else "magma_r"](np.linspace(0.25, 1.0, 256)))
+    # The end of the map that looks like the background is left out; 0 is the background itself.
+    costly = colormaps["magma" if is_dark(ax) else "magma_r"](np.linspace(0.25, 1.0, 256))
+    background = np.broadcast_to(to_rgba(ax.get_facecolor()), (ZERO, 4))
+    cmap = ListedColormap(np.concatenate([background, costly]))
     # A few states of very high costs would leave all others pale.
     highest = float(np.quantile(cost[wrong], 0.99)) if wrong.any() else 1.0
-    norm = Normalize(0, highest)
+    lowest = -highest * ZERO / len(costly)
+    norm = Normalize(lowest, highest)
     image = draw_cells(ax, raster, np.where(wrong, cost, np.nan), cmap, norm)
     if raster.has_numbers:
         write_numbers(ax, raster, np.where(wrong, cost, np.nan), image, lambda value: f"{value:.2g}")
     note = joined(f"{share:.1%} of the states have a worse action", raster.note, separator=", ")
     finish_panel(ax, raster, title, note)
     extend = "max" if (cost[wrong] > highest).any() else "neither"
-    color_bar([ax], raster, image, "cost of the action, V*(s) - Q*(s, a)", extend)
+    bar = color_bar([ax], raster, image, "cost of the action, V*(s) - Q*(s, a)", extend)
+    name_zero(bar, lowest, highest)
     return ax
+
+
+def name_zero(bar: Any, lowest: float, highest: float) -> None:
+    """Writes 0 beside the lowest part of a color bar, which has the color of states without a cost.
+
+    Args:
+        bar: The color bar.
+        lowest: The lower end of the bar, below 0.
+        highest: The largest cost with a color of its own.
+    """
+    from matplotlib.ticker import FixedLocator, FuncFormatter, MaxNLocator
+
+    costs = [float(cost) for cost in MaxNLocator(6).tick_values(0.0, highest) if 0.0 < cost <= highest]
+    decimals = max((len(f"{cost:g}".partition(".")[2]) for cost in costs), default=0)
+    bar.locator = FixedLocator([lowest / 2, *costs])
+    bar.formatter = FuncFormatter(lambda cost, _: "0" if cost < 0 else f"{cost:.{decimals}f}")
+    bar.update_ticks()
+    bar.outline.set(visible=True, linewidth=0.6)  # otherwise the part for 0 looks like the background
 
 
 def costs(subject: Subject, best: Subject, raster: Raster) -> NDArray[np.float64]:

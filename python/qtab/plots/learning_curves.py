@@ -135,13 +135,11 @@ def _names(drawn: list[Entry], statistic: str, confidence: str) -> tuple[list[st
     """Returns the names of the curves in the legend, and its title with the text that applies to all of them."""
     counts = [len(entry.values) for entry in drawn]
     if len(drawn) == 1:
-        shown = "1 run" if counts[0] == 1 else f"{statistic} of {counts[0]} runs, {confidence} interval"
+        shown = "1 run" if counts[0] == 1 else f"{statistic} of {counts[0]:,} runs, {confidence} interval"
         return [joined(drawn[0].label, shown, separator=": ")], ""
     if max(counts) == 1:
         return [entry.label for entry in drawn], "1 run each"
     if len(set(counts)) == 1:
-        return [entry.label for entry in drawn], f"{statistic} of {counts[0]} runs, {confidence} intervals"
-    names = [
-        f"{entry.label}: {count} run{'' if count == 1 else 's'}" for entry, count in zip(drawn, counts, strict=True)
-    ]
+        return [entry.label for entry in drawn], f"{statistic} of {counts[0]:,} runs, {confidence} intervals"
+    names = [f"{entry.label}: {counted(count, 'run')}" for entry, count in zip(drawn, counts, strict=True)]
     return names, f"{statistic} of the runs, {confidence} intervals"

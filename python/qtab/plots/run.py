@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from qtab._utils import checks
 from qtab._utils.shown import counted
+from qtab.config.schedules import ByVisits, Constant, EpsilonGreedy, Schedule, learning_rate, policy
 from qtab.envs.metadata.goals import threshold_of
 from qtab.plots.parts.axes import axes_or_new, check_axes, new_figure, save_figure
 from qtab.plots.parts.colors import palette
@@ -101,16 +102,28 @@ def _draw_means(ax: "Axes", means: NDArray[np.float64], block: int, hue: Any) ->
 
 
 def _settings_note(run: Run) -> str:
+    """Returns the learning rate, the discount, the exploration and the seed; rates that fall as in a schedule."""
     config = run.config
+    rate = learning_rate(config)
+    if isinstance(rate, ByVisits):
+        step_size = f"α = {rate.value:g} / visits"
+    else:
+        step_size = f"α = {_falling(rate)}"
     if config.temperature is not None:
         exploration = f"τ = {config.temperature:g}"
     elif config.confidence is not None:
         exploration = f"c = {config.confidence:g}"
     else:
-        exploration = f"ε = {config.epsilon:g}"
-        if config.min_epsilon is not None:
-            exploration += f" → {config.min_epsilon:g}"
-    return f"α = {config.learning_rate:g}, γ = {config.discount:g}, {exploration}, seed {config.seed}"
+        behaviour = policy(config)
+        exploration = f"ε = {_falling(behaviour.epsilon) if isinstance(behaviour, EpsilonGreedy) else '0'}"
+    return f"{step_size}, γ = {config.discount:g}, {exploration}, seed {config.seed}"
+
+
+def _falling(rate: Schedule) -> str:
+    """Returns a rate as text: ``"0.5"``, or ``"0.5 → 0"`` for one that falls."""
+    if isinstance(rate, Constant) or rate.minimum >= rate.value:
+        return f"{rate.value:g}"
+    return f"{rate.value:g} → {rate.minimum:g}"
 
 
 def save_plot(run: Run, path: Path, optimum: "Optimum | None" = None) -> None:

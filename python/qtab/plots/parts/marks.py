@@ -14,6 +14,9 @@ if TYPE_CHECKING:
     from qtab.planning import Optimum
 
 OPTIMUM_COLOR = "#a3262f"
+CLOSE = 0.005
+"""A threshold at a smaller distance from the optimum, relative to the axis, is the same line."""
+_OPTIMUM = "qtab-optimum"
 MAX_STRETCH = 2.0
 """A threshold that would stretch the axis by more than this is only drawn if the user asks for it."""
 
@@ -50,14 +53,21 @@ def mark_optimum(ax: "Axes", optimum: "Optimum | float | None") -> None:
     value, label = (
         (float(optimum), "optimum") if isinstance(optimum, SupportsFloat) else (optimum.expected_return, optimum.label)
     )
+    if any(line.get_ydata()[0] == value for line in _optima(ax)):  # a second plot on the same axes
+        return
     style: dict[str, Any] = {"color": readable(OPTIMUM_COLOR, ax), "linestyle": (0, (5, 3)), "linewidth": 1.5}
-    _line(ax, "y", value, f"{label} {value:.4g}", style)
+    _line(ax, "y", value, f"{label} {value:.4g}", {**style, "gid": _OPTIMUM})
+
+
+def _optima(ax: "Axes") -> list[Any]:
+    """Returns the lines at an optimum."""
+    return [line for line in ax.get_lines() if line.get_gid() == _OPTIMUM]
 
 
 def mark_threshold(
     ax: "Axes", threshold: float | Literal[False] | None, known: float | None = None, axis: Literal["x", "y"] = "y"
 ) -> None:
-    """Draws a dotted line at a threshold, with the number in the legend.
+    """Draws a dotted line at a threshold, with the number in the legend, or names the line of an optimum that is there.
 
     Args:
         ax: The axes, with all data drawn.
@@ -73,8 +83,23 @@ def mark_threshold(
             return
         threshold = known
     value = float(threshold)
+    if axis == "y":
+        low, high = sorted(ax.get_ylim())
+        for line in _optima(ax):
+            optimum = line.get_ydata()[0]
+            if abs(optimum - value) <= CLOSE * (high - low):
+                line.set_label(_both_names(str(line.get_label()), f"threshold {value:g}"))
+                return
     style: dict[str, Any] = {"color": text_color(), "alpha": 0.7, "linestyle": (0, (1, 1.5)), "linewidth": 1.5}
     _line(ax, axis, value, f"threshold {value:g}", style)
+
+
+def _both_names(optimum: str, threshold: str) -> str:
+    """Returns the name of a line at an optimum and a threshold, with one number if both have the same one."""
+    if threshold in optimum:  # a second plot on the same axes
+        return optimum
+    name, _, number = optimum.rpartition(" ")
+    return f"{name} and {threshold}" if threshold.endswith(f" {number}") else f"{optimum}, {threshold}"
 
 
 def _line(ax: "Axes", axis: Literal["x", "y"], value: float, label: str, style: dict[str, Any]) -> None:

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from matplotlib.colors import Normalize
 
 MAX_PANELS_IN_A_ROW = 3
+WIDE = 2.0
+"""A picture of several panels has them in one column if they are this many times as wide as high."""
 LEAST_LABEL = 60.0
 """The label of a color bar has lines of this length, in points, also beside a lower picture."""
 
@@ -71,9 +73,10 @@ def axes_for(rasters: Sequence[Raster], ax: "Axes | None") -> "list[Axes]":
         return [shown_figure(*rasters[0].size).subplots()]
     if ax is not None:
         raise ValueError(f"ax must be None for {len(rasters)} runs, which need a panel each")
-    columns = min(len(rasters), MAX_PANELS_IN_A_ROW)
-    lines = -(-len(rasters) // columns)
     width, height = (max(raster.size[side] for raster in rasters) for side in (0, 1))
+    # Wide maps lie below each other, where their cells stay large.
+    columns = 1 if width > WIDE * height else min(len(rasters), MAX_PANELS_IN_A_ROW)
+    lines = -(-len(rasters) // columns)
     grid: Any = shown_figure(0.85 * width * columns, 0.95 * height * lines).subplots(lines, columns, squeeze=False)
     for unused in grid.ravel()[len(rasters) :]:
         unused.set_axis_off()

@@ -1,0 +1,79 @@
+"""Details of pictures: rates that fall, lines that coincide, panels below each other, the color of 0."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+
+import qtab
+
+plt = pytest.importorskip("matplotlib.pyplot")
+from matplotlib.colors import to_rgba  # noqa: E402 - after the check for matplotlib
+
+LAKE = "FrozenLake-v1"
+
+
+@pytest.fixture(autouse=True)
+def closed() -> Iterator[None]:
+    yield
+    plt.close("all")
+
+
+@pytest.mark.parametrize(
+    ("settings", "note"),
+    [
+        ({"learning_rate": 0.5, "learning_rate_schedule": "linear", "min_learning_rate": 0.0}, "α = 0.5 → 0, "),
+        ({"learning_rate": 0.5, "learning_rate_schedule": "exponential", "min_learning_rate": 0.1}, "α = 0.5 → 0.1, "),
+        ({"learning_rate": 1.0, "learning_rate_schedule": "visits"}, "α = 1 / visits, "),
+        ({"learning_rate": 0.5, "learning_rate_schedule": "constant"}, "α = 0.5, "),
+        ({"epsilon": 0.0, "epsilon_schedule": "linear", "min_epsilon": 0.0}, ", ε = 0, "),
+        ({"epsilon": 0.5, "epsilon_schedule": "linear", "min_epsilon": 0.1}, ", ε = 0.5 → 0.1, "),
+    ],
+)
+def test_the_note_has_the_rates_of_the_schedule(settings: dict[str, Any], note: str) -> None:
+    run = qtab.train(LAKE, seed=0, episodes=40, **settings)
+    assert note in qtab.plot(run).get_title("right")
+
+
+def lines(ax: Any) -> list[str]:
+    return [line.get_label() for line in ax.get_lines() if len(set(line.get_ydata())) == 1 and line.get_zorder() == 4]
+
+
+def test_an_optimum_and_a_threshold_that_coincide_are_one_line_with_two_names() -> None:
+    run = qtab.train("CartPole-v1", seed=0, episodes=60)
+    plot = qtab.plot
+    assert lines(plot(run, optimum=475.0, threshold=475.0)) == ["optimum and threshold 475"]
+    assert lines(plot(run, optimum=474.9, threshold=475.0)) == ["optimum 474.9, threshold 475"]
+    assert lines(plot(run, optimum=500.0, threshold=475.0)) == ["optimum 500", "threshold 475"]
+
+
+def test_a_second_curve_on_the_same_axes_adds_no_second_line() -> None:
+    run = qtab.train("CartPole-v1", seed=0, episodes=60)
+    ax = qtab.plot(run, optimum=475.0, threshold=475.0)
+    qtab.plot(run, ax, optimum=475.0, threshold=475.0)
+    assert lines(ax) == ["optimum and threshold 475"]
+
+
+def test_wide_maps_lie_below_each_other_and_others_side_by_side() -> None:
+    settings: dict[str, Any] = {"seed": 0, "episodes": 20, "max_episode_steps": 100}
+    for env, columns in (("CliffWalking-v1", 1), (LAKE, 3)):
+        runs = [qtab.train(env, algorithm=name, **settings) for name in ("q_learning", "sarsa", "expected_sarsa")]
+        figure: Any = qtab.plots.policy(runs).figure
+        grid = figure.axes[0].get_subplotspec().get_gridspec()
+        assert (grid.nrows, grid.ncols) == (3 // columns, columns)
+
+
+@pytest.mark.parametrize("style", ["default", "dark_background"])
+def test_the_color_bar_of_costs_starts_with_the_background_for_0(style: str) -> None:
+    with plt.style.context(style):
+        run = qtab.train(LAKE, seed=0, episodes=1000)
+        ax = qtab.plots.difference(run, qtab.optimum(LAKE))
+        ax.figure.canvas.draw()
+        image: Any = next(one for one in ax.collections if one.get_array() is not None and one.colorbar is not None)
+        bar = image.colorbar
+        first = bar.ax.get_yticklabels()[0]
+        assert first.get_text() == "0"
+        assert image.to_rgba(first.get_position()[1]) == pytest.approx(np.array(to_rgba(ax.get_facecolor())))
+        smallest = min(cost for cost in np.ma.compressed(image.get_array()) if cost > 0)
+        assert image.to_rgba(smallest) != pytest.approx(np.array(to_rgba(ax.get_facecolor())))
