@@ -1,5 +1,5 @@
-"""Makes the links of the README absolute, so that pictures show on PyPI and pages are found from there, and writes the
-repository into the manifest of the crate.
+"""Makes the links of the README absolute, so that pictures show on PyPI and pages are found from there, adds links that
+open its notebooks in Google Colab and Binder, and writes the repository into the manifest of the crate.
 
     python .ci/links.py https://github.com/OWNER/NAME v1.2.3
 
@@ -9,6 +9,8 @@ The README has links within the repository, whose address nobody has to write do
 import re
 import sys
 from pathlib import Path
+
+from launch import launch
 
 README = Path(__file__).parents[1] / "README.md"
 MANIFEST = Path(__file__).parents[1] / "rust" / "core" / "Cargo.toml"
@@ -22,7 +24,9 @@ def main(repository: str, tag: str) -> None:
 
     def absolute(link: "re.Match[str]") -> str:
         picture, text, target = link.groups()
-        return f"{picture}[{text}]({repository}/{'raw' if picture else 'blob'}/{tag}/{target})"
+        made = f"{picture}[{text}]({repository}/{'raw' if picture else 'blob'}/{tag}/{target})"
+        opened = launch(repository, tag, target) if target.endswith(".ipynb") else {}
+        return made + "".join(f" [{name}]({address})" for name, address in opened.items())
 
     text, count = LINK.subn(absolute, README.read_text(encoding="utf-8"))
     README.write_text(text, encoding="utf-8", newline="\n")

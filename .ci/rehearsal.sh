@@ -2,10 +2,10 @@
 
 # What PyPI checks; an upload to an index, which this task starts and ends; and for each Python that is installed, an empty
 # environment without Rust, into which pip installs qtab from that index and which runs the README's first Python code and the
-# end of its first command.
+# end of its first command. Then a notebook, as Google Colab and Binder would run it.
 rehearsal() {
     built_wheel
-    local tools=.venv-rehearsal/$bin version python tried=0
+    local tools=.venv-rehearsal/$bin version python found="" tried=0
     [ -d .venv-rehearsal ] || "$host_python" -m venv .venv-rehearsal
     $tools/pip install --quiet twine==7.0.0 pypiserver==2.4.2
     $tools/twine check --strict "$work"/dist/*
@@ -15,12 +15,15 @@ rehearsal() {
     for version in 3.10 3.11 3.12 3.13 3.14; do
         if python=$(interpreter $version); then
             install_from_index "$python"
+            found=$python
             tried=$((tried + 1))
         else
             echo "skipped: python$version is not installed"
         fi
     done
     [ "$tried" -gt 0 ] || { echo "no Python of 3.10 to 3.14 is installed" && exit 1; }
+    launched_notebook "$found" colab
+    launched_notebook "$found" binder
     kill "$server"
     wait "$server" || true
     trap 'rm -rf "$work"' EXIT
@@ -72,4 +75,26 @@ ${line//.venv\/bin\//.venv/$bin/}
 END
     bash -euo pipefail "$tried/steps.sh"
     echo "installed from the index on $("$1" --version): $((SECONDS - began)) s"
+}
+
+# Runs a notebook as Google Colab or Binder does, in a new environment that has a kernel of Jupyter. In Colab the cell of the
+# notebook installs what it needs; Binder has installed its requirements before. qtab itself comes from the index alone, and
+# is there first, so that nothing looks it up elsewhere.
+launched_notebook() {
+    local tried began=$SECONDS startup
+    tried=$(mktemp -d "$work/$2-XXXX")
+    "$1" -m venv "$tried/.venv"
+    local pip=("$tried/.venv/$bin/pip" install --quiet --only-binary ":all:")
+    "${pip[@]}" nbclient ipykernel
+    "${pip[@]}" --no-deps --index-url "$index/simple/" qtab
+    if [ "$2" = colab ]; then
+        startup=$tried/ipython/profile_default/startup
+        mkdir -p "$startup"
+        printf 'import sys, types\nsys.modules["google.colab"] = types.ModuleType("google.colab")\n' >"$startup/colab.py"
+    else
+        "${pip[@]}" -r .binder/requirements.txt
+    fi
+    cp examples/chapters/chapter_2.ipynb "$tried/notebook.ipynb"
+    (cd "$tried" && PATH="$tried/.venv/$bin:$PATH" IPYTHONDIR="$tried/ipython" jupyter execute --timeout=600 notebook.ipynb) || exit 1
+    echo "a notebook as in $2: $((SECONDS - began)) s"
 }

@@ -5,8 +5,10 @@ What they show is tested with ``-m docs`` only: ``.ci/run docs`` executes them f
 """
 
 import re
+import sys
 from collections.abc import Callable
 from pathlib import Path
+from types import ModuleType, SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -63,6 +65,24 @@ def test_a_notebook_is_stored_without_what_running_it_leaves(name: str) -> None:
     assert [cell.id for cell in notebook.cells if not re.fullmatch(r"[a-z0-9]+(-[a-z0-9]+)*", cell.id)] == []
     text = (EXAMPLES / f"{name}.ipynb").read_text(encoding="utf-8")
     assert not re.search(r"/(home|Users|work|tmp)/|[A-Z]:\\\\", text)
+
+
+@pytest.mark.parametrize("name", [name for name in NOTEBOOKS if name in PICTURES or name.startswith("chapters/")])
+def test_a_notebook_installs_qtab_on_colab_alone(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The rehearsal of a release runs the cell where it installs something."""
+    interactive = pytest.importorskip("IPython.core.inputtransformer2")
+    text = source(name, "install")
+    assert text == source("study", "install")
+    assert stored(name).cells[1].id == "install"
+    called = []
+    shell = SimpleNamespace(run_line_magic=lambda *arguments: called.append(arguments))
+    monkeypatch.delitem(sys.modules, "google.colab", raising=False)
+    code = interactive.TransformerManager().transform_cell(text)
+    for on_colab in (False, True):
+        if on_colab:
+            monkeypatch.setitem(sys.modules, "google.colab", ModuleType("google.colab"))
+        exec(code, {"get_ipython": lambda: shell})  # noqa: S102 - our own notebook
+        assert called == [("pip", 'install --quiet "qtab[all]"')] * on_colab
 
 
 @pytest.mark.parametrize("name", NOTEBOOKS)

@@ -101,6 +101,22 @@ def test_links_that_lead_somewhere_are_left_in_peace(tmp_path: Path) -> None:
     assert broken_links(tmp_path) == []
 
 
+def test_a_page_of_a_notebook_has_links_in_the_place_of_the_cell_that_installs(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("sphinx")
+    extension = load("docs/_extensions/notebooks.py")
+    texts = {}
+    for repository in ("", "https://example.org/someone/qtab", "https://github.com/someone/qtab"):
+        monkeypatch.setenv("REPOSITORY", repository)
+        notebook = {"cells": [{"id": "title"}, {"id": "install"}, {"id": "train"}]}
+        extension.prepare_install_cell(notebook, "examples/chapters/chapter_2.ipynb")
+        texts[repository] = [cell.get("source", [""])[0] for cell in notebook["cells"]]
+    title, links, code = texts.pop("https://github.com/someone/qtab")
+    colab = "https://colab.research.google.com/github/someone/qtab/blob/main/examples/chapters/chapter_2.ipynb"
+    binder = "https://mybinder.org/v2/gh/someone/qtab/main?labpath=examples%2Fchapters%2Fchapter_2.ipynb"
+    assert f"[open it in Colab]({colab}), [open it in Binder]({binder})" in links
+    assert list(texts.values()) == [[title, code]] * 2
+
+
 def test_links_out_of_the_documentation_become_pages_of_the_site() -> None:
     pytest.importorskip("sphinx")
     links = load("docs/_site/extensions/outside_links.py")

@@ -114,18 +114,22 @@ def test_a_tag_without_a_version_or_without_a_section_of_the_changelog_is_refuse
 
 def test_the_links_of_the_readme_become_absolute_and_the_crate_knows_its_repository(tmp_path: Path) -> None:
     (tmp_path / ".ci").mkdir()
-    (tmp_path / ".ci" / "links.py").write_bytes((ROOT / ".ci" / "links.py").read_bytes())
+    for name in ("links.py", "launch.py"):
+        (tmp_path / ".ci" / name).write_bytes((ROOT / ".ci" / name).read_bytes())
     (tmp_path / "README.md").write_bytes((ROOT / "README.md").read_bytes())
     manifest = tmp_path / "rust" / "core" / "Cargo.toml"
     manifest.parent.mkdir(parents=True)
     manifest.write_bytes((ROOT / "rust" / "core" / "Cargo.toml").read_bytes())
-    address = "https://example.org/someone/qtab"
+    address = "https://github.com/someone/qtab"
     command = [sys.executable, ".ci/links.py", address, "v3.4.5"]
     assert subprocess.run(command, cwd=tmp_path, capture_output=True, check=False).returncode == 0
     text = (tmp_path / "README.md").read_text(encoding="utf-8")
     assert f"]({address}/raw/v3.4.5/docs/pictures/first_picture.png)" in text
     assert f"]({address}/blob/v3.4.5/docs/tutorial/index.md)" in text
     assert re.findall(r"\]\((?!https://)[^)]*\)", text) == []
+    notebook = "examples/study.ipynb"
+    assert f"]({address}/blob/v3.4.5/{notebook}) [Colab](https://colab.research.google.com/github/someone/" in text
+    assert "[Binder](https://mybinder.org/v2/gh/someone/qtab/v3.4.5?labpath=examples%2Fstudy.ipynb)" in text
     assert manifest.read_text(encoding="utf-8").count(f'\nrepository = "{address}"\n') == 1
     refused = subprocess.run(
         [*command[:2], "x; y", "v3.4.5"], cwd=tmp_path, capture_output=True, text=True, check=False

@@ -2,16 +2,23 @@
 
 The stored notebooks have no outputs, and no descriptions of their pictures. ``notebook_pictures.json`` has the
 descriptions: for each notebook, by the id of the cell that shows the picture.
+
+If the environment variable ``REPOSITORY`` has the address of the repository on GitHub, and ``REF`` a branch or a tag,
+each page has links that open its notebook in Google Colab and Binder.
 """
 
 import json
+import os
+import sys
 from pathlib import Path
+from typing import Any
 
 from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.errors import ExtensionError
 
 ROOT = Path(__file__).parents[3]
+sys.path.insert(0, str(ROOT / ".ci"))
 DESCRIPTIONS = Path(__file__).with_name("notebook_pictures.json")
 
 
@@ -23,6 +30,7 @@ def copy_notebooks(app: Sphinx) -> None:
     for path in sorted([*examples.glob("*.ipynb"), *examples.glob("[!.]*/*.ipynb")]):
         notebook = json.loads(path.read_text(encoding="utf-8"))
         described = dict(descriptions.get(path.stem, {}))
+        prepare_install_cell(notebook, path.relative_to(ROOT).as_posix())
         for cell in notebook["cells"]:
             if alt := described.pop(cell["id"], None):
                 cell["metadata"]["mystnb"] = {"image": {"alt": alt}}
@@ -33,6 +41,26 @@ def copy_notebooks(app: Sphinx) -> None:
         target.parent.mkdir(parents=True, exist_ok=True)
         if not target.exists() or target.read_text(encoding="utf-8") != text:
             target.write_text(text, encoding="utf-8")
+
+
+def prepare_install_cell(notebook: dict[str, Any], path: str) -> None:
+    """Puts links to Google Colab and Binder in the place of the cell that installs qtab in Colab, if there is one.
+
+    Args:
+        notebook: A notebook, which is changed.
+        path: Its path in the repository.
+    """
+    from launch import launch
+
+    repository, ref = os.environ.get("REPOSITORY", ""), os.environ.get("REF", "main")
+    opened = launch(repository, ref, path)
+    links = ", ".join(f"[open it in {name}]({address})" for name, address in opened.items())
+    text = f"To run this notebook in your browser, {links}." if links else ""
+    shown = [{"cell_type": "markdown", "id": "launch", "metadata": {}, "source": [text]}] if links else []
+    cells = notebook["cells"]
+    for index, cell in enumerate(cells):
+        if cell["id"] == "install":
+            cells[index : index + 1] = shown
 
 
 def drop_blank_outputs(app: Sphinx, doctree: nodes.document) -> None:
