@@ -10,9 +10,9 @@ import pytest
 
 import qtab
 from support.compiled_runs import LONG, Grows, stopped, trained_until, windy
-from support.gym_classes.grids import CliffEnv, MaskedGridEnv
+from support.environments.gym_classes.grids import CliffEnv, MaskedGridEnv
 from support.parity import assert_same_run
-from support.posix import posix_only
+from support.processes.posix import posix_only
 
 pytest.importorskip("numba")
 

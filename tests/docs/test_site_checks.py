@@ -103,7 +103,7 @@ def test_links_that_lead_somewhere_are_left_in_peace(tmp_path: Path) -> None:
 
 def test_a_page_of_a_notebook_has_links_in_the_place_of_the_cell_that_installs(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("sphinx")
-    extension = load("docs/_extensions/notebooks.py")
+    extension = load("docs/_site/extensions/notebooks.py")
     texts = {}
     for repository in ("", "https://example.org/someone/qtab", "https://github.com/someone/qtab"):
         monkeypatch.setenv("REPOSITORY", repository)

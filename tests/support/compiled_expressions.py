@@ -93,7 +93,7 @@ def in_ordinary_class(expression: str) -> Callable[..., Any]:
     from qtab.compilation.checks.mixed_numbers import callees
     from qtab.compilation.checks.typed_code import refusals
     from qtab.compilation.rewriting import rewrite
-    from support.lockstep_rewriting import compiled_with_checks
+    from support.lockstep.rewriting import compiled_with_checks
 
     callees.clear()
     unpacked = "".join(f"        {name} = self.{name}\n" for name in NAMES)

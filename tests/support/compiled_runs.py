@@ -9,7 +9,7 @@ import pytest
 
 import qtab
 from qtab.callbacks import BaseCallback
-from support.gym_classes.grids import CliffEnv
+from support.environments.gym_classes.grids import CliffEnv
 
 
 class Grows(gym.Env):
