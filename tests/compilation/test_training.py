@@ -154,7 +154,8 @@ def test_what_cannot_be_compiled_is_stepped_in_python_with_one_message(caplog: p
     assert f"{Path(__file__).name}:" in message  # a stored refusal has no folders
     assert "rng.choice(self.states) cannot be compiled; draw an index with rng.integers(0, n)" in message
     with pytest.raises(
-        ValueError, match=r"^backend must be .* got 'numba': .*rng.choice.* cannot be compiled; draw an"
+        ValueError,
+        match=r"^the environment cannot be compiled, as .*rng.choice.* cannot be compiled; draw an",
     ):
         qtab.train(limited(Choosing), episodes=3, backend="numba")
 

@@ -143,7 +143,9 @@ def instance(name: str, value: Any, kind: type) -> None:
     """
     if not isinstance(value, kind):
         article = "an" if kind.__name__[0] in "AEIO" else "a"
-        raise TypeError(f"{name} must be {article} {kind.__name__}, got {shown(value)}{load_hint(value)}")
+        raise TypeError(
+            f"{name} must be {article} {kind.__name__}, got {shown(value)}{load_hint(value)}{_runs_hint(value, kind)}"
+        )
 
 
 def path(name: str, value: Any) -> Path:
@@ -176,6 +178,13 @@ def file_path(name: str, value: Any) -> Path:
 def load_hint(value: Any) -> str:
     """Returns a hint for a path that was given instead of the content of its file; "" for other values."""
     return "; qtab.load reads one from a file" if isinstance(value, str | PathLike) else ""
+
+
+def _runs_hint(value: Any, kind: type) -> str:
+    """Returns a hint for several runs that were given instead of one; "" for other values."""
+    if kind.__name__ != "Run" or type(value).__name__ != "Runs":
+        return ""
+    return "; pass one of them, as in `for run in runs`, after train_many(..., tables=True)"
 
 
 def required(name: str, value: T | None) -> T:

@@ -132,8 +132,7 @@ class OrdinaryEnv:
         except NotNow:
             raise
         except NotCompilable as refusal:
-            file, line = rewritten.lines.get(refusal.line or 0, (None, None))
-            raise NotCompilable(refusal.reason, file, line, refusal.advice) from None
+            raise _of_users_line(rewritten.lines, refusal) from None
 
     def _prove(self, compiled: CompiledEnv) -> None:
         twin = ClassTwin(self.env, self.record, compiled.observation)
@@ -157,3 +156,10 @@ def _check_episodes(env: gym.Env, rewritten: Rewritten) -> None:
             code.co_firstlineno,
             f"assign self.{name} in reset, before it is read",
         )
+
+
+def _of_users_line(lines: dict[int, tuple[str, int]], refusal: NotCompilable) -> NotCompilable:
+    """Returns an error for the user's line, given one for a line of the rewritten functions."""
+    file, line = lines.get(refusal.line or 0, (None, None))
+    others = [_of_users_line(lines, other) for other in refusal.others]
+    return NotCompilable(refusal.reason, file, line, refusal.advice, others)

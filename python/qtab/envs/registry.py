@@ -277,3 +277,12 @@ def unregistered(env: str) -> gym.error.UnregisteredEnv:
     package = env.rpartition(":")[0]
     advice = f"import {package} first, or pass env=" if package else "pass env="
     return gym.error.UnregisteredEnv(f"the run's environment {str(env)!r} is not registered with Gymnasium: {advice}")
+
+
+def hint_for(given: Any) -> str:
+    """Returns what to write instead of a class or a function that was given as an environment, for the end of an error."""
+    if isinstance(given, type) and issubclass(given, gym.Env):
+        return f"; pass an instance, {given.__name__}()"
+    if callable(given) and not isinstance(given, type):
+        return "; pass the environment that it makes"
+    return ""

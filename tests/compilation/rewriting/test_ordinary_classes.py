@@ -129,7 +129,9 @@ class LocalMaskEnv(grids.CliffEnv):
 
 
 def test_masks_that_cannot_be_compiled_are_refused_with_their_line_if_the_run_needs_them() -> None:
-    pattern = r"got 'numba': .*test_ordinary_classes\.py:\d+: the action mask.*write a method action_masks\(self\)"
+    pattern = (
+        r"backend='numba' asks: .*test_ordinary_classes\.py:\d+: the action mask.*write a method action_masks\(self\)"
+    )
     with pytest.raises(ValueError, match=pattern):
         qtab.train(LocalMaskEnv(), episodes=3, backend="numba", action_mask=True)
     qtab.train(LocalMaskEnv(), episodes=3, max_episode_steps=20, backend="numba")

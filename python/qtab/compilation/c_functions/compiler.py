@@ -15,9 +15,9 @@ from qtab._utils.progress import ProgressBar
 from qtab.compilation.cache import machine_code
 from qtab.compilation.checks.checked_operations import OPTIONS
 from qtab.compilation.checks.mixed_numbers import callees
-from qtab.compilation.checks.numba_errors import not_compilable
+from qtab.compilation.checks.numba_errors import not_compilable, shortened
 from qtab.compilation.checks.typed_code import refusals
-from qtab.compilation.not_compilable import NotCompilable, NotNow
+from qtab.compilation.not_compilable import NotCompilable, NotNow, combined
 
 ARGUMENTS = {"qtab_reset": "ppppp", "qtab_step": "pppipppp", "qtab_observe": "pppp"}
 """The C functions: ``p`` for an address, ``i`` for an int64."""
@@ -59,7 +59,7 @@ def compiled(name: str, files: Iterable[str], compile_functions: Callable[[Repor
             def report() -> None:
                 bar.move_to(next(done))
                 if refusals:
-                    raise refusals[0]
+                    raise combined(refusals)
 
             callees.begin()
             found: dict[str, Any] = compile_functions(report)
@@ -73,7 +73,7 @@ def compiled(name: str, files: Iterable[str], compile_functions: Callable[[Repor
         except (NotCompilable, machine_code.CannotLoad):
             raise
         except Exception as error:  # an internal error of Numba; Python can step the environment
-            raise NotNow(f"Numba failed with {type(error).__name__}: {error}") from None
+            raise NotNow(f"Numba failed with {type(error).__name__}: {shortened(str(error))}") from None
     seconds = time.perf_counter() - started
     if seconds > SLOW_SECONDS:
         _logger.info("compiled %s in %.1f s", name, seconds)

@@ -66,7 +66,7 @@ class Store:
             self._found[digest], self._unknown[digest] = found, of.unknown
             outcome = found if isinstance(found, NotCompilable) else self._proof(digest, file, parameters, found, prove)
         if outcome is not None:
-            raise NotCompilable(outcome.reason, outcome.file, outcome.line, outcome.advice)
+            raise NotCompilable(outcome.reason, outcome.file, outcome.line, outcome.advice, outcome.others)
         assert isinstance(found, CompiledEnv)  # noqa: S101 - the other outcomes are raised
         return found
 
@@ -149,9 +149,10 @@ def _stored_proofs(digest: str, file: str) -> dict[str, Outcome]:
 def _to_json(refusal: NotCompilable, file: str) -> list[Any]:
     """Returns a refusal without the folders of files, which may be moved."""
     name = None if refusal.file is None or refusal.file == file else Path(refusal.file).name
-    return [refusal.reason, refusal.file == file, name, refusal.line, refusal.advice]
+    others = [_to_json(one, file) for one in refusal.others]
+    return [refusal.reason, refusal.file == file, name, refusal.line, refusal.advice, others]
 
 
 def _refusal_of(stored: list[Any], file: str) -> NotCompilable:
-    reason, same_file, name, line, advice = stored
-    return NotCompilable(reason, file if same_file else name, line, advice)
+    reason, same_file, name, line, advice, others = stored
+    return NotCompilable(reason, file if same_file else name, line, advice, [_refusal_of(one, file) for one in others])

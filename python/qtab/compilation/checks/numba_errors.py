@@ -54,12 +54,13 @@ def not_compilable(error: Exception, files: Iterable[str]) -> NotCompilable:
         if match is not None:
             file, line = match, int(number)
             break
-    reason = _reason(text)
+    reason = shortened(text)
     advice = next((advice for start, advice in _ADVICE if start in text), "")
     return NotCompilable(f"Numba: {reason}", file, line, advice)
 
 
-def _reason(text: str) -> str:
+def shortened(text: str) -> str:
+    """Returns the line of an error of Numba that gives the reason."""
     if "Cannot modify readonly array" in text:
         return "an array of the state, or of self, is changed"
     if (call := re.search(r"No implementation of function.*\n[ \n]*>>> (.*)\n", text)) is not None:

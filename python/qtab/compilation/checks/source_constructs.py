@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from types import FunctionType
 
 from qtab.compilation.checks.known_functions import DRAWS_DIFFERENT, DRAWS_MISSING, NUMPY_DIFFERENT, NUMPY_SUMS
-from qtab.compilation.not_compilable import NotCompilable
+from qtab.compilation.not_compilable import NotCompilable, combined
 
 
 @dataclass(frozen=True)
@@ -25,13 +25,16 @@ def refuse_constructs(functions: list[FunctionType]) -> None:
     """Checks the source of functions, as far as it can be read.
 
     Raises:
-        NotCompilable: for the first construct that cannot be compiled.
+        NotCompilable: with all constructs that cannot be compiled.
     """
+    found = []
     for function in functions:
         for node, file, line in _nodes(function):
-            if (found := _refused(node)) is not None:
-                reason, advice = found
-                raise NotCompilable(f"{_text(node)} {reason}", file, line, advice)
+            if (refused := _refused(node)) is not None:
+                reason, advice = refused
+                found.append(NotCompilable(f"{_text(node)} {reason}", file, line, advice))
+    if found:
+        raise combined(found)
 
 
 def suspects(functions: list[FunctionType]) -> list[Place]:

@@ -8,6 +8,7 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 
+from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting.attributes import Attributes
 from qtab.compilation.rewriting.values import Array, Scalar, TupleKind, Value, kind_of
 
@@ -84,6 +85,10 @@ class Program:
         """Compiles a user's function and returns the value of a call."""
         self.infos: dict[str, list[Any]] = {}
         """The info dicts that ``reset`` and ``step`` return, with their functions."""
+        self.failed: set[Any] = set()
+        """The keys of functions that cannot be compiled."""
+        self.problems: list[NotCompilable] = []
+        """What cannot be compiled, in ``reset``, ``step`` and the functions that they call."""
 
     def key(self, function: FunctionType, owner: type | None, values: dict[str, Value]) -> Any:
         """Returns the key of a function that is called with given constants and kinds."""

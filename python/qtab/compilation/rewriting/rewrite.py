@@ -11,7 +11,7 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from qtab.compilation.not_compilable import NotCompilable
+from qtab.compilation.not_compilable import Follows, NotCompilable, combined
 from qtab.compilation.rewriting import helpers, specials
 from qtab.compilation.rewriting.attributes import Attributes, Restart
 from qtab.compilation.rewriting.masks import add_action_mask
@@ -118,10 +118,26 @@ def _check(env: gym.Env) -> None:
 
 def _attempt(env: gym.Env, attributes: Attributes) -> Rewritten:
     program = Program(env, attributes)
+    try:
+        return _rewritten(env, attributes, program)
+    except Restart:
+        raise
+    except Exception:
+        if program.problems:  # the error follows from them
+            raise combined(program.problems) from None
+        raise
+
+
+def _rewritten(env: gym.Env, attributes: Attributes, program: Program) -> Rewritten:
     program.compile_call = called
     for name in helpers.HELPERS:
         program.named[name] = Compiled(name, Value())
-    reset, step = _method(program, "reset"), _method(program, "step")
+    try:
+        reset = _method(program, "reset")
+    except Follows:  # to find the problems of step as well
+        _method(program, "step")
+        raise
+    step = _method(program, "step")
     _add_top(program, "reset", reset)
     _add_top(program, "step", step)
     draws = reset.draws or step.draws
@@ -135,6 +151,8 @@ def _attempt(env: gym.Env, attributes: Attributes) -> Rewritten:
             tops.append("action_mask")
     except NotCompilable as error:
         mask_refusal = error
+    if program.problems:
+        raise combined(program.problems)
     attributes.check_sharing()
     program.check_aliases()
     source, lines = program.source(tops)

@@ -64,6 +64,8 @@ class Scope:
         self.unstable = False
         self.copies_state = False
         """Whether arrays of the record are copied where they are read, as the statement may change them."""
+        self.unknown: set[str] = set()
+        """The local variables that statements assign which cannot be compiled."""
         self.whole: ast.expr | None = None
         """The expression that is all of a statement, or all of what a statement assigns or returns."""
         self.is_shared = False

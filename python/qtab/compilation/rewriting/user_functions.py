@@ -4,6 +4,7 @@ import ast
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from qtab.compilation.not_compilable import Follows, NotCompilable
 from qtab.compilation.rewriting import specials
 from qtab.compilation.rewriting.program import Compiled, Flow, Program
 from qtab.compilation.rewriting.scope import LOCAL, Scope
@@ -69,6 +70,8 @@ def compiled_function(
 ) -> Compiled:
     """Returns the function of the program for a user's function."""
     key = program.key(source.function, owner, parameters)
+    if key in program.failed:
+        raise Follows(f"{source.node.name} cannot be compiled")
     if key in program.functions:
         found = program.functions[key]
         if found is None:
@@ -76,6 +79,16 @@ def compiled_function(
             raise where.refuse(node, f"{source.node.name} calls itself", "write a loop")
         return found
     program.functions[key] = None
+    try:
+        made = _compiled(program, source, owner, parameters)
+    except NotCompilable:
+        program.failed.add(key)
+        raise
+    program.functions[key] = made
+    return made
+
+
+def _compiled(program: Program, source: Source, owner: type | None, parameters: dict[str, Value]) -> Compiled:
     compiled = program.named[program.new_name(source.node.name)]
     compiled.file = source.file
     depth = program.depth
@@ -94,7 +107,6 @@ def compiled_function(
         )
     program.depth = depth
     _finish(rewriter, parameters)
-    program.functions[key] = compiled
     return compiled
 
 

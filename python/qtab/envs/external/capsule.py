@@ -85,7 +85,7 @@ def compiled_class(
         if needs_masks and compiled.rewritten.mask_refusal is not None:
             raise compiled.rewritten.mask_refusal
     except NotCompilable as refusal:
-        raise NotInRustError(refusal.place_and_reason, refusal.advice) from None
+        raise NotInRustError(refusal.place_and_reason, refusal.advice, refusal.problems) from None
     return compiled
 
 

@@ -191,7 +191,7 @@ class FunctionalEnv(gym.Env[Any, Any], ABC):
         try:
             return capsule_of(self)
         except NotCompilable as refusal:
-            raise NotInRustError(refusal.place_and_reason, refusal.advice) from None
+            raise NotInRustError(refusal.place_and_reason, refusal.advice, refusal.problems) from None
 
     def __qtab_env_failed__(self, state: bytes | None, action: int | None, rng: np.random.Generator) -> None:
         """Repeats a call in Python that failed in compiled code, so that it raises the error.

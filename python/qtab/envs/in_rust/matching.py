@@ -1,6 +1,6 @@
 """Matching of environment objects to registry entries: Rust replaces only those whose numbers it reproduces."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import gymnasium as gym
@@ -32,18 +32,28 @@ class NotInRustError(ValueError):
     Args:
         reason: The reason.
         remedy: A change after which Rust steps it.
+        problems: All problems of its code for Numba, with their remedies; empty for another reason.
     """
 
-    def __init__(self, reason: str, remedy: str) -> None:
+    def __init__(self, reason: str, remedy: str, problems: Sequence[str] = ()) -> None:
         super().__init__(reason)
-        self.remedy = remedy
+        self.remedy, self.problems = remedy, tuple(problems)
 
 
 def rust_unavailable(reason: str | NotInRustError, backend: str = "rust") -> ValueError:
     """Returns the error for a backend that insists on Rust, or on Numba, if Rust cannot step the environment."""
-    if backend == "numba" and isinstance(reason, NotInRustError) and reason.remedy:
-        reason = f"{reason}; {reason.remedy}"
+    if backend == "numba" and isinstance(reason, NotInRustError):
+        if reason.problems:
+            return ValueError(_not_compiled(reason.problems))
+        reason = f"{reason}; {reason.remedy}" if reason.remedy else str(reason)
     return ValueError(f"backend must be 'auto' or 'gymnasium' for this environment, got {backend!r}: {reason}")
+
+
+def _not_compiled(problems: Sequence[str]) -> str:
+    headline = "the environment cannot be compiled, as backend='numba' asks"
+    if len(problems) == 1:
+        return f"{headline}: {problems[0]}"
+    return "\n".join([f"{headline}, for these reasons:", *(f"  {problem}" for problem in problems)])
 
 
 def entry_for_env(env: gym.Env) -> EnvEntry:

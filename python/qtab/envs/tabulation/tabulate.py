@@ -14,6 +14,7 @@ from qtab.envs.functional import FunctionalEnv
 from qtab.envs.in_rust.matching import layers, overridden, time_limit
 from qtab.envs.origin.class_code import is_of_library
 from qtab.envs.origin.describe import NEUTRAL, describe
+from qtab.envs.registry import hint_for
 from qtab.envs.tabulation.branches import CannotListError
 from qtab.envs.tabulation.copied_outcomes import CopiedOutcomes
 from qtab.envs.tabulation.functional_outcomes import FunctionalOutcomes
@@ -65,7 +66,7 @@ def tabulate(env: gym.Env[Any, Any], *, max_states: int = 100_000) -> TabulatedE
             action spaces, or wrappers that may change a number. The message names the state, the action and the draw.
     """
     if not isinstance(env, gym.Env):
-        hint = f"; pass gymnasium.make({env!r})" if isinstance(env, str) else ""
+        hint = f"; pass gymnasium.make({env!r})" if isinstance(env, str) else hint_for(env)
         raise TypeError(f"env must be an environment, got {shown(env)}{hint}")
     max_states = checks.count("max_states", max_states, least=1)
     for layer in layers(env):

@@ -11,8 +11,10 @@ from numpy.typing import NDArray
 
 from qtab import _core
 from qtab._utils import checks
+from qtab._utils.shown import shown
 from qtab.envs.in_rust.matching import NotInRustError, entry_for_env
 from qtab.envs.in_rust.native import native_env
+from qtab.envs.origin.class_code import is_of_library
 from qtab.envs.registry import ENTRIES, PREFIX, EnvEntry, gymnasium_id
 
 
@@ -25,8 +27,22 @@ def spec_to_step(name: Any) -> EnvSpec:
     """
     if isinstance(name, str) and gymnasium_id(name) not in ENTRIES and name in gym.registry:
         return gym.spec(name)
+    if isinstance(name, gym.Env) or (isinstance(name, type) and issubclass(name, gym.Env)):
+        cls = name if isinstance(name, type) else type(name)
+        raise TypeError(f"name must be an environment id, got {shown(name)}{_way_to_an_id(cls)}")
     # A spec instead of an id: Gymnasium would warn of an old version a second time.
     return gym.spec(PREFIX + checks.choice("name", gymnasium_id(name) if isinstance(name, str) else name, ENTRIES))
+
+
+def _way_to_an_id(cls: type) -> str:
+    """Returns what to write instead of a class; Rust steps only some classes of one's own."""
+    if getattr(cls, "__qtab_env__", None) is None and is_of_library(cls):
+        return ""
+    own = f"gymnasium.register('my/{cls.__name__}-v0', {cls.__name__}) and pass 'my/{cls.__name__}-v0'"
+    if getattr(cls, "__qtab_env__", None) is not None:
+        return f"; call {own}"
+    makers = f"gymnasium.vector.SyncVectorEnv([{cls.__name__}] * num_envs)"
+    return f"; Rust steps a qtab.FunctionalEnv, registered with an id; step this class with {makers}"
 
 
 def entry_to_step(spec: EnvSpec, env: gym.Env[Any, Any]) -> EnvEntry:

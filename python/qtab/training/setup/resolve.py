@@ -28,6 +28,7 @@ from qtab.envs.registry import (
     UNLIMITED_MAX_EPISODE_STEPS,
     EnvEntry,
     entry_for_spec,
+    hint_for,
     make_env,
     named_spec,
 )
@@ -48,6 +49,11 @@ READ_IN_PYTHON = "a function as the discretizer, or max_rows, reads each observa
 InRust: TypeAlias = EnvEntry | _core.ExternalEnv
 """An environment that Rust steps: an entry of the registry, or that of a capsule."""
 MASKS_BY_STEP = "its action masks are known only from step to step"
+MASKS_MISSING = (
+    "action_mask=True needs an environment with action masks: write a method action_masks(self) that returns an array "
+    "of booleans, or action_mask(self, state) for a qtab.FunctionalEnv; or give action_mask=f, a function of the "
+    "observation"
+)
 
 
 @dataclass(frozen=True)
@@ -115,7 +121,8 @@ def resolve(
             owns_env = True
             on_exit.callback(request.env.close)
         else:
-            raise TypeError(f"env must be an environment id, an EnvSpec or an environment, got {shown(env)}")
+            expected = "an environment id, an EnvSpec or an environment"
+            raise TypeError(f"env must be {expected}, got {shown(env)}{hint_for(env)}")
         run = _fill_defaults(request, owns_env)
         if not run.is_native:
             on_exit.pop_all()  # the run closes the environment
@@ -228,6 +235,8 @@ def _fill_defaults(request: _Request, owns_env: bool) -> ResolvedRun:
     if in_rust and (in_python or (has_masks and masks is None)):
         in_rust, python_reason = False, READ_IN_PYTHON if in_python else MASKS_BY_STEP
         if config.backend in INSISTING:
+            if external is not None and config.action_mask is True and not in_python:
+                raise ValueError(MASKS_MISSING)
             raise rust_unavailable(python_reason, config.backend)
     if has_masks and masks is None:
         masks = observed_masks(config.action_mask, env)

@@ -21,7 +21,7 @@ from qtab.envs.actions import choose_actions
 from qtab.envs.origin.again import cannot_be_made, make_again, needs_object
 from qtab.envs.origin.describe import describe
 from qtab.envs.origin.description import EnvironmentDescription, differences
-from qtab.envs.registry import ENTRIES, gymnasium_id, make_env, spec_of, spec_of_run
+from qtab.envs.registry import ENTRIES, gymnasium_id, hint_for, make_env, spec_of, spec_of_run
 from qtab.results.run import Run
 from qtab.training.setup.resolve import resolve
 from qtab.training.setup.resolved_run import ResolvedRun
@@ -241,7 +241,8 @@ def check_env(env: Any) -> None:
         TypeError: if ``env`` is not None, an id, an EnvSpec or an environment.
     """
     if env is not None and not isinstance(env, str | EnvSpec | gym.Env):
-        raise TypeError(f"env must be an environment id, an EnvSpec or an environment, got {shown(env)}")
+        expected = "an environment id, an EnvSpec or an environment"
+        raise TypeError(f"env must be {expected}, got {shown(env)}{hint_for(env)}")
 
 
 def _name(env: gym.Env) -> str:

@@ -49,7 +49,8 @@ impl MaskSource {
                 let name = || format!("info['action_mask'] of {method} of {}", named(env));
                 let Some(given) = found else {
                     return Err(PyValueError::new_err(format!(
-                        "{} must be present for action_mask=True; action_mask=f takes a function of the observation",
+                        "{} must be present for action_mask=True: return it in info, write a method \
+                         action_masks(self), or give action_mask=f, a function of the observation",
                         name()
                     )));
                 };

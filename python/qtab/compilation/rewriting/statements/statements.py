@@ -5,6 +5,7 @@ import importlib
 from functools import cached_property
 from typing import Any
 
+from qtab.compilation.not_compilable import Follows, NotCompilable
 from qtab.compilation.rewriting import specials
 from qtab.compilation.rewriting.expressions.displays import Displays
 from qtab.compilation.rewriting.program import tuple_value
@@ -35,7 +36,25 @@ class Statements(Displays):
 
     def block(self, statements: list[ast.stmt]) -> bool:
         """Rewrites statements; returns whether the end of the block cannot be reached."""
-        return any(self.statement(statement) for statement in statements)
+        return any(self._statement_or_problem(statement) for statement in statements)
+
+    def _statement_or_problem(self, node: ast.stmt) -> bool:
+        """Rewrites a statement; one that cannot be compiled is noted, and left out to find further problems."""
+        depths = self.indent, self.depth, self.program.depth
+        try:
+            return self.statement(node)
+        except NotCompilable as problem:
+            if self.program.phase == "mask":
+                raise
+            self.indent, self.depth, self.program.depth = depths
+            follows = isinstance(problem, Follows) or any(name in problem.reason.split() for name in self.unknown)
+            if not follows:
+                self.program.problems.append(problem)
+            if isinstance(node, ast.Return):  # the type of the result is unknown
+                raise Follows(problem.reason, problem.file, problem.line, problem.advice) from None
+            names = [one for one in ast.walk(node) if isinstance(one, ast.Name)]
+            self.unknown |= {one.id for one in names if isinstance(one.ctx, ast.Store)}
+            return False
 
     def indented(self, statements: list[ast.stmt]) -> bool:
         """Rewrites the statements of a branch or a loop that is decided at run time."""
