@@ -51,7 +51,9 @@ def window(chromium: Any, page_file: Path, request: pytest.FixtureRequest) -> An
 
 
 @pytest.mark.parametrize("window", [{"viewport": {"width": 360, "height": 740}, "has_touch": True}], indirect=True)
-@pytest.mark.parametrize("environment", ["MountainCar-v0", "CartPole-v1", "CliffWalking-v1", "grid"])
+@pytest.mark.parametrize(
+    "environment", ["MountainCar-v0", "CartPole-v1", "CliffWalking-v1", "Taxi-v4", "Blackjack-v1", "grid"]
+)
 def test_a_small_screen_needs_no_sideways_scrolling(window: Playground, environment: str) -> None:
     window.open(f"#env={environment}&episodes=30")
     window.page.locator("#settings-fold > summary").click()
@@ -63,6 +65,9 @@ def test_a_small_screen_needs_no_sideways_scrolling(window: Playground, environm
       element.checkVisibility() && element.getBoundingClientRect().right > 361)
         .map((element) => element.outerHTML.slice(0, 80))"""
     assert window.page.evaluate(wide) == []
+    low = """() => [...document.querySelectorAll("input[type=range]")].filter((element) =>
+      element.checkVisibility() && element.getBoundingClientRect().height < 44).map((element) => element.id)"""
+    assert window.page.evaluate(low) == [], "too low for a finger"
 
 
 @pytest.mark.parametrize(

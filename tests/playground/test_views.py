@@ -160,3 +160,21 @@ def test_the_states_of_a_game_are_said_in_words(
     playground.open(f"#env={environment}&episodes=300")
     for cell, text in words.items():
         assert text in playground.page.evaluate("cell => playground.view.describe(cell)", cell), cell
+
+
+@pytest.mark.parametrize(
+    ("fragment", "cell", "words"),
+    [
+        ("#env=grid&layout=S.W.G&episodes=20", 2, "Row 1, column 3: wall."),
+        ("#env=Taxi-v4&episodes=50", 5, "No state."),
+        ("#env=Blackjack-v1&episodes=50", 10, "No state."),
+    ],
+)
+def test_a_cell_without_numbers_is_not_selected(playground: Playground, fragment: str, cell: int, words: str) -> None:
+    playground.open(fragment)
+    before = playground.text("inspection")
+    playground.page.evaluate("cell => playground.view.pick(cell, 'press')", cell)
+    playground.page.wait_for_function("words => document.querySelector('#live').textContent === words", arg=words)
+    playground.settled()
+    assert playground.text("inspection") == before
+    assert playground.page.locator("#problem").is_hidden()

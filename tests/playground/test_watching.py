@@ -141,3 +141,14 @@ def test_an_impossible_agent_is_disabled_with_the_reason(playground: Playground)
     assert "Q-learning (this agent)" in texts
     assert "Dyna-Q (not with Tile coding)" in texts
     assert playground.page.locator('#compared option[value="dyna_q"]').is_disabled()
+
+
+def test_an_agent_that_does_not_fit_beside_another_is_refused_alone(playground: Playground) -> None:
+    playground.open("#env=CartPole-v1&discretizer=bins&bins=41&episodes=3&compare=dyna_q")
+    playground.page.locator("#problem").wait_for()
+    assert playground.result()["state"] == "finished"
+    assert playground.text("problem").startswith("Dyna-Q could not be trained to compare with: 1 run with a table of ")
+    assert playground.page.locator("#other-panel").is_hidden()
+    playground.page.locator("#compared").select_option("sarsa")
+    compared(playground)
+    assert playground.page.locator("#problem").is_hidden()

@@ -48,7 +48,7 @@ function start() {
   const newOther = () => new Training(store, Engine, {
     onStart: () => {},
     onResult: (message) => view.showOther(message),
-    onProblem: (message) => view.showProblem(message),
+    onProblem: (message) => view.showOtherProblem(message),
     request: () => ({ ...store.request(store.otherSettings), best: false }),
     inspects: false,
   });

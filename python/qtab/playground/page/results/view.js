@@ -80,6 +80,13 @@ export class View {
     if (!this.isStale) this.drawSoon(message.state === "training");
   }
 
+  /** Shows why the agent to compare with could not be trained, and the first agent alone. */
+  showOtherProblem(message) {
+    this.other = { result: null, episode: null, past: null, isStale: false };
+    this.note = `${this.names[1]} could not be trained to compare with: ${message}`;
+    if (!this.isStale) this.draw();
+  }
+
   /** The names of the agent and of the other one if two are compared. */
   get names() {
     const { state, otherSettings, definitions } = this.store;
@@ -347,6 +354,11 @@ export class View {
       return;
     }
     if (how === "drag") return;
+    if (!this.isStale && Number.isNaN(this.result.map.values[cell])) {
+      // A wall, or a gap of the map, has no numbers.
+      this.announce(this.describe(cell));
+      return;
+    }
     this.values.select(cell);
     this.inspect(cell);
     if (how === "key") this.announce(`Selected. ${this.describe(cell)} Its numbers are below the maps.`);
