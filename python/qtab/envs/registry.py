@@ -280,7 +280,7 @@ def unregistered(env: str) -> gym.error.UnregisteredEnv:
 
 
 def hint_for(given: Any) -> str:
-    """Returns what to write instead of a class or a function that was given as an environment, for the end of an error."""
+    """Returns what to write instead of a class or a function given as an environment, for the end of an error."""
     if isinstance(given, type) and issubclass(given, gym.Env):
         return f"; pass an instance, {given.__name__}()"
     if callable(given) and not isinstance(given, type):
