@@ -6,7 +6,6 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from qtab.compilation.layouts.observation_layout import ObservationLayout
 from qtab.compilation.ordinary import OrdinaryEnv
@@ -14,7 +13,7 @@ from qtab.compilation.rewriting.rewrite import rewrite
 from qtab.compilation.rewriting.tuple_observations import with_tuple_observations
 
 
-class Moving(gym.Env[NDArray[np.float32], int]):
+class Moving(gym.Env[Any, Any]):
     """A position that an action moves."""
 
     observation_space = gym.spaces.Box(-100, 100, (2,), np.float32)
