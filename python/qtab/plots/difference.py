@@ -43,8 +43,9 @@ def difference(
 
     The cost is that of a single action, followed by optimal ones. It is 0 if the action is optimal, or one of several
     optimal ones; these states stay blank. States in which the run has learned nothing are grey, as in
-    :func:`qtab.plots.values`.
-    For MountainCar the values are those of the best known policy, accurate to about a step: lower costs count as 0.
+    :func:`qtab.plots.values`. States that the policy never visits count as well: a policy can be optimal although some
+    states have a worse action. For MountainCar the values are those of the best known policy, accurate to about a step:
+    lower costs count as 0.
 
     Args:
         run: A run, or the runs of many seeds with their tables, whose most frequent greedy action is taken.
