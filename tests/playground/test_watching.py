@@ -59,6 +59,18 @@ def test_a_slow_run_can_be_stopped_and_stepped(playground: Playground) -> None:
     assert sum(stepped["visits"]) == sum(stopped["visits"]) + 1
 
 
+def test_an_episode_ends_where_it_ends_at_any_speed(playground: Playground) -> None:
+    playground.open("#env=CliffWalking-v1&example=2")
+    playground.page.locator("#reset").click()
+    playground.settled()
+    playground.page.evaluate(PACE, 8)
+    for episodes in (1, 2):
+        playground.page.locator("#one-episode").click()
+        result = playground.settled().result()
+        assert result["done"] == episodes
+        assert sum(result["visits"]) == sum(result["lengths"])
+
+
 @pytest.mark.parametrize("environment", ["CliffWalking-v1", "MountainCar-v0&discretizer=tiles&max_episode_steps=50"])
 def test_looking_back_shows_what_was_learned_by_then(playground: Playground, environment: str) -> None:
     playground.open(f"#env={environment}&episodes=40")

@@ -170,15 +170,15 @@ async function walk() {
   // What cannot be caught up with in a slice is left out: the pace is then that of the machine.
   const due = Math.floor(((begun - run.stepped) / 1000) * pace);
   let steps = 0;
+  let answer;
   do {
-    call({ call: "step" });
+    answer = call({ call: "step" });
     steps += 1;
-  } while (steps < due && performance.now() - begun < SLICE);
+  } while (steps < due && answer.state === "training" && answer.done < run.goal && performance.now() - begun < SLICE);
   run.stepped = steps < due ? begun : run.stepped + (1000 * steps) / pace;
   run.seconds += (performance.now() - begun) / 1000;
-  const { state, done } = call({ call: "advance", work: 0 });
-  if (state !== "training") run.state = state;
-  else if (done >= run.goal) run.state = "paused";
+  if (answer.state !== "training") run.state = answer.state;
+  else if (answer.done >= run.goal) run.state = "paused";
 }
 
 function report() {
