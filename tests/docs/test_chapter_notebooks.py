@@ -36,9 +36,14 @@ def test_each_is_tested_and_the_page_for_teachers_links_it() -> None:
     assert [name for name in names if f"(../../examples/chapters/{name}.ipynb)" not in page] == []
 
 
+def found(pattern: str, text: str) -> list[str]:
+    """Returns the different matches in order: Jupyter repeats a printed line now and then."""
+    return list(dict.fromkeys(re.findall(pattern, text)))
+
+
 def check_chapter_2(executed: Executed) -> None:
     """The greedy agent takes the eighth action, never the best one, and α = 0.1 is best on the moving values."""
-    counts = [re.findall(r"\d+", line) for line in re.findall(r"visits \[(.*)\]", executed.text("one-run"))]
+    counts = [re.findall(r"\d+", line) for line in found(r"visits \[(.*)\]", executed.text("one-run"))]
     greedy, exploring = np.array(counts, dtype=int)
     assert (greedy[7], greedy[6]) == (997, 0)
     assert exploring.argmax() == 6
@@ -69,7 +74,7 @@ def check_chapter_2(executed: Executed) -> None:
 def check_chapter_4(executed: Executed) -> None:
     in_place, two_arrays = (int(number) for number in re.findall(r"(\d+)", executed.text("in-place"))[-2:][::-1])
     assert in_place < two_arrays * 2 / 3
-    assert re.findall(r"(\d+) of 441", executed.text("jack-changes")) == ["318", "272", "79", "8"]
+    assert found(r"(\d+) of 441", executed.text("jack-changes")) == ["318", "272", "79", "8"]
     first, second, third = itertools.islice(qtab.planning.value_iteration("qtab/GamblersProblem-v0"), 1, 4)
     assert [np.flatnonzero(values).min() for values in (first, second, third)] == [50, 25, 13]
     assert executed.text("lake").startswith("probability of reaching the goal: 0.7402")
@@ -83,10 +88,10 @@ def check_chapter_4(executed: Executed) -> None:
 
 
 def check_chapter_5(executed: Executed) -> None:
-    errors = [float(error) for error in re.findall(r"error ([\d.]+)", executed.text("error"))]
+    errors = [float(error) for error in found(r"error ([\d.]+)", executed.text("error"))]
     # 1,000 and 10,000 episodes: a factor of about √10.
     assert 2.5 < errors[2] / errors[4] < 4
-    losses = [float(loss) for loss in re.findall(r"0\.\d{4}", executed.text("control-gap"))]
+    losses = [float(loss) for loss in found(r"0\.\d{4}", executed.text("control-gap"))]
     best, learned, sticks = losses
     assert best < learned < best + 0.002
     assert sticks > 0.3
@@ -96,7 +101,7 @@ def check_chapter_5(executed: Executed) -> None:
 
 
 def check_chapter_6(executed: Executed) -> None:
-    assert executed.text("windy-gap").startswith("optimum: -15.0\ngreedy policy: -15.0")
+    assert found(r"(?:optimum|greedy policy): (\S+)", executed.text("windy-gap")) == ["-15.0"]
     assert executed.text("step").count("target = R + γ Q(S', A')") == 2
     settings: dict[str, Any] = {}
     exec(source("chapters/chapter_6", "windy").partition("windy =")[0], settings)  # noqa: S102 - our own notebook
@@ -110,7 +115,7 @@ def check_chapter_6(executed: Executed) -> None:
 
 
 def check_chapter_8(executed: Executed) -> None:
-    known = [int(cells) for cells in re.findall(r"cells with a value above 0: (\d+)", executed.text("policies"))]
+    known = [int(cells) for cells in found(r"cells with a value above 0: (\d+)", executed.text("policies"))]
     assert known[0] == 2
     assert known[1] > 40
     lines = {line.name: line.mean for line in qtab.book.run("figure-8.2").lines}
@@ -151,9 +156,7 @@ def check_chapter_9(executed: Executed) -> None:
 
 
 def check_chapter_10(executed: Executed) -> None:
-    coarse, fine, tiles = (
-        float(mean) for mean in re.findall(r"episodes: (-[\d.]+) \[", executed.text("table-returns"))
-    )
+    coarse, fine, tiles = (float(mean) for mean in found(r"episodes: (-[\d.]+) \[", executed.text("table-returns")))
     assert coarse < fine < -150 < -120 < tiles
 
 
@@ -177,7 +180,7 @@ def check_chapter_12(executed: Executed) -> None:
 
 
 def check_chapter_13(executed: Executed) -> None:
-    assert re.findall(r"greedy policy (-?\d+)", executed.text("values")) == ["-1000", "-1000"]
+    assert found(r"greedy policy (-?\d+)", executed.text("values")) == ["-1000"]
     assert min(float(mean) for mean in re.findall(r"episodes (-[\d.]+),", executed.text("values"))) > -44
     rights = []
     for seed in range(20):
