@@ -78,7 +78,7 @@ def test_a_reward_that_is_not_finite_has_the_message_of_python() -> None:
     messages = []
     for backend in ("numba", "python"):
         with pytest.raises(ValueError, match="a finite number as the reward") as caught:
-            qtab.train(gym.wrappers.TimeLimit(Infinite(), 50), backend=backend, seed=1, episodes=50)  # type: ignore[arg-type]
+            qtab.train(gym.wrappers.TimeLimit(Infinite(), 50), backend=backend, seed=1, episodes=50)
         messages.append(str(caught.value))
     assert messages[0] == messages[1]
     assert "<TimeLimit<Infinite" in messages[0]
