@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from support.documents.pages import page_id, pages
+from support.documents.pages import FENCE, page_id, pages
 from support.repository import ROOT
 
 PAGES = pages()
@@ -38,6 +38,19 @@ def test_links_lead_to_files_and_headings_that_exist(page: Path) -> None:
 def test_every_picture_has_an_alternative_text(page: Path) -> None:
     for picture, text, target in LINK.findall(page.read_text(encoding="utf-8")):
         assert not picture or len(text) > 40, target
+
+
+LONGEST_LINE = 110
+"""The box of a block of code on the site has room for so many letters in a window of 1,400 pixels."""
+WRAPPED = ("", "text", "none")
+"""The languages of blocks whose long lines the style sheet breaks."""
+
+
+@pytest.mark.parametrize("page", [page for page in PAGES if page.is_relative_to(ROOT / "docs")], ids=page_id)
+def test_lines_of_code_fit_into_their_box_on_the_site(page: Path) -> None:
+    blocks = FENCE.findall(page.read_text(encoding="utf-8"))
+    lines = [line for language, code in blocks if language not in WRAPPED for line in code.splitlines()]
+    assert [line for line in lines if len(line) > LONGEST_LINE] == []
 
 
 def test_the_paths_that_contributing_names_exist() -> None:

@@ -1,5 +1,7 @@
 """Opens every page of the built site in Chromium: nothing is loaded from elsewhere, and the console shows no error.
 
+Blocks of code fit into their boxes in a window of 1,400 pixels.
+
 A page without external addresses may still load things through its scripts, which only a browser detects.
 """
 
@@ -16,6 +18,11 @@ from typing import Any
 CHROMIUM = os.environ.get("CHROMIUM") or shutil.which("chromium") or shutil.which("google-chrome")
 
 
+NOTEBOOKS = "notebooks/"
+"""The pages of notebooks, whose code has lines of up to 120 letters."""
+TOO_WIDE = """() => [...document.querySelectorAll(".bd-article div.highlight pre")]
+    .map(block => block.scrollWidth - block.clientWidth).filter(pixels => pixels > 1)"""
+"""Returns by how many pixels each block of code of a page is wider than its box."""
 NO_NETWORK = "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1"
 
 
@@ -77,6 +84,9 @@ def problems(site: Path) -> list[str]:
         for path in sorted(site.rglob("*.html")):
             opened = path.relative_to(site).as_posix()
             page.goto(address + opened, wait_until="load")
+            if not opened.startswith(NOTEBOOKS):
+                for pixels in page.evaluate(TOO_WIDE):
+                    note(f"code is {pixels} px wider than its box")
     return list(dict.fromkeys(found))
 
 
