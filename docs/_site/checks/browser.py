@@ -16,8 +16,6 @@ from pathlib import Path
 from typing import Any
 
 CHROMIUM = os.environ.get("CHROMIUM") or shutil.which("chromium") or shutil.which("google-chrome")
-
-
 NOTEBOOKS = "notebooks/"
 """The pages of notebooks, whose code has lines of up to 120 letters."""
 TOO_WIDE = """() => [...document.querySelectorAll(".bd-article div.highlight pre")]
@@ -61,7 +59,7 @@ def browsed(site: Path) -> Iterator[tuple[Any, str]]:
 
     with served(site) as address, sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox", NO_NETWORK])
-        yield browser.new_page(), address
+        yield browser.new_page(viewport={"width": 1400, "height": 900}), address
         browser.close()
 
 
