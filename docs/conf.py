@@ -9,6 +9,7 @@ import qtab
 sys.modules["qtab.designs"] = qtab.designs
 
 HERE = Path(__file__).parent
+ICON = "_site/static/icon.svg"
 sys.path.insert(0, str(HERE / "_site" / "extensions"))
 
 project = "qtab"
@@ -87,16 +88,21 @@ intersphinx_mapping = {
 # Appearance
 html_theme = "pydata_sphinx_theme"
 html_title = "qtab"
-html_static_path = ["_static"]
+html_static_path = ["_site/static"]
 html_css_files = ["site.css"]
-html_favicon = "_static/icon.svg"
+html_favicon = ICON
 html_copy_source = False
 html_show_sourcelink = False
 html_show_sphinx = False
-html_search_scorer = str(HERE / "_extensions" / "search_scorer.js")
+html_search_scorer = str(HERE / "_site" / "extensions" / "search_scorer.js")
 html_context = {"default_mode": "auto"}
 html_theme_options = {
-    "logo": {"text": "qtab", "image_light": "_static/icon.svg", "image_dark": "_static/icon.svg", "alt_text": ""},
+    "logo": {
+        "text": "qtab",
+        "image_light": "_site/static/icon.svg",
+        "image_dark": "_site/static/icon.svg",
+        "alt_text": "",
+    },
     "header_links_before_dropdown": 8,
     "navbar_align": "left",
     "navbar_end": ["theme-switcher"],
