@@ -61,6 +61,16 @@ def test_nested_and_listed_integers_are_compared_exactly(expression: str) -> Non
 
 
 @BOTH
+def test_large_constants_beside_floats_are_exact_or_refused(compile_it: Any) -> None:
+    assert outcome(compile_it, "min(10**18, x)", x=5e18) == bits(10**18)
+    assert outcome(compile_it, "x > 10**18", x=5e18) == bits(True)
+    for expression in ("min(9223372036854775807, x)", "x > 9223372036854775807"):
+        with pytest.raises(NotCompilable, match="the integer 9223372036854775807 beside floats") as raised:
+            compile_it(expression)
+        assert "such as 1e18 or math.inf" in raised.value.advice
+
+
+@BOTH
 @pytest.mark.parametrize(
     "expression", ["-max(0, x)", "-min(n, x)", "max(n, x) * -1", "max(0, x) % -2", "min(x, 0) // n"]
 )

@@ -161,7 +161,7 @@ class Checks(TypedCode):
         kinds = [types.unliteral(one) for one in given]
         for kind, other, side in zip(kinds, reversed(kinds), (expression.lhs, expression.rhs), strict=True):
             if kind == types.int64 and isinstance(other, types.Float):
-                return self.check(exact_integer, scope, [side], expression.loc)
+                return check_integers(self, scope, side, frozenset({NUMBER}), expression.loc)
         return []
 
     def _compares_action(self, variable: Any) -> bool:

@@ -3,11 +3,12 @@
 import functools
 import operator
 from collections.abc import Iterator
+from types import SimpleNamespace
 from typing import Any
 
 from numba.core import types
 
-from qtab.compilation.checks.checked_operations import INPLACE, LARGEST_EXACT, compiled, exact_float, exact_integer
+from qtab.compilation.checks.checked_operations import INPLACE, compiled, exact_float, exact_integer
 from qtab.compilation.checks.mixed_numbers import ELEMENT, NUMBER, MixedNumbers, Path, Paths, converted
 from qtab.compilation.checks.number_types import is_int64
 from qtab.compilation.checks.typed_code import TypedCode
@@ -17,11 +18,17 @@ Side = tuple[Any, Paths]
 
 
 def check_integers(code: TypedCode, scope: Any, variable: Any, paths: Paths, loc: Any) -> list[Any]:
-    """Returns the statements that check integers in a variable: an error is raised beyond 2**53."""
+    """Returns the statements that check integers in a variable: an error is raised beyond 2**53.
+
+    A constant is refused here, if it is no float.
+    """
     if paths == {NUMBER}:
         constant = getattr(code.type_of(variable), "literal_value", None)
-        if isinstance(constant, int) and abs(constant) <= LARGEST_EXACT:
-            return []
+        if isinstance(constant, int):
+            if int(float(constant)) == constant:
+                return []
+            reason = f"the integer {constant} beside floats, which is no float of 64 bits"
+            return code.refuse(SimpleNamespace(loc=loc), reason, "write a float, such as 1e18 or math.inf")
     of_int64 = _of_int64(code.type_of(variable), paths)
     return code.check(_checker(of_int64), scope, [variable], loc) if of_int64 else []
 
