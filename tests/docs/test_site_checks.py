@@ -140,7 +140,7 @@ def test_links_out_of_the_documentation_become_pages_of_the_site() -> None:
 
 def test_the_search_finds_names_in_both_spellings() -> None:
     pytest.importorskip("sphinx")
-    split = load("docs/_extensions/search_words.py").BothSpellings({}).split
+    split = load("docs/_site/extensions/search_words.py").BothSpellings({}).split
     assert split("FrozenLake-v1") == ["FrozenLake", "v1", "Frozen", "Lake", "v", "1"]
     assert split("a frozen lake") == ["a", "frozen", "lake", "frozenlake"]
     assert split("Stable-Baselines3") == ["Stable", "Baselines3", "Baselines", "3"]
@@ -149,7 +149,7 @@ def test_the_search_finds_names_in_both_spellings() -> None:
 
 
 def test_thirty_queries_are_tried_in_the_search() -> None:
-    expected = load("docs/_checks/search.py").EXPECTED
+    expected = load("docs/_site/checks/search.py").EXPECTED
     assert len(expected) >= 30
     assert {"frozen lake", "lunar lander", "colab", "gpu", "stable baselines"} <= set(expected)
     pages = {page.partition("#")[0] for page in expected.values() if "generated" not in page}

@@ -1,4 +1,4 @@
-// The order of the search results; docs/_extensions/search_words.py has more about the search.
+// The order of the search results; docs/_site/extensions/search_words.py has more about the search.
 // A page whose title has the words of the query comes first; the list of changes and the like come last.
 var Scorer = {
   score: ([page, title, _anchor, _description, score, _file, kind]) => {
