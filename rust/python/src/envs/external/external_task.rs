@@ -103,7 +103,8 @@ impl<T: Number, F: Features<[T]>> ExternalTask<T, F> {
     }
 
     /// Takes a step in the environment.
-    #[inline]
+    #[expect(clippy::inline_always, reason = "as for `step`")]
+    #[inline(always)]
     pub(super) fn take_step(&mut self, elapsed: &mut u64, action: usize) -> Result<(f64, NextKind), RunError> {
         let before = self.position();
         let (reward, ending) = if self.next_step.is_some() {
@@ -163,7 +164,8 @@ impl<T: Number, F: Features<[T]>> Task for ExternalTask<T, F> {
         Ok((0, rows))
     }
 
-    #[inline]
+    #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
+    #[inline(always)]
     fn step(&mut self, elapsed: &mut u64, action: usize) -> Result<Transition<F::Active>, RunError> {
         let (reward, next) = self.take_step(elapsed, action)?;
         let rows = self.features.active_rows(self.episode.observation())?;

@@ -147,7 +147,9 @@ impl<T: Number, F: Features<[T]>> ExternalTask<T, F> {
     #[inline]
     pub(super) fn note(&mut self, action: usize) -> Result<(), RunError> {
         let Some(played) = &mut self.played else { return Ok(()) };
-        reserve(&mut played.actions, 1).map_err(RunError::Allocation)?;
+        if played.actions.len() == played.actions.capacity() {
+            reserve(&mut played.actions, 1).map_err(RunError::Allocation)?;
+        }
         played.actions.push(action as u32);
         Ok(())
     }
