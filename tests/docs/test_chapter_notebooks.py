@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import qtab
-from support.notebooks import EXAMPLES, Executed, check_shown, source
+from support.documents.notebooks import EXAMPLES, Executed, check_shown, source
 from support.repository import ROOT
 
 PICTURES = {

@@ -16,7 +16,7 @@ import pytest
 
 import qtab
 from qtab.envs.metadata.goals import BEST_KNOWN_MOUNTAIN_CAR
-from support.notebooks import EXAMPLES, Executed, check_shown, nbformat, source, stored
+from support.documents.notebooks import EXAMPLES, Executed, check_shown, nbformat, source, stored
 from support.repository import ROOT, tracked_files
 
 NOTEBOOKS = [

@@ -21,7 +21,6 @@ CROWDED = {
     "docs/how_to": "one page per question; the path of a page is its address",
     "python/qtab": "one folder per subject; the path of a module is how it is imported",
     "rust/core/src": "the modules of the crate, which users name in paths",
-    "rust/web/src": "the modules of the WebAssembly module, each in a file",
     "tests": "the folders of python/qtab, and those of what has no folder there",
 }
 """The folders with more entries than ``MAX_ENTRIES``, and the reason for each."""

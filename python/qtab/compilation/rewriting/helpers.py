@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from qtab.compilation.rewriting import clip_helpers
+from qtab.compilation.rewriting.library import clip_helpers
 
 
 def h_store_vector(field: Any, values: Any) -> None:

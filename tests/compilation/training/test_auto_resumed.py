@@ -9,7 +9,7 @@ import pytest
 
 import qtab
 from qtab.config.origin import copied
-from support.compiled_runs import LONG, Grows, stopped, trained_until, windy
+from support.lockstep.compiled_runs import LONG, Grows, stopped, trained_until, windy
 from support.parity import assert_same_run
 from support.processes.posix import posix_only
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import qtab
-from support.compiled_runs import LONG, Grows, stopped, trained_until, windy
 from support.environments.gym_classes.grids import CliffEnv, MaskedGridEnv
+from support.lockstep.compiled_runs import LONG, Grows, stopped, trained_until, windy
 from support.parity import assert_same_run
 from support.processes.posix import posix_only
 

@@ -11,7 +11,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from qtab.compilation import NotCompilable
-from support.compiled_expressions import FAILED, bits, in_functional_env, in_ordinary_class, in_python
+from support.lockstep.compiled_expressions import FAILED, bits, in_functional_env, in_ordinary_class, in_python
 
 pytest.importorskip("numba")
 

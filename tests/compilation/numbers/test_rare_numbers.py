@@ -11,8 +11,8 @@ from gymnasium import spaces
 import qtab
 from qtab.compilation import NotCompilable
 from qtab.compilation.functional import compiled_env
-from qtab.compilation.rewriting.clip_helpers import BOUND, NUMBER, VARIES, clip_number, winner
-from support.compiled_expressions import FAILED, bits, in_functional_env, in_ordinary_class, in_python
+from qtab.compilation.rewriting.library.clip_helpers import BOUND, NUMBER, VARIES, clip_number, winner
+from support.lockstep.compiled_expressions import FAILED, bits, in_functional_env, in_ordinary_class, in_python
 
 pytest.importorskip("numba")
 
