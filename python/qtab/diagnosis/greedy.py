@@ -27,7 +27,7 @@ LEAST_VISITS = 4
 """States repeat if each one is visited so often, on average, in the second half of an episode."""
 LAST_EPISODES, LEAST_EPISODES = 100, 10
 STANDARD_ERRORS = 3.0
-SHOWN = 3
+SHOWN = 2
 
 
 @dataclass(frozen=True)
@@ -121,7 +121,7 @@ def greedy_loop(facts: "Facts") -> Finding | Unchecked | None:
     share = float(played.repeats.mean())
     states = int(np.median(played.repeated[played.repeats]))
     more = 5 * facts.config.episodes
-    where = played.states[0] if states == 1 else f"{states} states, such as {'; '.join(played.states)}"
+    where = " and ".join(played.states)  # of one episode; others may repeat other states
     return Finding(
         title="The greedy policy repeats states until the time limit.",
         evidence={
@@ -130,8 +130,9 @@ def greedy_loop(facts: "Facts") -> Finding | Unchecked | None:
             "share of greedy episodes that repeat states": share,
             "time limit": run.config.max_episode_steps or UNLIMITED_MAX_EPISODE_STEPS,
         },
-        meaning=f"{percent(share)} of {counted(len(returns), 'greedy episode')} spend their second half in {where}. "
-        "In training, exploration leaves such a loop; the greedy policy never does.",
+        meaning=f"{percent(share)} of {counted(len(returns), 'greedy episode')} visit only {counted(states, 'state')} "
+        f"in their second half, for example {where}. In training, exploration leaves such a loop; the greedy policy "
+        "never does.",
         advice=f"train longer, such as episodes={more}, until the values of these states have settled",
         changes=changes(facts.config, {"episodes": more}),
     )
