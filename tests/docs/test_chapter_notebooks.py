@@ -133,7 +133,7 @@ def check_chapter_9(executed: Executed) -> None:
     exact = qtab.policy_values("qtab/RandomWalk-v0", "random", **walk)
     assert exact.visits.sum() == pytest.approx(83, abs=0.5)
     assert exact.state_distribution.max() == pytest.approx(0.014, abs=0.001)
-    features = {
+    features: dict[Any, Any] = {
         **{width: qtab.prediction.state_aggregation(1000, width) for width in (500, 50)},
         "tilings": qtab.prediction.tile_coding(1000, width=200, tilings=50, offset=4),
     }
