@@ -22,8 +22,7 @@ rehearsal() {
         fi
     done
     [ "$tried" -gt 0 ] || { echo "no Python of 3.10 to 3.14 is installed" && exit 1; }
-    launched_notebook "$found" colab
-    launched_notebook "$found" binder
+    launched_notebooks "$found"
     kill "$server"
     wait "$server" || true
     trap 'rm -rf "$work"' EXIT
@@ -77,24 +76,28 @@ END
     echo "installed from the index on $("$1" --version): $((SECONDS - began)) s"
 }
 
-# Runs a notebook as Google Colab or Binder does, in a new environment that has a kernel of Jupyter. In Colab the cell of the
-# notebook installs what it needs; Binder has installed its requirements before. qtab itself comes from the index alone, and
-# is there first, so that nothing looks it up elsewhere.
-launched_notebook() {
+# Runs a notebook as Google Colab does, where its first cell installs what it needs, and then as Binder does, which has
+# installed its requirements before. Both share an environment that has a kernel of Jupyter, because installing takes most of
+# the time. qtab itself comes from the index alone, and is there first, so that nothing looks it up elsewhere.
+launched_notebooks() {
     local tried began=$SECONDS startup
-    tried=$(mktemp -d "$work/$2-XXXX")
+    tried=$(mktemp -d "$work/notebooks-XXXX")
     "$1" -m venv "$tried/.venv"
     local pip=("$tried/.venv/$bin/pip" install --quiet --only-binary ":all:")
     "${pip[@]}" nbclient ipykernel
     "${pip[@]}" --no-deps --index-url "$index/simple/" qtab
-    if [ "$2" = colab ]; then
-        startup=$tried/ipython/profile_default/startup
-        mkdir -p "$startup"
-        printf 'import sys, types\nsys.modules["google.colab"] = types.ModuleType("google.colab")\n' >"$startup/colab.py"
-    else
-        "${pip[@]}" -r .binder/requirements.txt
-    fi
     cp examples/chapters/chapter_2.ipynb "$tried/notebook.ipynb"
-    (cd "$tried" && PATH="$tried/.venv/$bin:$PATH" IPYTHONDIR="$tried/ipython" jupyter execute --timeout=600 notebook.ipynb) || exit 1
-    echo "a notebook as in $2: $((SECONDS - began)) s"
+    startup=$tried/ipython/profile_default/startup
+    mkdir -p "$startup"
+    printf 'import sys, types\nsys.modules["google.colab"] = types.ModuleType("google.colab")\n' >"$startup/colab.py"
+    run_notebook "$tried" || exit 1
+    rm "$startup/colab.py"
+    "${pip[@]}" -r .binder/requirements.txt
+    run_notebook "$tried" || exit 1
+    echo "a notebook as in Colab and in Binder: $((SECONDS - began)) s"
 }
+
+run_notebook() (
+    cd "$1"
+    PATH="$1/.venv/$bin:$PATH" IPYTHONDIR="$1/ipython" jupyter execute --timeout=600 notebook.ipynb
+)
