@@ -201,7 +201,9 @@ def test_a_bad_mask_is_refused_at_its_step(mask: Any, error: type[Exception], me
 
 
 def test_an_environment_without_masks_and_a_function_that_fails_are_named() -> None:
-    with pytest.raises(ValueError, match=r"^info\['action_mask'\] of reset of .*FrozenLake.* action_mask=f takes"):
+    with pytest.raises(
+        ValueError, match=r"^info\['action_mask'\] of reset of .*FrozenLake.* action_mask=f, a function"
+    ):
         qtab.train("FrozenLake-v1", action_mask=True)
 
     def fails(observation: Any) -> Any:

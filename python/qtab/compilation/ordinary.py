@@ -32,26 +32,21 @@ class OrdinaryEnv:
     Args:
         env: The environment, without wrappers. It is not changed.
         name: Its name in messages; None takes its text.
-        check: Called before the compilation, when the class is rewritten, to refuse it for other reasons.
 
     Raises:
         NotCompilable: if Numba is not installed, the class cannot be compiled, or compiled code gives other numbers
             than Python.
     """
 
-    def __init__(
-        self, env: gym.Env, name: str | None = None, check: "Callable[[OrdinaryEnv], None] | None" = None
-    ) -> None:
+    def __init__(self, env: gym.Env, name: str | None = None) -> None:
         require_numba()
         self._name = str(env) if name is None else name
         observation = ObservationLayout.of(env.observation_space)
-        self.outside = refuse_effects(env)
+        shared = refuse_effects(env)
         self.env = twin_of(env)
-        with restored(self.outside.shared):
-            self.rewritten = rewrite(self.env, shared_attributes(env, self.outside.shared))
+        with restored(shared):
+            self.rewritten = rewrite(self.env, shared_attributes(env, shared))
         _check_episodes(env, self.rewritten)
-        if check is not None:
-            check(self)
         self.record = with_observation(self.rewritten.dtype, observation)
         first = np.zeros(1, self.record)
         for name in self.rewritten.dtype.names or ():

@@ -65,7 +65,7 @@ def test_large_constants_beside_floats_are_exact_or_refused(compile_it: Any) -> 
     assert outcome(compile_it, "min(10**18, x)", x=5e18) == bits(10**18)
     assert outcome(compile_it, "x > 10**18", x=5e18) == bits(True)
     for expression in ("min(9223372036854775807, x)", "x > 9223372036854775807"):
-        with pytest.raises(NotCompilable, match="the integer 9223372036854775807 beside floats") as raised:
+        with pytest.raises(NotCompilable, match="the integer 9223372036854775807, which is used with floats") as raised:
             compile_it(expression)
         assert "such as 1e18 or math.inf" in raised.value.advice
 

@@ -27,7 +27,7 @@ def check_integers(code: TypedCode, scope: Any, variable: Any, paths: Paths, loc
         if isinstance(constant, int):
             if int(float(constant)) == constant:
                 return []
-            reason = f"the integer {constant} beside floats, which is no float of 64 bits"
+            reason = f"the integer {constant}, which is used with floats but cannot be represented exactly as float64"
             return code.refuse(SimpleNamespace(loc=loc), reason, "write a float, such as 1e18 or math.inf")
     of_int64 = _of_int64(code.type_of(variable), paths)
     return code.check(_checker(of_int64), scope, [variable], loc) if of_int64 else []

@@ -54,10 +54,6 @@ class Rewritten:
     kept_between_episodes: tuple[str, ...]
     """The attributes that change, and that ``reset`` does not assign before it reads them: the first state of an
     episode depends on the episodes before."""
-    changed: frozenset[str]
-    """The attributes that ``reset`` or ``step`` assigns or changes in place, and that compiled code needs."""
-    changed_in_place: frozenset[str]
-    """Those of which elements are assigned."""
     lines: dict[int, tuple[str, int]]
     """For each line of ``source`` the file and the line of the class."""
     source: str
@@ -170,8 +166,6 @@ def _rewritten(env: gym.Env, attributes: Attributes, program: Program) -> Rewrit
         dtype,
         initial,
         tuple(kept),
-        frozenset(program.stored | attributes.changed_in_place),
-        frozenset(attributes.changed_in_place),
         lines,
         source,
         namespace,

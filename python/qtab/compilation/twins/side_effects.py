@@ -18,7 +18,6 @@ from qtab.compilation.rewriting.source.sources import Source, source_of
 from qtab.compilation.rewriting.source.syntax import CHANGING
 from qtab.compilation.rewriting.statements.effects import PURE_BUILTINS, PURE_METHODS
 from qtab.compilation.twins.known_values import KnownValues
-from qtab.compilation.twins.outside import Outside
 from qtab.compilation.twins.plain_data import is_plain, mutable_parts
 
 METHODS = ("reset", "step", "action_masks", "action_mask")
@@ -42,11 +41,14 @@ REFUSED: tuple[type[ast.AST], ...] = (
 ADVICE = "use numbers, math, and the NumPy functions of the documentation"
 
 
-def refuse_effects(env: gym.Env) -> Outside:
+def refuse_effects(env: gym.Env) -> list[Any]:
     """Refuses an environment whose resets or steps may have effects outside of it, such as files, prints or windows.
 
     Args:
         env: The environment, without wrappers. Nothing of it is run.
+
+    Returns:
+        The lists, dicts, sets, deques and arrays that its methods read: of its class, of modules, of default arguments.
 
     Raises:
         NotCompilable: if they may, with the line, or if the source code is not available.
@@ -59,7 +61,7 @@ def refuse_effects(env: gym.Env) -> Outside:
         if isinstance(member, FunctionType):
             search.add(member, owner)
     search.run()
-    return Outside(list(search.shared.values()), search.message)
+    return list(search.shared.values())
 
 
 class _Search:
@@ -69,7 +71,6 @@ class _Search:
         self.env = env
         self.known = Attributes(env, env)
         self.shared: dict[int, Any] = {}
-        self.message: str | None = None
         self._waiting: list[tuple[FunctionType, type | None, str]] = []
         self._found: set[tuple[FunctionType, type | None, str]] = set()
 
@@ -264,8 +265,6 @@ class _Body(KnownValues):
         root = module.partition(".")[0]
         if getattr(builtins, name, None) is value and (name in SAFE_BUILTINS or isinstance(value, type)):
             return
-        if module == "gymnasium.logger" and self._all.message is None:
-            self._all.message = f"{self._source.file}:{getattr(node, 'lineno', self._source.node.lineno)}"
         if value is gym.Env.reset or module in ("math", "gymnasium.logger") or value is super:
             return
         if root == "numpy" and isinstance(

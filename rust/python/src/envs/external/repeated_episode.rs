@@ -15,6 +15,9 @@ use crate::error::RunError;
 /// In a checkpoint, the size of the state of an environment that repeats episodes: the episode so far follows instead.
 pub(super) const EPISODE_SO_FAR: u64 = u64::MAX;
 
+/// A repetition that was interrupted more often than this, perhaps by the environment itself, ends the run.
+const MOST_INTERRUPTIONS: usize = 3;
+
 /// An episode so far.
 #[derive(Clone, Default)]
 pub(super) struct EpisodeSoFar {
@@ -24,7 +27,8 @@ pub(super) struct EpisodeSoFar {
 }
 
 impl<T: Number, F: Features<[T]>> ExternalTask<T, F> {
-    /// Repeats a call that failed in Python. The generator is moved back to its position before the call.
+    /// Repeats a call that failed in Python. The generator is moved back to its position before the call. An interrupted
+    /// repetition begins again, so that the run stops after it and the episode is not lost.
     #[cold]
     pub(super) fn repeat(
         &mut self,
@@ -40,7 +44,21 @@ impl<T: Number, F: Features<[T]>> ExternalTask<T, F> {
             seed: &self.seed,
             played: self.played.as_ref().map(|played| (played.start, played.actions.as_slice())),
         };
-        let (result, next_step) = Python::attach(|py| self.episode.shared().0.repeat(py, error, &failed))?;
+        let env = &self.episode.shared().0;
+        let (result, next_step) = Python::attach(|py| {
+            let mut interruptions = 0;
+            loop {
+                match env.repeat(py, error, &failed) {
+                    Err(raised)
+                        if raised.is_instance_of::<PyKeyboardInterrupt>(py) && interruptions < MOST_INTERRUPTIONS =>
+                    {
+                        interruptions += 1;
+                    }
+                    Ok(repeated) if interruptions > 0 => return interrupt(py).map(|()| repeated),
+                    repeated => return repeated,
+                }
+            }
+        })?;
         self.next_step = Some(next_step);
         self.take_over(result)
     }
@@ -77,7 +95,7 @@ impl<T: Number, F: Features<[T]>> ExternalTask<T, F> {
             return self.take_over(result);
         }
         let stepped = self.repeat(CallError::Failed, before, Some(action))?;
-        Python::attach(|py| py.import("_thread")?.call_method0("interrupt_main").map(drop))?;
+        Python::attach(interrupt)?;
         Ok(stepped)
     }
 
@@ -153,4 +171,9 @@ impl<T: Number, F: Features<[T]>> ExternalTask<T, F> {
         played.actions.push(action as u32);
         Ok(())
     }
+}
+
+/// Interrupts the main thread of Python, as Ctrl-C does.
+fn interrupt(py: Python<'_>) -> PyResult<()> {
+    py.import("_thread")?.call_method0("interrupt_main").map(drop)
 }
