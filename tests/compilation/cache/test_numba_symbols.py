@@ -4,9 +4,14 @@ import json
 import os
 import subprocess
 import sys
+from importlib.machinery import ExtensionFileLoader
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
+
+from qtab.compilation.cache import numba_symbols
 
 pytest.importorskip("numba")
 
@@ -63,3 +68,17 @@ def test_a_class_with_arrays_and_the_c_library_is_loaded_without_numba(tmp_path:
     assert [first[0], second[0]] == [True, False]
     assert first[1] == first[2] == second[1] == second[2]
     assert first[3] == second[3] == 6.0 + 0.8775825618903728  # Numba works as it did
+
+
+def test_an_extension_that_cannot_be_loaded_counts_as_missing(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(*_: Any) -> None:
+        raise ImportError("DLL load failed")
+
+    monkeypatch.setattr(numba_symbols, "_loaded", {})
+    monkeypatch.delitem(sys.modules, "numba._helperlib", raising=False)
+    monkeypatch.setattr(ExtensionFileLoader, "exec_module", fail)
+    provided: list[str] = []
+    llvm = SimpleNamespace(add_symbol=lambda name, _: provided.append(name))
+    assert not numba_symbols.provide(llvm, ["cos"])
+    assert provided == []
+    assert "numba._helperlib" not in sys.modules
