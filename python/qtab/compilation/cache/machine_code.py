@@ -87,8 +87,8 @@ def load(code: MachineCode, names: tuple[str, ...]) -> LoadedCode:
     import llvmlite.binding as llvm
 
     _initialize(llvm)
-    provide(llvm, _missing(llvm, code.needed))
-    if _missing(llvm, code.needed):
+    # Also those that the process has: which of several functions runs would depend on what was loaded before.
+    if not provide(llvm, code.needed) or _missing(llvm, code.needed):
         from numba.core.registry import cpu_target
 
         _ = cpu_target.target_context  # makes all functions of Numba known
