@@ -1,6 +1,7 @@
 """The compilation of ordinary Gymnasium classes, with its proof and its file."""
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import gymnasium as gym
@@ -14,7 +15,7 @@ from qtab.compilation.functional import require_numba
 from qtab.compilation.interface.compiled_env import FUNCTIONS, CompiledEnv
 from qtab.compilation.layouts.attribute_record import layout_of_record, with_observation
 from qtab.compilation.layouts.observation_layout import ObservationLayout
-from qtab.compilation.not_compilable import NotCompilable, NotNow
+from qtab.compilation.not_compilable import NotCompilable, NotNow, combined
 from qtab.compilation.proof import prove
 from qtab.compilation.rewriting import Rewritten, rewrite
 from qtab.compilation.twins.class_twin import ClassTwin, restored, twin_of
@@ -100,7 +101,9 @@ class OrdinaryEnv:
         if self.rewritten.action_mask is not None:
             functions["action_mask"] = self.rewritten.action_mask
         bounds = [observation.low, observation.high, repr(space), repr(self.env.observation_space)]
-        digest = digest_of(functions, [self.rewritten.source, str(self.record.descr), *bounds])
+        # Messages name the user's lines, which may move while the rewritten source stays the same.
+        lines = [(at, Path(name).name, line) for at, (name, line) in sorted(self.rewritten.lines.items())]
+        digest = digest_of(functions, [self.rewritten.source, lines, str(self.record.descr), *bounds])
 
         def make() -> tuple[machine_code.MachineCode, dict[str, Any]]:
             return self._make(observation), {}
@@ -138,7 +141,7 @@ class OrdinaryEnv:
             reason = refusal.reason
             for i, name in enumerate(self.record.names or ()):
                 reason = reason.replace(f"state[{i}]", f"self.{name}")
-            raise type(refusal)(reason, refusal.file, refusal.line, refusal.advice) from None
+            raise type(refusal)(reason, refusal.file, refusal.line, refusal.advice, refusal.others) from None
 
 
 def _check_episodes(env: gym.Env, rewritten: Rewritten) -> None:
@@ -154,7 +157,9 @@ def _check_episodes(env: gym.Env, rewritten: Rewritten) -> None:
 
 
 def _of_users_line(lines: dict[int, tuple[str, int]], refusal: NotCompilable) -> NotCompilable:
-    """Returns an error for the user's line, given one for a line of the rewritten functions."""
-    file, line = lines.get(refusal.line or 0, (None, None))
-    others = [_of_users_line(lines, other) for other in refusal.others]
-    return NotCompilable(refusal.reason, file, line, refusal.advice, others)
+    """Returns an error for the user's lines, given one for lines of the rewritten functions; each is listed once."""
+    mapped = []
+    for one in (refusal, *refusal.others):
+        file, line = lines.get(one.line or 0, (None, None))
+        mapped.append(NotCompilable(one.reason, file, line, one.advice))
+    return combined(mapped)
