@@ -65,9 +65,45 @@ class Largest(Base):
         return np.array([x, 0.0]).max()
 
 
+class IntegerRemainder(Base):
+    def reward(self, time: int, x: float) -> Any:
+        return np.fmod(time, 3)
+
+
+class LargestNumber(Base):
+    def reward(self, time: int, x: float) -> Any:
+        return np.nanmax(np.array([x, 0.0]))
+
+
+class Spacing(Base):
+    def reward(self, time: int, x: float) -> Any:
+        return np.spacing(x)
+
+
+class TimesAPower(Base):
+    def reward(self, time: int, x: float) -> Any:
+        return np.ldexp(x, time)
+
+
+class Histogram(Base):
+    def reward(self, time: int, x: float) -> Any:
+        return np.histogram(np.array([x, 0.5]), 3)[0][0]
+
+
+class Range(Base):
+    def reward(self, time: int, x: float) -> Any:
+        return np.arange(0.0, 1.0, 0.1)[3]
+
+
 @pytest.mark.parametrize(
     ("cls", "message"),
     [
+        (IntegerRemainder, "write a % b"),
+        (LargestNumber, "write a loop with max(x, y)"),
+        (Spacing, "write a small number"),
+        (TimesAPower, "multiply by the power of 2"),
+        (Histogram, "count the elements in a loop"),
+        (Range, "write low + step * np.arange(n)"),
         (Mod, "write a % b"),
         (FloorDivide, "write a // b"),
         (Sign, "compare the number with 0"),

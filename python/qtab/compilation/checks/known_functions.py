@@ -43,12 +43,16 @@ NUMPY_DIFFERENT = {
         ("cbrt", "exp2", "logaddexp", "logaddexp2", "arcsinh", "arccosh", "arctanh", "sinc", "interp"),
         "write it with functions of math, or a loop",
     ),
+    "ldexp": "multiply by the power of 2",
+    "spacing": "write a small number, such as 1e-12",
+    "histogram": "count the elements in a loop",
     **dict.fromkeys(("round", "around", "round_"), "leave out rounding, or write math.floor(x + 0.5)"),
 }
 """Functions of NumPy that round differently in compiled code, and what to write instead."""
 
 NUMPY_OPERATORS = {
     **dict.fromkeys(("mod", "remainder"), "write a % b"),
+    "fmod": "write a % b, which has the sign of b",
     "floor_divide": "write a // b",
     "left_shift": "write a << b",
     "right_shift": "write a >> b",
@@ -58,7 +62,7 @@ NUMPY_OPERATORS = {
 
 NUMPY_EXTREMES = {
     **{name: f"write {name[:3]}(x, y)" for name in ("minimum", "maximum")},
-    **{name: f"write a loop with {name[-3:]}(x, y)" for name in ("min", "max", "amin", "amax")},
+    **{name: f"write a loop with {name[-3:]}(x, y)" for name in ("min", "max", "amin", "amax", "nanmin", "nanmax")},
 }
 """Functions of NumPy whose zeros may differ in sign for floats, and what to write instead."""
 

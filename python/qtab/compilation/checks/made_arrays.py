@@ -35,6 +35,8 @@ def check_made_array(code: TypedCode, statement: Any, scope: Any, name: str) -> 
         return _check_clip(code, expression, scope, made)
     if name == "arange" and is_narrow(made.dtype):
         return code.refuse(expression, f"np.arange with {made.dtype}", "write np.arange(...).astype(...)")
+    if name == "arange" and _has_floats(code, expression):
+        return code.refuse(expression, "np.arange of floats rounds differently", "write low + step * np.arange(n)")
     if name not in VALUES:
         return []
     word, position = VALUES[name]
@@ -42,6 +44,11 @@ def check_made_array(code: TypedCode, statement: Any, scope: Any, name: str) -> 
     if value is None:
         return []
     return check_numbers(code, scope, value, made.dtype, expression)
+
+
+def _has_floats(code: TypedCode, expression: Any) -> bool:
+    given = [*expression.args, *(one for _, one in expression.kws)]
+    return any(isinstance(types.unliteral(code.type_of(one)), types.Float) for one in given)
 
 
 def check_numbers(code: TypedCode, scope: Any, value: Any, dtype: Any, expression: Any) -> list[Any]:
