@@ -95,9 +95,41 @@ class Range(Base):
         return np.arange(0.0, 1.0, 0.1)[3]
 
 
+class DividedArray(Base):
+    def reward(self, time: int, x: float) -> Any:
+        return (np.array([x, 0.0]) // -3.0)[0]
+
+
+class RemainderOfArray(Base):
+    def reward(self, time: int, x: float) -> Any:
+        left = np.array([x, 0.0])
+        left %= -3.0
+        return left[0]
+
+
+class RemainderByArray(Base):
+    def reward(self, time: int, x: float) -> Any:
+        return (7 % np.array([time, 1]))[0]
+
+
+class ShiftedArray(Base):
+    def reward(self, time: int, x: float) -> Any:
+        return (np.array([time, 0]) << 70)[0]
+
+
+class ShiftedByArray(Base):
+    def reward(self, time: int, x: float) -> Any:
+        return (8 >> np.array([time, 0]))[0]
+
+
 @pytest.mark.parametrize(
     ("cls", "message"),
     [
+        (DividedArray, "// of arrays differs for some numbers, in `return (np.array([x, 0.0]) // -3.0)[0]`"),
+        (RemainderOfArray, "write a loop over the elements"),
+        (RemainderByArray, "write a loop over the elements"),
+        (ShiftedArray, "write a loop over the elements"),
+        (ShiftedByArray, "write a loop over the elements"),
         (IntegerRemainder, "write a % b"),
         (LargestNumber, "write a loop with max(x, y)"),
         (Spacing, "write a small number"),
@@ -123,10 +155,18 @@ class LargestOfIntegers(Base):
         return np.maximum(time, 3) + np.min(np.array([time, 5]))
 
 
-def test_those_of_integers_are_compiled() -> None:
+class DividedIntegers(Base):
+    def reward(self, time: int, x: float) -> Any:
+        cells = np.array([time - 4, 5])
+        cells //= 2
+        return cells[0] + (cells % 3)[1]
+
+
+@pytest.mark.parametrize("cls", [LargestOfIntegers, DividedIntegers])
+def test_those_of_integers_are_compiled(cls: Any) -> None:
     settings: dict[str, Any] = {"episodes": 5, "max_episode_steps": 20, "seed": 0}
-    compiled = qtab.train(LargestOfIntegers(), backend="numba", **settings)
-    in_python = qtab.train(LargestOfIntegers(), backend="python", **settings)
+    compiled = qtab.train(cls(), backend="numba", **settings)
+    in_python = qtab.train(cls(), backend="python", **settings)
     assert compiled.tables.tobytes() == in_python.tables.tobytes()
 
 

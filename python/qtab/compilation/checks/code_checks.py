@@ -34,7 +34,7 @@ from qtab.compilation.checks.known_functions import (
     NUMPY_WRITES,
     OTHER_MATH,
 )
-from qtab.compilation.checks.made_arrays import check_made_array, check_numbers, check_of
+from qtab.compilation.checks.made_arrays import arrays_differ, check_made_array, check_numbers, check_of
 from qtab.compilation.checks.mixed_numbers import MIXED_OPERATIONS, NUMBER, MixedNumbers
 from qtab.compilation.checks.number_types import NUMBERS, holds, is_int64, is_narrow, leaf, mixed, of_integers
 from qtab.compilation.checks.typed_code import TypedCode
@@ -134,6 +134,8 @@ class Checks(TypedCode):
         integers = scalars and all(isinstance(kind, types.Integer | types.Boolean) for kind in kinds)
         if function in COMPARISONS:
             return self._comparison(expression, scope, given) if scalars else []
+        if not scalars and (reason := arrays_differ(function, kinds, self.constant(expression.rhs))):
+            return self.refuse(expression, reason, "write a loop over the elements")
         if function is operator.pow:
             exponent = getattr(given[1], "literal_value", None)
             if not integers or not isinstance(exponent, int) or exponent < 0:

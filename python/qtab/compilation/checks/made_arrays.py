@@ -1,7 +1,9 @@
-"""Checks of functions that make arrays: numbers outside the range of a dtype raise errors in Python."""
+"""Checks of functions and operators that make arrays: numbers outside the range of a dtype raise errors in Python."""
 
+import operator
 from typing import Any
 
+import numpy as np
 from numba.core import types
 
 from qtab.compilation.checks.checked_operations import (
@@ -16,6 +18,8 @@ from qtab.compilation.checks.typed_code import TypedCode
 
 VALUES = {"full": ("fill_value", 1), "full_like": ("fill_value", 1), "array": ("object", 0), "asarray": ("a", 0)}
 """Functions of NumPy that convert numbers, with the name and the position of these."""
+_DIVISIONS = {operator.floordiv: "//", operator.mod: "%"}
+_SHIFTS = {operator.lshift: "<<", operator.rshift: ">>"}
 
 
 def check_made_array(code: TypedCode, statement: Any, scope: Any, name: str) -> list[Any]:
@@ -121,3 +125,19 @@ def _check_clip(code: TypedCode, expression: Any, scope: Any, made: Any) -> list
     if not arrays[0] or arrays[1] != arrays[2]:
         return code.refuse(expression, "np.clip: zeros may differ in sign", "write a loop with min(max(x, low), high)")
     return code.check(CLIP_CHECKS[arrays[1]], scope, list(expression.args), expression.loc)
+
+
+def arrays_differ(function: Any, kinds: list[Any], right: Any) -> str:
+    """Returns why the result of an operator of arrays can differ from NumPy's; an empty text if it does not.
+
+    Args:
+        function: The operator.
+        kinds: The types of the numbers of both sides.
+        right: The right side, if it is a constant; otherwise None.
+    """
+    symbol = {**_DIVISIONS, **_SHIFTS}.get(function)
+    whole = all(isinstance(kind, types.Integer) for kind in kinds)
+    positive = isinstance(right, int | np.ndarray) and bool(np.all(np.asarray(right) > 0))
+    if symbol is None or (function in _DIVISIONS and whole and positive):  # neither undefined nor too large
+        return ""
+    return f"{symbol} of arrays differs for some numbers"

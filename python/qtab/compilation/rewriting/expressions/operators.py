@@ -119,7 +119,7 @@ def _arrays(symbol: str, left: Value, right: Value) -> Result:
         same = set(dtypes) == {"bool"}
         return Array("bool", ndim, shape) if same else ("bits of arrays", "use arrays of booleans")
     if set(dtypes) == {"bool"} or symbol not in "+-*/":
-        if symbol in ("//", "%") and "float64" not in dtypes and right.is_fixed and np.all(right.fixed != 0):
+        if symbol in ("//", "%") and "float64" not in dtypes and right.is_fixed and np.all(right.fixed > 0):
             return Array("int64", ndim, shape)
         return f"{symbol} with arrays", "write a loop over the elements"
     return Array("float64" if symbol == "/" or "float64" in dtypes else "int64", ndim, shape)
