@@ -82,6 +82,23 @@ def test_the_sign_of_a_zero_that_may_be_an_integer_is_refused(compile_it: Any, e
 
 
 @pytest.mark.parametrize(
+    "expression",
+    [
+        "-max((n, x))",
+        "-sorted([max(0, x), y])[0]",
+        "-([max(0, x)] + [y])[0]",
+        "-[max(0, x), y][:1][0]",
+        "-[one for one in (max(0, x), y)][0]",
+        "-[one for _, one in enumerate([max(0, x), y])][0]",
+        "-[one for one, _ in zip([max(0, x)], [y])][0]",
+    ],
+)
+def test_containers_whose_numbers_are_not_followed_are_refused(expression: str) -> None:
+    with pytest.raises(NotCompilable, match="sometimes an integer"):
+        in_functional_env(expression)
+
+
+@pytest.mark.parametrize(
     "expression", ["max(0, x) * 2", "max(0, x) / -7", "max(0, x) * y", "abs(min(0, x))", "max(0, x) - n"]
 )
 def test_other_operations_with_such_a_number_have_the_same_bits(expression: str) -> None:

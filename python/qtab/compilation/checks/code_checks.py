@@ -55,6 +55,8 @@ class Checks(TypedCode):
             body: list[Any] = []
             after: list[Any] = []
             for statement in block.body:
+                if self.mixed.is_lost(statement):
+                    self.refuse(statement, MIXED, WRITE_FLOATS)
                 if not (isinstance(statement, ir.Assign) and getattr(statement.value, "op", "") == "phi"):
                     body, after = body + after, []
                 if isinstance(statement, ir.Assign) and isinstance(statement.value, ir.Expr):
