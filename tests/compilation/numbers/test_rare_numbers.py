@@ -219,12 +219,19 @@ class NegatesLaterState(Walk):
         return max(0, state - 1.0), -state, False
 
 
+class AppendsAnInteger(Walk):
+    def transition(self, state: Any, action: Any, rng: np.random.Generator) -> Any:
+        numbers = [0.5 * state]
+        numbers.append(action)
+        return state + 1, -numbers[1], False
+
+
 class AddsToState(Walk):
     def transition(self, state: Any, action: Any, rng: np.random.Generator) -> Any:
         return state + 0.5 * action, max(0, state) * 2, False
 
 
-@pytest.mark.parametrize("cls", [NegatesState, NegatesResult, NegatesArgument, NegatesLaterState])
+@pytest.mark.parametrize("cls", [NegatesState, NegatesResult, NegatesArgument, NegatesLaterState, AppendsAnInteger])
 def test_numbers_of_two_types_are_followed_through_states_and_functions(cls: Any) -> None:
     with pytest.raises(NotCompilable, match="sometimes an integer"):
         compiled_env(cls())

@@ -146,7 +146,10 @@ class MixedNumbers:
             return False
         called = self._code.typemap[value.func.name]
         if isinstance(called, types.BoundFunction) and isinstance(called.this, _CONTAINERS):
-            return any(self._mixes(one, called.this) for one in value.args)
+            key = called.typing_key
+            name = key[1] if isinstance(key, tuple) else str(key).rpartition(".")[2]
+            takes = name in ("append", "insert", "add", "extend")  # the last argument; the first may be an index
+            return any(map(self.of, value.args)) or (takes and self._mixes(value.args[-1], called.this))
         key = called.typing_key if isinstance(called, types.Function) else None
         is_sequence = key in (sorted, enumerate, zip, reversed, list, tuple, set) or (
             key in (min, max) and len(value.args) == 1
@@ -157,7 +160,8 @@ class MixedNumbers:
         """Returns whether a variable has mixed numbers, or is a tuple that, or a number which a container, mixes."""
         of = types.unliteral(self._code.type_of(variable))
         wanted = getattr(container, "value_type", getattr(container, "dtype", None))
-        if self.of(variable) or (wanted is not None and any(converted(of, wanted))):
+        given = getattr(of, "dtype", of)
+        if self.of(variable) or (wanted is not None and list(converted(given, wanted))):
             return True
         kinds = list(of) if isinstance(of, types.BaseTuple) and container is None else []
         return any(map(is_whole, kinds)) and any(isinstance(types.unliteral(one), types.Float) for one in kinds)
