@@ -108,6 +108,14 @@ def test_states_that_share_an_observation_have_the_same_policy() -> None:
     assert exact.greedy_return == pytest.approx(played.mean_return, abs=4 * played.standard_error)
 
 
+def test_a_mask_without_any_action_in_terminal_states_is_not_asked_for() -> None:
+    env = limited(Corridor())
+    run = qtab.train(env, seed=0, episodes=500, action_mask=lambda observation: [observation != 4] * 2)
+    unmasked = qtab.train(env, seed=0, episodes=500)
+    best = qtab.optimum(qtab.tabulate(env))
+    assert best.gap(run).greedy_return == best.gap(unmasked).greedy_return
+
+
 def test_an_environment_with_other_arguments_is_refused(best: qtab.Optimum) -> None:
     run = qtab.train(limited(Errand(cost=2.0)), seed=0, episodes=10)
     expected = r"that the table was made of, got another one: its attribute cost was 2\.0 in training, and is 1\.0"

@@ -83,8 +83,9 @@ def _masks(run: Run | Runs, table: TabulatedEnv, rows: NDArray[np.int64]) -> NDA
     """Returns (..., states, actions): the mask of each state; None without masks."""
     function, count = run.config.action_mask, len(run.actions)
     if callable(function):
-        masks = [checked_mask("action_mask", function(observation), count) for observation in table.observations]
-        known = np.array(masks, np.bool_)
+        known = np.ones((len(table.observations), count), np.bool_)
+        for state in sorted(_entered(table)):
+            known[state] = checked_mask("action_mask", function(table.observations[state]), count)
         steps = run.discretizer.max_episode_steps if isinstance(run.discretizer, TimeAware) else 1
         repeated = np.tile(known, (steps, 1))
         return repeated if isinstance(run, Run) else np.broadcast_to(repeated, (len(run), *repeated.shape))
@@ -96,6 +97,15 @@ def _masks(run: Run | Runs, table: TabulatedEnv, rows: NDArray[np.int64]) -> NDA
         parts = flat.reshape(*leading, run.discretizer.max_episode_steps, -1, count)
         return parts[..., rows[:, 0], :].reshape(*leading, -1, count)
     return flat[..., rows[:, 0], :]
+
+
+def _entered(table: TabulatedEnv) -> set[int]:
+    """Returns the states in which an episode begins or goes on; the others are terminal."""
+    found = set(np.flatnonzero(table.initial_state_distrib).tolist())
+    for actions in table.P.values():
+        for outcomes in actions.values():
+            found |= {int(state) for probability, state, _, terminated in outcomes if probability and not terminated}
+    return found
 
 
 def _initial(run: Run | Runs, rows: NDArray[np.int64]) -> Any:
