@@ -114,6 +114,11 @@ def test_the_optimum_and_the_difference_have_the_same_arrangement() -> None:
         (["{'row': 2, 'at': (1, 2)}", "{'row': 1, 'at': (1, 3)}"], {"row": (1, 2), "at[1]": (2, 3)}),
         (["Motion(x=1.5, y=True)", "Motion(x=-1.5, y=False)"], {"x": (-1.5, 1.5), "y": (False, True)}),
         (["3", "-1"], {"state": (-1, 3)}),
+        (["{'row': 3, 'seen': {0, 3}}", "{'row': 3, 'seen': set()}"], {"seen": ((), (0, 3))}),
+        (["S(seen=frozenset({3, 0}))", "S(seen=frozenset({10}))", "S(seen={2})"], {"seen": ((0, 3), (2,), (10,))}),
+        (["({[1]}, 1)", "({[1]}, 2)"], {}),
+        (["-" * 100_000 + "1", "1"], {}),
+        (["(" * 100_000 + ")" * 100_000, "1"], {}),
         (["(0,)", "(0, 1)"], {}),
         (["no", "yes"], {}),
         (["print()", "(1, 2"], {}),
@@ -121,6 +126,11 @@ def test_the_optimum_and_the_difference_have_the_same_arrangement() -> None:
 )
 def test_the_components_of_states_are_read_from_their_names(names: list[str], found: dict[str, Any]) -> None:
     assert {one.name: one.values for one in components(names)} == found
+
+
+def test_a_set_is_written_as_python_does() -> None:
+    [seen] = components(["{'row': 3, 'seen': {0, 3}}", "{'row': 3, 'seen': {2}}"])
+    assert seen.ticks == ["{0, 3}", "{2}"]
 
 
 def test_maps_that_would_be_mostly_empty_are_not_drawn() -> None:

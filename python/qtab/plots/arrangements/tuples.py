@@ -46,6 +46,15 @@ class Component:
         return [str(value) for value in self.values]
 
 
+class _Set(tuple[Any, ...]):
+    """The elements of a set in order, because sets are not ordered among each other."""
+
+    __slots__ = ()
+
+    def __str__(self) -> str:
+        return f"{{{', '.join(map(repr, self))}}}"
+
+
 def components(names: Sequence[str]) -> tuple[Component, ...]:
     """Returns the components of states that have more than one value; none if the names cannot be read.
 
@@ -54,7 +63,7 @@ def components(names: Sequence[str]) -> tuple[Component, ...]:
     """
     try:
         read = [dict(_parts(ast.parse(name, mode="eval").body, "")) for name in names]
-    except (SyntaxError, ValueError):
+    except (SyntaxError, ValueError, TypeError, RecursionError, MemoryError):  # the last two of deeply nested names
         return ()
     if not read or any(state.keys() != read[0].keys() for state in read):
         return ()
@@ -75,11 +84,21 @@ def _parts(node: Any, name: str) -> list[tuple[str, Any]]:
     elif isinstance(node, ast.Dict):
         keys = [ast.literal_eval(key) for key in node.keys if key is not None]
         inner = [(f"{name}.{key}" if name else str(key), part) for key, part in zip(keys, node.values, strict=True)]
-    elif isinstance(node, ast.Call) and not node.args:
+    elif isinstance(node, ast.Call) and not node.args and _elements(node) is None:
         inner = [(f"{name}.{one.arg}" if name else str(one.arg), one.value) for one in node.keywords]
     else:
-        return [(name, ast.literal_eval(node))]
+        elements = _elements(node)
+        return [(name, ast.literal_eval(node) if elements is None else _Set(_in_order(set(elements))))]
     return [found for label, part in inner for found in _parts(part, label)]
+
+
+def _elements(node: Any) -> list[Any] | None:
+    """Returns the elements of a set or frozenset; None if the expression is none."""
+    if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in ("set", "frozenset"):
+        if not node.args and not node.keywords:
+            return []
+        node = node.args[0] if len(node.args) == 1 and not node.keywords else node
+    return [ast.literal_eval(element) for element in node.elts] if isinstance(node, ast.Set) else None
 
 
 def _in_order(values: set[Any]) -> tuple[Any, ...]:
