@@ -64,7 +64,12 @@ def policy(
         ValueError: for one that does not fit the environment, or runs without tables.
     """
     panels = arranged(run, at, layout, title, step)
-    names = [checked_action_names(environment_action_names(subject), action_names) for subject, _ in panels]
+    names = [
+        environment_action_names(subject)
+        if action_names is None
+        else checked_action_names(subject.action_names, action_names)
+        for subject, _ in panels
+    ]
     axes = axes_for([raster for _, raster in panels], ax)
     for (subject, raster), panel, named in zip(panels, axes, names, strict=True):
         greedy, handles = subject.greedy_actions(raster.rows), list[Any]()
