@@ -34,6 +34,14 @@ def test_a_module_of_the_current_folder_registers_its_environment(tmp_path: Path
     assert "Walk-v0" in done.stdout
 
 
+def test_a_file_of_the_current_folder_replaces_no_other_module(tmp_path: Path) -> None:
+    (tmp_path / "parts.py").write_text("import colorsys\n" + TOYS)
+    for name in ("colorsys.py", "random.py", "gymnasium.py", "qtab.py"):
+        (tmp_path / name).write_text("raise RuntimeError('this is a file of the user')\n")
+    done = run(tmp_path, *ARGUMENTS)
+    assert done.returncode == 0, done.stderr
+
+
 @pytest.mark.skipif(sys.version_info < (3, 11), reason="PYTHONSAFEPATH came with Python 3.11")
 def test_a_safe_path_excludes_the_current_folder(tmp_path: Path) -> None:
     (tmp_path / "parts.py").write_text(TOYS)

@@ -11,7 +11,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the command line and returns its exit code.
 
     It is 0 (success), 1 (failure), 2 (bad usage), 130 (Ctrl-C) or 143 (SIGTERM). The command of the process finds
-    modules of the current folder, such as ``parts`` for the environment ``parts:Id-v0``, as ``python -m qtab`` does.
+    modules of the current folder, such as ``parts`` for the environment ``parts:Id-v0``.
 
     Args:
         arguments: The arguments after the command's name; None means those of the process.
@@ -34,10 +34,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _search_current_folder() -> None:
-    """Puts the current folder on the search path of modules, unless Python was told not to."""
+    """Puts the current folder at the end of the search path of modules, unless Python was told not to.
+
+    At its start, a file such as ``random.py`` would be imported instead of Python's module.
+    """
     if getattr(sys.flags, "safe_path", False):  # PYTHONSAFEPATH, from Python 3.11 on
         return
     with suppress(OSError):  # the folder was deleted
         folder = str(Path.cwd())
         if folder not in sys.path and "" not in sys.path:
-            sys.path.insert(0, folder)
+            sys.path.append(folder)
