@@ -29,8 +29,7 @@ def diagnose(
     Args:
         run: The run.
         optimum: The result of :func:`qtab.optimum` for the run, or for the table that :func:`qtab.tabulate` made of its
-            environment. None computes the optimum of small tables, and uses
-            the best known return of MountainCar-v0.
+            environment. None computes the optimum of small tables, and uses the best known return of MountainCar-v0.
         seeds: The number of other seeds to train for comparison; None trains for a fraction of a second.
         env: The environment of the run, for one without an id or that qtab cannot make again. Episodes of the greedy
             policy are played in it; it is reset and stepped, and not closed. None makes the environment of the run.

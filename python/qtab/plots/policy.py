@@ -50,8 +50,8 @@ def policy(
             :func:`qtab.plots.values`.
         layout: A map for numbered states; see :func:`qtab.plots.values`.
         action_names: A name for each action; None takes those of the environment's attribute ``action_names``, or
-            ``run.action_names``. On a map the actions left, right, up and
-            down, and west, east, north and south, are arrows.
+            ``run.action_names``. On a map the actions left, right, up and down, and west, east, north and south, are
+            arrows.
         title: The title; None names the environment, the algorithm and the seed.
         step: The step of the episode to show, for runs with ``time_aware=True``.
 
