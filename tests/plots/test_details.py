@@ -24,16 +24,31 @@ def closed() -> Iterator[None]:
     ("settings", "note"),
     [
         ({"learning_rate": 0.5, "learning_rate_schedule": "linear", "min_learning_rate": 0.0}, "α = 0.5 → 0, "),
-        ({"learning_rate": 0.5, "learning_rate_schedule": "exponential", "min_learning_rate": 0.1}, "α = 0.5 → 0.1, "),
+        (
+            {"learning_rate": 0.5, "learning_rate_schedule": "exponential", "min_learning_rate": 0.49},
+            "α = 0.5 → 0.49, ",
+        ),
         ({"learning_rate": 1.0, "learning_rate_schedule": "visits"}, "α = 1 / visits, "),
+        (
+            {"learning_rate": 0.05, "learning_rate_schedule": "visits", "min_learning_rate": 0.01},
+            "α = 0.05 / visits, ≥ 0.01, ",
+        ),
         ({"learning_rate": 0.5, "learning_rate_schedule": "constant"}, "α = 0.5, "),
         ({"epsilon": 0.0, "epsilon_schedule": "linear", "min_epsilon": 0.0}, ", ε = 0, "),
         ({"epsilon": 0.5, "epsilon_schedule": "linear", "min_epsilon": 0.1}, ", ε = 0.5 → 0.1, "),
+        ({"epsilon": 1.0, "epsilon_schedule": "exponential", "epsilon_decay": 0.999}, ", ε = 1 → 0.962, "),
     ],
 )
 def test_the_note_has_the_rates_of_the_schedule(settings: dict[str, Any], note: str) -> None:
     run = qtab.train(LAKE, seed=0, episodes=40, **settings)
     assert note in qtab.plot(run).get_title("right")
+
+
+def test_the_note_of_a_stopped_run_has_the_rate_of_its_last_episode() -> None:
+    falling: dict[str, Any] = {"epsilon": 1.0, "epsilon_schedule": "linear", "min_epsilon": 0.0}
+    stop: dict[str, Any] = {"callback": lambda progress: progress.episodes < 11, "callback_every": 11}
+    run = qtab.train(LAKE, seed=0, episodes=40, **falling, **stop)
+    assert ", ε = 1 → 0.75, " in qtab.plot(run).get_title("right")
 
 
 def lines(ax: Any) -> list[str]:

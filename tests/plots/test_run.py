@@ -143,7 +143,7 @@ def test_an_invalid_optimum_is_refused_by_name() -> None:
     [
         ({"exploration": "softmax", "temperature": 0.5}, "α = 0.2, γ = 0.9, τ = 0.5, seed 0"),
         ({"epsilon_schedule": "constant", "epsilon": 0.1}, "α = 0.2, γ = 0.9, ε = 0.1, seed 0"),
-        ({"epsilon_schedule": "exponential"}, "α = 0.2, γ = 0.9, ε = 0.8 → 0, seed 0"),
+        ({"epsilon_schedule": "exponential"}, "α = 0.2, γ = 0.9, ε = 0.8 → 0.799, seed 0"),
     ],
 )
 def test_every_kind_of_exploration_can_be_plotted(settings: dict[str, object], note: str) -> None:

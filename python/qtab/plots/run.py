@@ -9,12 +9,13 @@ from numpy.typing import NDArray
 
 from qtab._utils import checks
 from qtab._utils.shown import counted
-from qtab.config.schedules import ByVisits, Constant, EpsilonGreedy, Schedule, learning_rate, policy
+from qtab.config.schedules import ByVisits, EpsilonGreedy, Linear, Schedule, learning_rate, policy
 from qtab.envs.metadata.goals import threshold_of
 from qtab.plots.parts.axes import axes_or_new, check_axes, new_figure, save_figure
 from qtab.plots.parts.colors import palette
 from qtab.plots.parts.labels import earlier_limits, episode_ticks, finish, set_x_limits
 from qtab.plots.parts.marks import check_optimum, check_threshold, fitting_block, mark_optimum, mark_threshold
+from qtab.results.rates import rates_of
 from qtab.results.run import Run
 
 if TYPE_CHECKING:
@@ -106,24 +107,34 @@ def _settings_note(run: Run) -> str:
     config = run.config
     rate = learning_rate(config)
     if isinstance(rate, ByVisits):
-        step_size = f"α = {rate.value:g} / visits"
+        least = f", ≥ {rate.minimum:g}" if rate.minimum > 0 else ""
+        step_size = f"α = {rate.value:g} / visits{least}"
     else:
-        step_size = f"α = {_falling(rate)}"
+        step_size = f"α = {_falling(run, rate)}"
     if config.temperature is not None:
         exploration = f"τ = {config.temperature:g}"
     elif config.confidence is not None:
         exploration = f"c = {config.confidence:g}"
     else:
         behaviour = policy(config)
-        exploration = f"ε = {_falling(behaviour.epsilon) if isinstance(behaviour, EpsilonGreedy) else '0'}"
+        exploration = f"ε = {_falling(run, behaviour.epsilon) if isinstance(behaviour, EpsilonGreedy) else '0'}"
     return f"{step_size}, γ = {config.discount:g}, {exploration}, seed {config.seed}"
 
 
-def _falling(rate: Schedule) -> str:
-    """Returns a rate as text: ``"0.5"``, or ``"0.5 → 0"`` for one that falls."""
-    if isinstance(rate, Constant) or rate.minimum >= rate.value:
-        return f"{rate.value:g}"
-    return f"{rate.value:g} → {rate.minimum:g}"
+def _falling(run: Run, rate: Schedule) -> str:
+    """Returns a rate as text: ``"0.5"``, or ``"0.5 → 0.1"`` for one that falls to 0.1 in the last episode.
+
+    A linear schedule that ended is named by the value that it reaches after the last episode.
+    """
+    first, finished = f"{rate.value:g}", len(run.episode_returns)
+    if isinstance(rate, Linear) and run.completed:
+        last = f"{min(rate.minimum, rate.value):g}"
+    elif finished:
+        [used] = rates_of(run, rate, np.array([finished - 1]))
+        last = f"{used:.3g}" if used < rate.value else first
+    else:
+        last = first
+    return first if last == first else f"{first} → {last}"
 
 
 def save_plot(run: Run, path: Path, optimum: "Optimum | None" = None) -> None:
