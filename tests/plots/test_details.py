@@ -11,6 +11,8 @@ import qtab
 plt = pytest.importorskip("matplotlib.pyplot")
 from matplotlib.colors import to_rgba  # noqa: E402 - after the check for matplotlib
 
+from qtab.plots.difference import name_zero  # noqa: E402
+
 LAKE = "FrozenLake-v1"
 
 
@@ -68,6 +70,25 @@ def test_a_second_curve_on_the_same_axes_adds_no_second_line() -> None:
     ax = qtab.plot(run, optimum=475.0, threshold=475.0)
     qtab.plot(run, ax, optimum=475.0, threshold=475.0)
     assert lines(ax) == ["optimum and threshold 475"]
+
+
+@pytest.mark.parametrize(
+    ("highest", "texts"),
+    [
+        (1e-6, ["0", "2e-07", "4e-07", "6e-07", "8e-07", "1e-06"]),
+        (1.25, ["0", "0.25", "0.50", "0.75", "1.00", "1.25"]),
+        (2.5e6, ["0", "500,000", "1,000,000", "1,500,000", "2,000,000", "2,500,000"]),
+        (1e9, ["0", "2e+08", "4e+08", "6e+08", "8e+08", "1e+09"]),
+    ],
+)
+def test_small_and_large_costs_are_written_beside_the_color_bar(highest: float, texts: list[str]) -> None:
+    figure = plt.figure()
+    ax = figure.subplots()
+    image = ax.imshow([[0.0, highest]], vmin=-highest / 16, vmax=highest)
+    bar = figure.colorbar(image)
+    name_zero(bar, -highest / 16, highest)
+    figure.canvas.draw()
+    assert [text.get_text() for text in bar.ax.get_yticklabels()] == texts
 
 
 def test_wide_maps_lie_below_each_other_and_others_side_by_side() -> None:

@@ -26,6 +26,8 @@ CANCELLED = 1e-14
 """A smaller cost, relative to the largest value of all states, is a rounding error where rewards cancel to 0."""
 ZERO = 16
 """The number of colors of the bar, of 256, that stand for a cost of 0."""
+FEWEST_DIGITS, MOST_DIGITS = 1e-3, 1e7
+"""Costs between these are written without an exponent beside the color bar."""
 APPROXIMATE = 1.0
 """For MountainCar's values, which are interpolated in a grid, a cost of up to one step counts as 0."""
 
@@ -121,9 +123,11 @@ def name_zero(bar: Any, lowest: float, highest: float) -> None:
     from matplotlib.ticker import FixedLocator, FuncFormatter, MaxNLocator
 
     costs = [float(cost) for cost in MaxNLocator(6).tick_values(0.0, highest) if 0.0 < cost <= highest]
-    decimals = max((len(f"{cost:g}".partition(".")[2]) for cost in costs), default=0)
+    digits = [f"{cost:.10f}".rstrip("0").partition(".")[2] for cost in costs]
+    decimals = max(map(len, digits), default=0)
+    style = f",.{decimals}f" if FEWEST_DIGITS <= highest < MOST_DIGITS else ".4g"
     bar.locator = FixedLocator([lowest / 2, *costs])
-    bar.formatter = FuncFormatter(lambda cost, _: "0" if cost < 0 else f"{cost:.{decimals}f}")
+    bar.formatter = FuncFormatter(lambda cost, _: "0" if cost < 0 else format(cost, style))
     bar.update_ticks()
     bar.outline.set(visible=True, linewidth=0.6)  # otherwise the part for 0 looks like the background
 
