@@ -12,6 +12,7 @@ plt = pytest.importorskip("matplotlib.pyplot")
 from matplotlib.colors import to_rgba  # noqa: E402 - after the check for matplotlib
 
 from qtab.plots.difference import name_zero  # noqa: E402
+from qtab.plots.parts.marks import mark_optimum, mark_threshold  # noqa: E402
 
 LAKE = "FrozenLake-v1"
 
@@ -70,6 +71,24 @@ def test_a_second_curve_on_the_same_axes_adds_no_second_line() -> None:
     ax = qtab.plot(run, optimum=475.0, threshold=475.0)
     qtab.plot(run, ax, optimum=475.0, threshold=475.0)
     assert lines(ax) == ["optimum and threshold 475"]
+
+
+def test_the_order_of_an_optimum_and_a_threshold_does_not_matter() -> None:
+    run = qtab.train(LAKE, seed=0, episodes=60)
+    ax = qtab.plot(run, threshold=0.7)
+    qtab.plot(run, ax, optimum=0.7)
+    assert lines(ax) == ["optimum and threshold 0.7"]
+    qtab.plot(run, ax, threshold=0.7)
+    assert lines(ax) == ["optimum and threshold 0.7"]
+
+
+def test_a_threshold_whose_digits_begin_another_one_has_a_name_of_its_own() -> None:
+    ax = plt.figure().subplots()
+    ax.plot([-2000.0, 2000.0])
+    mark_optimum(ax, 10.0)
+    for threshold in (10.0, 1.0, 1.0):
+        mark_threshold(ax, threshold)
+    assert lines(ax) == ["optimum and threshold 10, threshold 1"]
 
 
 @pytest.mark.parametrize(

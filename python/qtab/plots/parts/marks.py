@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal, SupportsFloat
 
 from qtab._utils import checks
@@ -16,7 +17,8 @@ if TYPE_CHECKING:
 OPTIMUM_COLOR = "#a3262f"
 CLOSE = 0.005
 """A threshold at a smaller distance from the optimum, relative to the axis, is the same line."""
-_OPTIMUM = "qtab-optimum"
+_ATTRIBUTE = "_qtab_mark"
+"""The attribute of a line that says what it stands for."""
 MAX_STRETCH = 2.0
 """A threshold that would stretch the axis by more than this is only drawn if the user asks for it."""
 
@@ -46,22 +48,51 @@ def check_threshold(threshold: float | Literal[False] | None) -> None:
         checks.finite("threshold", threshold)
 
 
+@dataclass(frozen=True)
+class _Mark:
+    """What a line stands for: an optimum, thresholds, or both."""
+
+    axis: Literal["x", "y"]
+    value: float
+    optimum: str = ""
+    """The name of the optimum; empty without one."""
+    thresholds: tuple[float, ...] = ()
+
+    @property
+    def label(self) -> str:
+        """Returns the names with their numbers; an optimum and a threshold with the same number share it."""
+        numbers = [f"{threshold:g}" for threshold in self.thresholds]
+        names = [f"threshold {number}" for number in numbers]
+        if not self.optimum:
+            return ", ".join(names)
+        shown = f"{self.value:.4g}"
+        if shown in numbers:
+            both = names.pop(numbers.index(shown))
+            return ", ".join([f"{self.optimum} and {both}", *names])
+        return ", ".join([f"{self.optimum} {shown}", *names])
+
+
 def mark_optimum(ax: "Axes", optimum: "Optimum | float | None") -> None:
-    """Draws a dashed horizontal line at an optimum or a return, with the number in the legend."""
+    """Draws a dashed horizontal line at an optimum or a return, with the number in the legend.
+
+    It replaces the line of a threshold that is there, and then has both names.
+    """
     if optimum is None:
         return
-    value, label = (
+    value, name = (
         (float(optimum), "optimum") if isinstance(optimum, SupportsFloat) else (optimum.expected_return, optimum.label)
     )
-    if any(line.get_ydata()[0] == value for line in _optima(ax)):  # a second plot on the same axes
-        return
-    style: dict[str, Any] = {"color": readable(OPTIMUM_COLOR, ax), "linestyle": (0, (5, 3)), "linewidth": 1.5}
-    _line(ax, "y", value, f"{label} {value:.4g}", {**style, "gid": _OPTIMUM})
-
-
-def _optima(ax: "Axes") -> list[Any]:
-    """Returns the lines at an optimum."""
-    return [line for line in ax.get_lines() if line.get_gid() == _OPTIMUM]
+    new, replaced = _Mark("y", value, name), []
+    for line, mark in _marks(ax, "y"):
+        same_name = mark.optimum == name and f"{mark.value:.4g}" == f"{value:.4g}"
+        if mark.optimum and (mark.value == value or same_name):  # a second plot on the same axes
+            return
+        if not mark.optimum and _close(ax, mark.value, value):
+            new = replace(new, thresholds=new.thresholds + mark.thresholds)
+            replaced.append(line)
+    for line in replaced:
+        line.remove()
+    _line(ax, new, {"color": readable(OPTIMUM_COLOR, ax), "linestyle": (0, (5, 3))})
 
 
 def mark_threshold(
@@ -82,30 +113,37 @@ def mark_threshold(
         if known is None or max(high, known) - min(low, known) > MAX_STRETCH * (high - low):
             return
         threshold = known
-    value = float(threshold)
-    if axis == "y":
-        low, high = sorted(ax.get_ylim())
-        for line in _optima(ax):
-            optimum = line.get_ydata()[0]
-            if abs(optimum - value) <= CLOSE * (high - low):
-                line.set_label(_both_names(str(line.get_label()), f"threshold {value:g}"))
-                return
-    style: dict[str, Any] = {"color": text_color(), "alpha": 0.7, "linestyle": (0, (1, 1.5)), "linewidth": 1.5}
-    _line(ax, axis, value, f"threshold {value:g}", style)
+    value, marks = float(threshold), _marks(ax, axis)
+    drawn = [f"{other:g}" for _, mark in marks for other in mark.thresholds]
+    if f"{value:g}" in drawn:  # a second plot on the same axes
+        return
+    for line, mark in marks:
+        if mark.optimum and _close(ax, mark.value, value):
+            _name(line, replace(mark, thresholds=(*mark.thresholds, value)))
+            return
+    style = {"color": text_color(), "alpha": 0.7, "linestyle": (0, (1, 1.5))}
+    _line(ax, _Mark(axis, value, thresholds=(value,)), style)
 
 
-def _both_names(optimum: str, threshold: str) -> str:
-    """Returns the name of a line at an optimum and a threshold, with one number if both have the same one."""
-    if threshold in optimum:  # a second plot on the same axes
-        return optimum
-    name, _, number = optimum.rpartition(" ")
-    return f"{name} and {threshold}" if threshold.endswith(f" {number}") else f"{optimum}, {threshold}"
+def _marks(ax: "Axes", axis: Literal["x", "y"]) -> list[tuple[Any, _Mark]]:
+    """Returns the lines on an axis and what they stand for."""
+    found = [(line, getattr(line, _ATTRIBUTE, None)) for line in ax.get_lines()]
+    return [(line, mark) for line, mark in found if mark is not None and mark.axis == axis]
 
 
-def _line(ax: "Axes", axis: Literal["x", "y"], value: float, label: str, style: dict[str, Any]) -> None:
-    if label not in [line.get_label() for line in ax.get_lines()]:  # a second plot on the same axes
-        draw = ax.axhline if axis == "y" else ax.axvline
-        draw(value, label=label, zorder=4, **style)
+def _close(ax: "Axes", one: float, other: float) -> bool:
+    low, high = sorted(ax.get_ylim())
+    return abs(one - other) <= CLOSE * (high - low)
+
+
+def _line(ax: "Axes", mark: _Mark, style: dict[str, Any]) -> None:
+    draw = ax.axhline if mark.axis == "y" else ax.axvline
+    _name(draw(mark.value, linewidth=1.5, zorder=4, **style), mark)
+
+
+def _name(line: Any, mark: _Mark) -> None:
+    setattr(line, _ATTRIBUTE, mark)
+    line.set_label(mark.label)
 
 
 _SHORT_BLOCKS = (50, 20, 10, 5, 2)
