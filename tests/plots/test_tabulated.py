@@ -153,18 +153,19 @@ def test_action_names_of_a_registered_environment_are_shown() -> None:
 def test_an_environment_that_cannot_be_made_again_has_the_known_names() -> None:
     fails: list[Exception] = []
 
-    def made() -> Any:
+    def make() -> gym.Env[Any, Any]:
         if fails:
             raise fails[0]
         return _Named()
 
-    gym.register("Named-v0", made, max_episode_steps=50)
+    entry: Any = make
+    gym.register("Named-v0", entry, max_episode_steps=50)
     try:
         run = qtab.train("Named-v0", seed=0, episodes=5)
         for error in (FileNotFoundError("map.txt"), TypeError("no arguments")):
             fails[:] = [error]
-            ax = qtab.plots.policy(run)
-            assert [text.get_text() for text in ax.get_legend().get_texts()] == list(run.action_names)
+            legend: Any = qtab.plots.policy(run).get_legend()
+            assert [text.get_text() for text in legend.get_texts()] == list(run.action_names)
     finally:
         del gym.registry["Named-v0"]
 
@@ -176,13 +177,14 @@ def test_given_action_names_make_no_environment() -> None:
         made.append(_Named())
         return made[-1]
 
-    gym.register("Named-v0", make, max_episode_steps=50)
+    entry: Any = make
+    gym.register("Named-v0", entry, max_episode_steps=50)
     try:
         run = qtab.train("Named-v0", seed=0, episodes=5)
         before = len(made)
-        ax = qtab.plots.policy(run, action_names=("back", "on"))
+        legend: Any = qtab.plots.policy(run, action_names=("back", "on")).get_legend()
         assert len(made) == before
-        assert [text.get_text() for text in ax.get_legend().get_texts()] == ["back", "on"]
+        assert [text.get_text() for text in legend.get_texts()] == ["back", "on"]
     finally:
         del gym.registry["Named-v0"]
 
