@@ -245,3 +245,27 @@ def test_shared_settings_that_do_not_fit_are_named(playground: Playground) -> No
     playground.page.locator("#share-restore").click()
     playground.settled()
     assert playground.text("problem").endswith("left out or changed: nothing, episodes, discount.")
+
+
+def test_a_shared_link_is_read_as_by_the_page(playground: Playground) -> None:
+    for link, seed in (("?utm=1#env=CliffWalking-v1&seed=3", 3), ("?env=CliffWalking-v1#seed=4", 4)):
+        playground.open("#env=FrozenLake-v1&episodes=20")
+        playground.page.locator("#share-open").click()
+        playground.page.locator("#share-given").fill(f"https://example.org/playground/{link}")
+        playground.page.locator("#share-restore").click()
+        state = playground.settled().state()
+        assert (state["environment"], state["seed"]) == ("CliffWalking-v1", seed)
+
+
+def test_a_text_without_settings_changes_nothing(playground: Playground) -> None:
+    playground.open("#env=CliffWalking-v1&episodes=20&seed=4")
+    state = playground.state()
+    playground.page.locator("#share-open").click()
+    playground.page.locator("#share-restore").click()
+    assert playground.page.locator("#share-dialog").is_visible()
+    for text in ("garbage", "https://example.org/?utm=1#top", "env=CliffWalking-v1&" * 500):
+        playground.page.locator("#share-given").fill(text)
+        playground.page.locator("#share-restore").click()
+        assert playground.text("problem").startswith("Nothing was changed: ")
+        assert playground.state() == state
+        playground.page.locator("#share-open").click()

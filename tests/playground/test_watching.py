@@ -18,6 +18,7 @@ PACE = """place => {
 LOOK = """episodes => {
   const { training } = playground;
   playground.view.past = null;
+  document.querySelector("#past").value = 0;
   training.engine.lookBack(episodes, [0, 5, 10, 20, 40]);
 }"""
 
@@ -108,6 +109,86 @@ def test_the_slider_looks_back_and_returns(playground: Playground) -> None:
     slider.press("End")
     playground.page.wait_for_function("() => playground.view.past === null")
     assert playground.text("motion-caption") == newest
+
+
+def test_time_spent_paused_is_not_caught_up_by_an_episode(playground: Playground) -> None:
+    playground.open("#env=CliffWalking-v1&example=0")
+    playground.page.locator("#reset").click()
+    playground.settled()
+    assert playground.page.evaluate(PACE, 2) == "5 steps a second"
+    playground.page.wait_for_timeout(1500)
+    playground.page.locator("#one-episode").click()
+    first = playground.page.wait_for_function("() => playground.view.result.current?.step")
+    assert first.json_value() < 4
+
+
+def test_a_run_that_continues_no_longer_looks_back(playground: Playground) -> None:
+    playground.open("#env=CliffWalking-v1&example=0")
+    playground.page.locator("#reset").click()
+    playground.settled()
+    playground.page.evaluate("() => playground.training.engine.advance('episode', 6)")
+    playground.page.wait_for_function("() => playground.view.result.done === 6")
+    playground.page.evaluate(
+        """() => {
+          const slider = document.querySelector("#past");
+          slider.value = 3;
+          slider.dispatchEvent(new Event("input"));
+          document.querySelector("#run").click();
+        }"""
+    )
+    playground.page.wait_for_function("() => playground.training.state === 'finished'")
+    playground.page.wait_for_timeout(300)
+    assert playground.page.evaluate("() => playground.view.past") is None
+    assert playground.text("motion-caption").startswith("Greedy episode: ")
+
+
+def test_an_answer_that_comes_after_the_slider_returned_is_dropped(playground: Playground) -> None:
+    playground.open("#env=CliffWalking-v1&example=0")
+    shown = playground.page.evaluate(
+        """async () => {
+          const { training, view } = playground;
+          const slider = document.querySelector("#past");
+          for (const place of [30, slider.max]) {
+            slider.value = place;
+            slider.dispatchEvent(new Event("input"));
+          }
+          await new Promise((resolve) => setTimeout(resolve, 300));
+          const { id } = training;
+          training.receive({ type: "past", id, episodes: 250, map: view.result.map, episode: null });
+          return view.past;
+        }"""
+    )
+    assert shown is None
+
+
+def test_an_agent_at_its_end_waits_for_the_other(playground: Playground) -> None:
+    playground.open("#env=CliffWalking-v1&episodes=20&compare=sarsa")
+    finished = compared(playground)
+    identity = playground.page.evaluate("() => playground.training.id")
+    for button in ("step", "one-episode"):
+        playground.page.evaluate("() => playground.agents()[1].reset()")
+        playground.page.wait_for_function("() => playground.agents()[1].state === 'paused'")
+        playground.page.locator(f"#{button}").click()
+        playground.page.wait_for_function("() => playground.view.other.result.map.visits.some(Boolean)")
+        assert playground.text("run") == "Continue"
+        playground.page.locator("#run").click()
+        assert compared(playground) == finished
+        assert playground.text("run") == "Run again"
+    assert playground.page.evaluate("() => playground.training.id") == identity
+    playground.page.locator("#run").click()
+    assert playground.page.evaluate("() => playground.training.id") == identity + 1
+    playground.settled()
+
+
+def test_an_agent_that_is_no_longer_compared_stops(playground: Playground) -> None:
+    playground.open("#env=CliffWalking-v1&episodes=20&compare=sarsa")
+    compared(playground)
+    playground.page.evaluate(PACE, 0)
+    playground.page.evaluate("() => { globalThis.other = playground.agents()[1]; }")
+    playground.page.locator("#compared").select_option("")
+    playground.page.wait_for_function("() => other.state === 'paused'")
+    assert playground.page.evaluate("() => playground.training.state") == "training"
+    assert playground.page.evaluate("() => playground.view.other.isStale")
 
 
 def test_two_agents_share_axes_and_colors(playground: Playground) -> None:

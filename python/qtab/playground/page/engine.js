@@ -99,7 +99,7 @@ export class Engine {
     this.#post({ type: "pace", steps });
   }
 
-  /** Requests the values after some episodes; those at `places` on the way are kept for later requests. */
+  /** Requests the values after some episodes, null for none; those at `places` on the way are kept for later requests. */
   lookBack(episodes, places) {
     this.#post({ type: "past", episodes, places });
   }

@@ -10,7 +10,7 @@ import { setUpTheme } from "./drawing/theme.js";
 import { definitions, Engine } from "./engine.js";
 import { copyText, pythonProgram } from "./python_code.js";
 import { View } from "./results/view.js";
-import { fragment, restore } from "./share.js";
+import { fragment, hasSettings, restore, settingsText } from "./share.js";
 import { fit, Store } from "./store.js";
 import { Training } from "./training.js";
 
@@ -32,12 +32,15 @@ function start() {
   const left = restore(store, `${location.search.slice(1)}&${location.hash.slice(1)}`);
   const view = new View(store, announce, (cell) => training.inspect(cell));
   const past = new PastControl((episodes, places) => {
+    for (const each of agents()) each.engine.lookBack(episodes, places);
     if (episodes === null) view.showPast(null);
-    else for (const each of agents()) each.engine.lookBack(episodes, places);
   });
+  // An answer may come after the slider has returned to the newest values.
+  const isLate = (message) => message.type === "past" && past.isAtEnd;
   const training = new Training(store, Engine, {
     onStart: () => view.expectAnother(),
     onResult: (message) => {
+      if (isLate(message)) return;
       if (message.type === "result") past.show(message.done, message.state === "training");
       view.show(message);
       if (["paused", "finished", "diverged"].includes(message.state)) announce(() => view.spoken(message), SPOKEN_DELAY);
@@ -47,7 +50,7 @@ function start() {
   let other = null; // the training of the agent to compare with
   const newOther = () => new Training(store, Engine, {
     onStart: () => {},
-    onResult: (message) => view.showOther(message),
+    onResult: (message) => isLate(message) || view.showOther(message),
     onProblem: (message) => view.showOtherProblem(message),
     request: () => ({ ...store.request(store.otherSettings), best: false }),
     inspects: false,
@@ -67,6 +70,7 @@ function start() {
   };
   setUpPage(store, agents, view, note, announce);
   const start = () => {
+    if (!store.otherSettings) other?.stop();
     for (const each of agents()) {
       each.engine.setPace(steps);
       each.start();
@@ -81,11 +85,16 @@ function start() {
 }
 
 function setUpPage(store, agents, view, note, announce) {
+  /** The agents to train on: those that are not at their end, or all if each of them is. */
+  const next = () => {
+    const unfinished = agents().filter((each) => ["training", "paused"].includes(each.state));
+    return unfinished.length ? unfinished : agents();
+  };
   const press = {
-    run: () => agents().forEach((each) => each.run()),
+    run: () => next().forEach((each) => each.run()),
     stop: () => agents().forEach((each) => each.stop()),
-    step: () => agents().forEach((each) => each.advance("step")),
-    "one-episode": () => agents().forEach((each) => each.advance("episode")),
+    step: () => next().forEach((each) => each.advance("step")),
+    "one-episode": () => next().forEach((each) => each.advance("episode")),
     reset: () => agents().forEach((each) => each.reset()),
   };
   for (const [id, action] of Object.entries(press)) element(id).addEventListener("click", action);
@@ -118,7 +127,10 @@ function setUpPage(store, agents, view, note, announce) {
   });
   element("share-copy").addEventListener("click", () => copied(shared(), element("share-copy"), isFile ? "Settings" : "Link"));
   const open = () => {
-    note(restore(store, element("share-given").value.trim().replace(/^[^?#]*[?#]/, "")));
+    const text = settingsText(element("share-given").value);
+    if (!text) return;
+    if (hasSettings(store, text)) note(restore(store, text));
+    else view.showNote("Nothing was changed: the text has no settings of this page, or is too long.");
     element("share-dialog").close();
   };
   element("share-restore").addEventListener("click", open);

@@ -31,6 +31,17 @@ export function fragment(store) {
   return base.toString();
 }
 
+/** The part of a link that holds the settings: its search and its fragment. A text that is no link is that part. */
+export function settingsText(link) {
+  return link.trim().replace(/^[^?#]*(?:\?([^#]*)(?:#|$)|#)/, (_, search = "") => (search ? `${search}&` : ""));
+}
+
+/** Whether a text names any part of a state. */
+export function hasSettings({ definitions }, text) {
+  const isKnown = (name) => NAMES.has(name) || Object.hasOwn(definitions.settings, name);
+  return text.length <= MAX_LENGTH && [...new URLSearchParams(text).keys()].some(isKnown);
+}
+
 /** Sets a store to the state of an address; returns the names of invalid parts, which are omitted or limited. */
 export function restore(store, text) {
   const given = new URLSearchParams(text.length > MAX_LENGTH ? "" : text);

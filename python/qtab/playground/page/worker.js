@@ -154,6 +154,7 @@ async function lookBack() {
     await pause();
     if (pending || run?.id !== id || run.wanted !== wanted) return;
   }
+  if (run.wanted !== wanted) return;
   run.wanted = null;
   const found = kept.get(wanted) ?? kept.get(past.done);
   postMessage({ type: "past", id, episodes: wanted, ...found });
@@ -276,6 +277,7 @@ const handlers = {
   },
   advance({ unit, count }) {
     if (!run || run.state === "finished" || run.state === "diverged") return;
+    run.wanted = null;
     if (unit === "step") {
       for (let step = 0; step < count; step++) call({ call: "step" });
       const { state, done } = call({ call: "advance", work: 0 });
@@ -284,18 +286,19 @@ const handlers = {
       report();
     } else {
       const { done } = call({ call: "advance", work: 0 });
-      Object.assign(run, { goal: done + count, state: "training" });
+      Object.assign(run, { goal: done + count, state: "training", stepped: performance.now() });
     }
   },
   pace({ steps }) {
     pace = steps;
     if (run) run.stepped = performance.now();
   },
+  /** Looks back; null ends this. */
   past({ episodes, places }) {
     if (run) Object.assign(run, { wanted: episodes, places });
   },
   run() {
-    if (run) run.stepped = performance.now();
+    if (run) Object.assign(run, { stepped: performance.now(), wanted: null });
     if (run?.state === "paused") Object.assign(run, { goal: Infinity, state: "training" });
   },
   stop() {

@@ -72,6 +72,7 @@ export class View {
 
   /** Shows a result of the agent to compare with, or its values at an earlier time. */
   showOther(message) {
+    if (!this.names.length) return;
     if (message.type === "past") this.other.past = message;
     else if (message.type === "result") {
       const episode = message.episode ?? this.other.episode;
@@ -82,6 +83,7 @@ export class View {
 
   /** Shows why the agent to compare with could not be trained, and the first agent alone. */
   showOtherProblem(message) {
+    if (!this.names.length) return;
     this.other = { result: null, episode: null, past: null, isStale: false };
     this.note = `${this.names[1]} could not be trained to compare with: ${message}`;
     if (!this.isStale) this.draw();
@@ -92,6 +94,11 @@ export class View {
     const { state, otherSettings, definitions } = this.store;
     const title = (algorithm) => definitions.settings.algorithm.choices.find(({ value }) => value === algorithm).title;
     return otherSettings ? [title(state.settings.algorithm), title(state.compared)] : [];
+  }
+
+  /** The states of the run, and of that of the other agent if there is one. */
+  get states() {
+    return [this.result.state, this.otherResult?.state];
   }
 
   /** Shows the values as they were at an earlier time; null shows the newest ones. */
@@ -138,7 +145,7 @@ export class View {
     this.waiting = true;
     requestAnimationFrame(() => {
       this.waiting = false;
-      if (!this.isStale && this.result.state === "training") this.draw();
+      if (!this.isStale && this.states.includes("training")) this.draw();
     });
   }
 
@@ -204,9 +211,10 @@ export class View {
     element("status").textContent = statusText(result);
     element("progress").max = episodes;
     element("progress").value = done;
-    element("stop").disabled = state !== "training";
-    element("run").textContent = state === "finished" || state === "diverged" ? "Run again" : state === "paused" && done ? "Continue" : "Run";
-    element("run").disabled = state === "training";
+    const isTraining = this.states.includes("training");
+    element("stop").disabled = !isTraining;
+    element("run").textContent = this.states.includes("paused") ? (done ? "Continue" : "Run") : isTraining ? "Run" : "Run again";
+    element("run").disabled = isTraining;
     this.showMessage(state === "diverged" ? DIVERGED : this.note);
   }
 
