@@ -36,13 +36,13 @@ def test_a_run_stopped_in_python_resumes_exactly(seconds: float, caplog: pytest.
 @posix_only
 def test_a_step_that_fails_after_a_run_was_resumed_is_taken_in_python() -> None:
     def make() -> Grows:
-        return Grows(100_000, 100_050)
+        return Grows(400_000, 400_050)
 
     part = stopped(0.004, make, **LONG)
     assert len(part.episode_returns) == 0
     resumed = trained_until(1, make, part)
     assert_same_run(resumed, trained_until(1, make, **LONG))
-    assert resumed.episode_lengths.tolist() == [100_050]
+    assert resumed.episode_lengths.tolist() == [400_050]
 
 
 @posix_only
