@@ -22,7 +22,7 @@ type OneStepLearner<U, const N: usize> = TdLearner<U, Agent<N, EpsilonGreedy, Sc
 /// Runs of Q-learning, Sarsa or Expected Sarsa with ε-greedy exploration; `None` if the spec asks for something else.
 /// `n_rows` is the number of cells.
 ///
-/// Q-learning with 2 to 4 actions is compiled for their number: on a MountainCar in C, a step takes 360 instructions
+/// Q-learning with 2 to 4 actions is compiled for their number: on a mountain car in C, a step takes 360 instructions
 /// instead of 411.
 pub(crate) fn one_step_runs<W, B>(new_task: B, n_rows: usize, spec: &RunSpec) -> Option<Box<dyn RunFactory>>
 where
