@@ -54,8 +54,9 @@ def test_the_advised_change_removes_the_loop(errand: str) -> None:
 
 
 def test_an_ordinary_class_in_compiled_code_is_diagnosed(monkeypatch: pytest.MonkeyPatch) -> None:
-    pytest.importorskip("numba")
+    numba = pytest.importorskip("numba")
     monkeypatch.setenv("NUMBA_DISABLE_JIT", "0")
+    monkeypatch.setattr(numba.config, "DISABLE_JIT", 0)
     env = gym.wrappers.TimeLimit(ErrandClass(), LIMIT)
     check_loop(qtab.diagnose(qtab.train(env, seed=0, episodes=60, backend="numba", **SETTINGS), env=env))
 
