@@ -158,7 +158,7 @@ class Optimum:
         """
         if not isinstance(run, Run | Runs):
             raise TypeError(f"run must be a Run or Runs, got {shown(run)}")
-        run = self.as_solved(run)
+        run = as_solved(self, run)
         self.check_same_env(run)
         if isinstance(run, Run):
             last = run.episode_returns[-FINAL_EPISODES:]
@@ -176,14 +176,6 @@ class Optimum:
         found = self.solver.attainable_return(run)
         return None if found is None else max(found, float(np.max(greedy_returns)))
 
-    def as_solved(self, run: AnyRun) -> AnyRun:
-        """Returns a run, or runs, on the environment that was tabulated, as on the table; any other run unchanged.
-
-        Raises:
-            ValueError: if that environment has the same name as the run's, but differs from it.
-        """
-        return self.solver.as_solved(run) if isinstance(self.solver, TabularSolver) else run
-
     def check_same_env(self, run: Run | Runs, *, with_limit: bool = True) -> None:
         """Checks that the environment of a run is that of this optimum.
 
@@ -194,7 +186,7 @@ class Optimum:
         Raises:
             ValueError: if the environment, its keyword arguments or the time limit of the run differ.
         """
-        run = self.as_solved(run)
+        run = as_solved(self, run)
         config = run.config
         expected = gymnasium_id(self.env), _all_kwargs(self.env, self.env_kwargs), self.max_episode_steps
         actual = gymnasium_id(config.env), _all_kwargs(config.env, config.env_kwargs), config.max_episode_steps
@@ -258,3 +250,12 @@ def _all_kwargs(env: str, kwargs: Mapping[str, Any]) -> dict[str, Any]:
     with suppress(gym.error.Error):  # the class of an environment that has no id
         kwargs = {**spec_of(env).kwargs, **kwargs}
     return {name: kwargs[name] for name in sorted(kwargs) if kwargs[name] is not None or name != "render_mode"}
+
+
+def as_solved(optimum: Optimum, run: AnyRun) -> AnyRun:
+    """Returns a run, or runs, on the environment that was tabulated, as on the solved table; any other run unchanged.
+
+    Raises:
+        ValueError: if that environment has the same name as the run's, but differs from it.
+    """
+    return optimum.solver.as_solved(run) if isinstance(optimum.solver, TabularSolver) else run

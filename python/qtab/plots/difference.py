@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab.envs.registry import gymnasium_id
-from qtab.planning.optimum import Optimum
+from qtab.planning.optimum import Optimum, as_solved
 from qtab.plots.arrangements import Raster, arrange
 from qtab.plots.arrangements.grid_map import Layout
 from qtab.plots.parts.colors import is_dark
@@ -74,7 +74,7 @@ def difference(
         raise TypeError(f"optimum must be a result of qtab.optimum, got {optimum!r}")
     check_title(title)
     env = run.config.env
-    subject, best = subject_of("run", optimum.as_solved(run)), subject_of("optimum", optimum)
+    subject, best = subject_of("run", as_solved(optimum, run)), subject_of("optimum", optimum)
     _check_same(subject, best)
     if not subject.discretizer.has_component_axes:
         raise ValueError(
