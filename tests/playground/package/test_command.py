@@ -93,7 +93,7 @@ def test_without_the_module_the_error_says_how_to_build_it(tmp_path, opened, cap
 def test_a_module_of_another_version_is_refused(tmp_path, chromium, requested_while_loading):
     html = playground.page()
     version = f'"version":"{qtab.__version__}"'
-    instantiate = "const { instance } = await WebAssembly"
+    instantiate = "const { instance, module: ready } = await WebAssembly"
     assert html.count(version) == html.count(instantiate) == 1
     html = html.replace(version, '"version":"9.9.9"')
     page = chromium.new_page()
