@@ -8,8 +8,8 @@ import gymnasium as gym
 import pytest
 
 import qtab
-from qtab.callbacks import BaseCallback
 from support.environments.gym_classes.grids import CliffEnv
+from support.processes.timer import Timer
 
 
 class Grows(gym.Env):
@@ -34,20 +34,6 @@ class Grows(gym.Env):
             product = (self.count + 2**40) * (2**40 + self.count)
             reward = reward + product % 3
         return draw, reward, self.count == self.length, False, {}
-
-
-class Timer(BaseCallback):
-    """Starts a timer when training begins."""
-
-    def __init__(self, seconds: float) -> None:
-        super().__init__(every=10**9)
-        self.seconds = seconds
-
-    def on_start(self, config: qtab.Config, env: gym.Env | None) -> None:
-        signal.setitimer(signal.ITIMER_VIRTUAL, self.seconds)
-
-    def __call__(self, progress: qtab.Progress) -> None:
-        pass
 
 
 def stopped(seconds: float, make: Any, **settings: Any) -> qtab.Run:

@@ -13,12 +13,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import qtab
-from qtab.callbacks import BaseCallback, Checkpoint
+from qtab.callbacks import Checkpoint
 from qtab.config.choices import Algorithm
 from support.environments.gridworld import Room, StoppedError, StoppingRoom
 from support.learners.learner_settings import run_settings
 from support.parity import assert_same_run, run_of
 from support.processes.posix import posix_only
+from support.processes.timer import Timer
 
 
 def stopped(env: Any, after: int, **config: Any) -> qtab.Run:
@@ -56,20 +57,6 @@ def test_every_learner_resumes_between_episodes(algorithm, tmp_path_factory, dat
             assert qtab.resume(stored) is stored
         else:
             assert_resumed(qtab.resume(stored), whole)
-
-
-class Timer(BaseCallback):
-    """Starts a timer when training begins: while a run is set up, it could not be attached to the exception."""
-
-    def __init__(self, seconds: float) -> None:
-        super().__init__(every=10**9)
-        self.seconds = seconds
-
-    def on_start(self, config: qtab.Config, env: gym.Env | None) -> None:
-        signal.setitimer(signal.ITIMER_VIRTUAL, self.seconds)
-
-    def __call__(self, progress: qtab.Progress) -> None:
-        pass
 
 
 def stopped_by_a_timer(seconds: float, env: str, **config: Any) -> qtab.Run:
