@@ -1,7 +1,6 @@
 """The book's experiments: their environments, their claims with fewer runs, and their training."""
 
 import csv
-from collections import deque
 from typing import Any
 
 import matplotlib.colors
@@ -12,6 +11,7 @@ import qtab
 from qtab.book import runner
 from qtab.book.measured_experiment import TrainingExperiment
 from qtab.book.result import CSV_COLUMNS
+from support.environments.shortest_path import shortest_path
 from support.parity import run_of
 
 NAMES = [name for name, experiment in qtab.book.EXPERIMENTS.items() if isinstance(experiment, TrainingExperiment)]
@@ -35,24 +35,9 @@ def measured(number, name, alpha, runs, **changes):
     return outcome.returns.mean(axis=0)
 
 
-def shortest(env):
-    """The fewest steps from the start to a terminal state."""
-    start = int(np.argmax(env.initial_state_distrib))
-    reached, queue = {start: 0}, deque([start])
-    while queue:
-        state = queue.popleft()
-        for [(_, next_state, _, terminated)] in env.P[state].values():
-            if terminated:
-                return reached[state] + 1
-            if next_state not in reached:
-                reached[next_state] = reached[state] + 1
-                queue.append(next_state)
-    raise AssertionError("no way")
-
-
 def test_the_shortest_path_through_the_windy_grid_world_takes_fifteen_steps():
     env = qtab.book.windy_grid_world()
-    assert shortest(env) == 15
+    assert shortest_path(env) == 15
     assert {reward for row in env.P.values() for [(_, _, reward, _)] in row.values()} == {-1.0}
     up, right, down, left = range(4)
     assert env.P[33][right] == [(1.0, 24, -1.0, False)]  # the wind of the column that it leaves: one up
@@ -63,7 +48,7 @@ def test_the_shortest_path_through_the_windy_grid_world_takes_fifteen_steps():
 
 def test_the_shortest_path_through_the_maze_takes_fourteen_steps():
     env = qtab.book.dyna_maze()
-    assert shortest(env) == 14
+    assert shortest_path(env) == 14
     up, right, _, left = range(4)
     assert env.P[19][right] == [(1.0, 19, 0.0, False)]  # an obstacle
     assert env.P[18][left] == [(1.0, 18, 0.0, False)]  # the edge

@@ -1,16 +1,15 @@
 """The environments of Sutton & Barto's book: mazes that change, mazes of several sizes, the queue, the racetrack."""
 
-from collections import deque
 from typing import Any
 
 import gymnasium as gym
-import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
 
 import qtab
 from qtab.envs.book.mazes import scaled_maze
 from qtab.envs.book.racetrack import TRACKS
+from support.environments.shortest_path import shortest_path
 from support.parity import assert_same_run
 
 IDS = [f"qtab/{name}-v0" for name in ("AccessControlQueue", "BlockingMaze", "DynaMaze", "Racetrack", "ShortcutMaze")]
@@ -43,25 +42,10 @@ def test_rust_and_python_give_the_same_run(env: str, kwargs: dict[str, Any], alg
     assert_same_run(qtab.train(env, seed=3, backend="gymnasium", **settings), run)
 
 
-def shortest(env: Any) -> int:
-    """The fewest steps from the start to a terminal state."""
-    start = int(np.argmax(env.initial_state_distrib))
-    reached, queue = {start: 0}, deque([start])
-    while queue:
-        state = queue.popleft()
-        for [(_, next_state, _, terminated)] in env.P[state].values():
-            if terminated:
-                return reached[state] + 1
-            if next_state not in reached:
-                reached[next_state] = reached[state] + 1
-                queue.append(next_state)
-    raise AssertionError("no way")
-
-
 @pytest.mark.parametrize(("env", "lengths"), [(CHANGING[0], [10, 16]), (CHANGING[1], [16, 10])])
 def test_the_mazes_have_the_ways_of_the_book(env: str, lengths: list[int]) -> None:
     made: Any = gym.make(env).unwrapped
-    assert [shortest(maze) for maze in made.mazes] == lengths
+    assert [shortest_path(maze) for maze in made.mazes] == lengths
     assert made.change_after == (1000 if env == CHANGING[0] else 3000)
 
 
@@ -109,7 +93,7 @@ def test_the_mazes_have_the_sizes_of_the_book(doublings: int, cells: int) -> Non
 def test_the_smallest_maze_is_the_dyna_maze() -> None:
     env: Any = gym.make("qtab/DynaMaze-v0").unwrapped
     assert env.P == qtab.book.dyna_maze().P
-    assert shortest(gym.make("qtab/DynaMaze-v0", doublings=1).unwrapped) > 14
+    assert shortest_path(gym.make("qtab/DynaMaze-v0", doublings=1).unwrapped) > 14
 
 
 def test_a_customer_is_accepted_if_a_server_is_free() -> None:

@@ -1,8 +1,6 @@
 """Every function of the package that takes an environment, with one of a C library."""
 
-import gc
 import logging
-import signal
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -12,10 +10,10 @@ import numpy as np
 import pytest
 
 import qtab
-from qtab.callbacks import BaseCallback
 from support.native.board import SETTINGS, board_library
 from support.native.libraries import EXAMPLES, compile_c, needs_compiler
 from support.processes.posix import posix_only
+from support.processes.timer import stopped_by_a_timer
 
 pytestmark = needs_compiler
 ID = "own/Lander-v0"
@@ -91,39 +89,6 @@ def test_a_resumed_run_equals_the_uninterrupted_one(lander: Path, tmp_path: Path
             assert getattr(run, name).tobytes() == getattr(whole, name).tobytes(), name
 
 
-class StoppedError(Exception):
-    """Raised by a timer."""
-
-
-class Timer(BaseCallback):
-    """Starts a timer when training begins."""
-
-    def on_start(self, config: qtab.Config, env: gym.Env | None) -> None:
-        signal.setitimer(signal.ITIMER_VIRTUAL, 0.02)
-
-    def __call__(self, progress: qtab.Progress) -> None:
-        pass
-
-
-def stopped_by_a_timer(env: gym.Env, **settings: Any) -> qtab.Run:
-    """A run that a signal stopped, most probably in the middle of an episode."""
-
-    def stop(*_: Any) -> None:
-        raise StoppedError
-
-    gc.disable()  # an exception raised while hypothesis's callback sees a collection would be lost
-    before = signal.signal(signal.SIGVTALRM, stop)
-    try:
-        with pytest.raises(StoppedError) as caught:
-            qtab.train(env, callback=Timer(every=10**9), **settings)
-    finally:
-        signal.setitimer(signal.ITIMER_VIRTUAL, 0)
-        signal.signal(signal.SIGVTALRM, before)
-        gc.enable()
-    run: qtab.Run = caught.value.run  # type: ignore[attr-defined]
-    return run
-
-
 @posix_only
 @pytest.mark.parametrize("algorithm", ["q_learning", "sarsa", "n_step_sarsa", "monte_carlo", "double_q_learning"])
 @pytest.mark.parametrize("name", ["board", "lander"])
@@ -131,7 +96,7 @@ def test_a_run_resumes_within_an_episode(lander: Path, tmp_path: Path, name: str
     """The bytes of the state are stored, and the mask and the observation follow from them."""
     env = qtab.NativeEnv(lander if name == "lander" else board_library(tmp_path))
     settings = {**(BINS if name == "lander" else SETTINGS), "episodes": 2_000_000, "algorithm": algorithm, "seed": 5}
-    part = stopped_by_a_timer(env, **settings)
+    part = stopped_by_a_timer(0.02, env, **settings)
     finished = len(part.episode_returns) + 2
     resumed = qtab.resume(part, env=env, callback=lambda _: False, callback_every=finished)
     whole = stopped(env, finished, **settings)

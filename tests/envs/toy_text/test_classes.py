@@ -1,26 +1,15 @@
-"""The classes of toy text: spaces, rendering, copies, wrappers, hands and action masks."""
+"""The classes of toy text: spaces, rendering, copies, hands and action masks."""
 
 import copy
 import pickle
-import warnings
 from typing import Any
 
 import gymnasium as gym
 import numpy as np
 import pytest
-from gymnasium.utils.env_checker import check_env
-from gymnasium.wrappers import RecordEpisodeStatistics
 
 from qtab.envs.toy_text import FrozenLakeEnv, TaxiEnv
-from support.exact import bitwise
 from support.lockstep.toy_text import IDS, TABLES, LockstepToyText
-
-
-@pytest.mark.parametrize("name", IDS)
-def test_gymnasiums_checker_passes(name):
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # the checker also warns of Gymnasium's own spaces
-        check_env(gym.make(f"qtab/{name}", render_mode="rgb_array").unwrapped)
 
 
 @pytest.mark.parametrize("name", IDS)
@@ -89,19 +78,6 @@ def test_a_copy_continues_like_its_original(name, copied):
         pair.both(lambda env: env.step(0))
         pair.both(lambda env: env.reset())
     assert repr(original.np_random.bit_generator.state) == before
-
-
-@pytest.mark.parametrize("name", IDS)
-def test_gymnasiums_wrappers_return_the_same_around_ours(name):
-    ours, theirs = (RecordEpisodeStatistics(gym.make(env, max_episode_steps=20)) for env in (f"qtab/{name}", name))
-    assert bitwise(ours.reset(seed=0)) == bitwise(theirs.reset(seed=0))
-    for _ in range(20):
-        action = theirs.action_space.sample()
-        one, other = ours.step(action), theirs.step(action)
-        assert bitwise(one[:4]) == bitwise(other[:4])
-        if one[2] or one[3]:
-            assert one[4]["episode"]["r"] == other[4]["episode"]["r"]
-            break
 
 
 HANDS: list[Any] = [

@@ -1,15 +1,12 @@
 """Runs in compiled classes that are stopped within an episode."""
 
-import gc
-import signal
 from typing import Any
 
 import gymnasium as gym
-import pytest
 
 import qtab
 from support.environments.gym_classes.grids import CliffEnv
-from support.processes.timer import Timer
+from support.processes.timer import stopped_by_a_timer
 
 
 class Grows(gym.Env):
@@ -37,22 +34,8 @@ class Grows(gym.Env):
 
 
 def stopped(seconds: float, make: Any, **settings: Any) -> qtab.Run:
-    """A run that a signal stopped, as Ctrl-C does."""
-
-    def stop(*_: Any) -> None:
-        raise KeyboardInterrupt
-
-    gc.disable()
-    before = signal.signal(signal.SIGVTALRM, stop)
-    try:
-        with pytest.raises(KeyboardInterrupt) as caught:
-            qtab.train(make(), callback=Timer(seconds), **settings)
-    finally:
-        signal.setitimer(signal.ITIMER_VIRTUAL, 0)
-        signal.signal(signal.SIGVTALRM, before)
-        gc.enable()
-    run: qtab.Run = caught.value.run  # type: ignore[attr-defined]
-    return run
+    """A run that was stopped as Ctrl-C stops it."""
+    return stopped_by_a_timer(seconds, make(), KeyboardInterrupt, **settings)
 
 
 def trained_until(finished: int, make: Any, run: qtab.Run | None = None, **settings: Any) -> qtab.Run:

@@ -1,11 +1,19 @@
-"""A callback that starts a timer, whose signal stops a run."""
+"""Runs that the signal of a timer stops, most probably in the middle of an episode."""
 
+import gc
 import signal
+from typing import Any
 
 import gymnasium as gym
+import pytest
 
 import qtab
 from qtab.callbacks import BaseCallback
+from support.parity import run_of
+
+
+class TimerError(Exception):
+    """What the signal of the timer raises."""
 
 
 class Timer(BaseCallback):
@@ -20,3 +28,21 @@ class Timer(BaseCallback):
 
     def __call__(self, progress: qtab.Progress) -> None:
         pass
+
+
+def stopped_by_a_timer(seconds: float, env: Any, error: type[BaseException] = TimerError, **settings: Any) -> qtab.Run:
+    """The run that the exception carries, whose training took so many seconds of the processor's time."""
+
+    def stop(*_: Any) -> None:
+        raise error
+
+    gc.disable()  # an exception raised while hypothesis's callback sees a collection would be lost
+    before = signal.signal(signal.SIGVTALRM, stop)
+    try:
+        with pytest.raises(error) as caught:
+            qtab.train(env, callback=Timer(seconds), **settings)
+    finally:
+        signal.setitimer(signal.ITIMER_VIRTUAL, 0)
+        signal.signal(signal.SIGVTALRM, before)
+        gc.enable()
+    return run_of(caught.value)

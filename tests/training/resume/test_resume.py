@@ -1,8 +1,6 @@
 """A run that is stopped, saved and resumed equals the uninterrupted one, bit for bit."""
 
-import gc
 import logging
-import signal
 from collections.abc import Callable
 from typing import Any, get_args
 
@@ -19,7 +17,7 @@ from support.environments.gridworld import Room, StoppedError, StoppingRoom
 from support.learners.learner_settings import run_settings
 from support.parity import assert_same_run, run_of
 from support.processes.posix import posix_only
-from support.processes.timer import Timer
+from support.processes.timer import stopped_by_a_timer
 
 
 def stopped(env: Any, after: int, **config: Any) -> qtab.Run:
@@ -57,25 +55,6 @@ def test_every_learner_resumes_between_episodes(algorithm, tmp_path_factory, dat
             assert qtab.resume(stored) is stored
         else:
             assert_resumed(qtab.resume(stored), whole)
-
-
-def stopped_by_a_timer(seconds: float, env: str, **config: Any) -> qtab.Run:
-    """A run that a signal stopped, most probably in the middle of an episode."""
-
-    def stop(*_: Any) -> None:
-        raise StoppedError
-
-    gc.disable()  # an exception raised while hypothesis's callback sees a collection would be lost
-    before = signal.signal(signal.SIGVTALRM, stop)
-    try:
-        with pytest.raises(StoppedError) as caught:
-            qtab.train(env, callback=Timer(seconds), **config)
-    finally:
-        signal.setitimer(signal.ITIMER_VIRTUAL, 0)
-        signal.signal(signal.SIGVTALRM, before)
-        gc.enable()
-    run: qtab.Run = caught.value.run  # type: ignore[attr-defined]
-    return run
 
 
 LONG: dict[str, dict[str, Any]] = {
