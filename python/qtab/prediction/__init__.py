@@ -3,13 +3,16 @@
 from qtab.prediction.estimate import estimate_values
 from qtab.prediction.estimates import ValueEstimates
 from qtab.prediction.features import state_aggregation, tile_coding
+from qtab.prediction.linear import LinearGeometry, linear_geometry
 from qtab.prediction.settings import METHODS, PredictionSettings
 
 __all__ = [
     "METHODS",
+    "LinearGeometry",
     "PredictionSettings",
     "ValueEstimates",
     "estimate_values",
+    "linear_geometry",
     "state_aggregation",
     "tile_coding",
 ]

@@ -1,0 +1,65 @@
+"""Feature matrices: a vector of real numbers for each state."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from qtab._utils.arrays import numbers
+from qtab._utils.shown import counted
+from qtab.prediction.features import feature_rows
+
+
+def feature_matrix(
+    features: ArrayLike | None, states: int, shape: tuple[int, ...] | None = None
+) -> NDArray[np.float64]:
+    """Returns the matrix X, (states, d) float64, whose rows are the feature vectors x(s) (Sutton & Barto, section 9.4).
+
+    Args:
+        features: (states, d) floats: the feature vector of each state; or, as in :func:`qtab.estimate_values`, None for
+            a table or (states,) or (states, n_active) integers: the features that are active in each state.
+        states: The number of states.
+        shape: The shape of the states, which may replace the first axis of the feature vectors; None means one axis.
+
+    Raises:
+        TypeError: if the features are not numbers.
+        ValueError: for another shape, or a number that is not finite.
+    """
+    if not _are_floats(features):
+        rows, count = feature_rows(features, states)
+        matrix = np.zeros((states, count))
+        # A feature that is listed twice counts twice, as in the sum of the weights.
+        np.add.at(matrix, (np.arange(states)[:, None], rows), 1.0)
+        return matrix
+    given = numbers("features", features)
+    if shape is not None and given.shape[:-1] == shape:
+        given = given.reshape(states, -1)
+    if given.ndim != 2 or len(given) != states or given.size == 0:
+        raise ValueError(
+            f"features must have a feature vector for each of the {counted(states, 'state')}, in an array of shape "
+            f"({states}, d), got {given.shape}"
+        )
+    return np.ascontiguousarray(given)
+
+
+def _are_floats(features: Any) -> bool:
+    try:
+        return np.asarray(features).dtype.kind == "f"
+    except ValueError:  # rows of different lengths
+        return False
+
+
+def dependent_features(matrix: NDArray[np.float64]) -> Sequence[int]:
+    """Returns the columns of a matrix that are linearly dependent; none if all are independent.
+
+    These are the columns that have a part in a linear combination that is zero up to rounding errors.
+    """
+    sizes = np.linalg.norm(matrix, axis=0)
+    scaled = matrix / np.where(sizes > 0.0, sizes, 1.0)
+    _, singular, rows = np.linalg.svd(scaled, full_matrices=True)
+    tolerance = max(matrix.shape) * np.finfo(np.float64).eps * singular.max(initial=0.0)
+    null_space = rows[int((singular > tolerance).sum()) :]
+    parts = np.sqrt((null_space**2).sum(axis=0))
+    dependent: list[int] = np.flatnonzero(parts > np.sqrt(np.finfo(np.float64).eps)).tolist()
+    return dependent
