@@ -141,6 +141,7 @@ QUANTITIES: Mapping[str, Quantities] = {
         layout="blackjack",
     ),
     "qtab/AccessControlQueue-v0": Quantities(_STATE, ("reject", "accept")),
+    "qtab/BairdCounterexample-v0": Quantities(_STATE, ("dashed", "solid")),
     "qtab/BlockingMaze-v0": Quantities(_STATE, ("up", "right", "down", "left")),
     "qtab/DynaMaze-v0": Quantities(_STATE, ("up", "right", "down", "left")),
     "qtab/Racetrack-v0": Quantities(
