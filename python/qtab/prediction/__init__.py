@@ -3,7 +3,7 @@
 from qtab.prediction.estimate import estimate_values
 from qtab.prediction.estimates import ValueEstimates
 from qtab.prediction.features import state_aggregation, tile_coding
-from qtab.prediction.linear import LinearGeometry, linear_geometry
+from qtab.prediction.linear import LinearGeometry, expected_updates, linear_geometry
 from qtab.prediction.settings import METHODS, PredictionSettings
 
 __all__ = [
@@ -12,6 +12,7 @@ __all__ = [
     "PredictionSettings",
     "ValueEstimates",
     "estimate_values",
+    "expected_updates",
     "linear_geometry",
     "state_aggregation",
     "tile_coding",

@@ -12,7 +12,7 @@ from qtab.config import Config
 from qtab.config.config import replace_checked
 from qtab.prediction.learning_rates import rate_settings
 from qtab.prediction.observation_policies import ObservationPolicies, TablePolicy
-from qtab.prediction.reference.policies import policy_of, probability
+from qtab.prediction.reference.policies import policy_of, probability, sampled
 from qtab.reference.parts.schedules import LearningRate
 from qtab.reference.parts.task import Rows, Task
 
@@ -86,19 +86,10 @@ class Prediction:
         """Returns an action, the first whose cumulative probability exceeds one ``random()``, and its ratio."""
         given = self.task.observation, self.task.state
         answer = self.behavior(*given)
-        action = answer if isinstance(answer, int) else self._sample(answer)
+        action = sampled(answer, self.task.rng)
         if not self.is_off_policy:
             return action, 1.0
         return action, probability(self.target(*given), action) / probability(answer, action)
-
-    def _sample(self, probabilities: list[float]) -> int:
-        possible = [action for action, probability in enumerate(probabilities) if probability > 0.0]
-        random, total = self.task.rng.random(), 0.0
-        for action in possible:
-            total += probabilities[action]
-            if random < total:
-                return action
-        return possible[-1]
 
     def state_of(self, rows: Rows) -> int:
         """Returns the number of a state, given its active rows."""

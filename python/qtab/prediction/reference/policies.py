@@ -60,3 +60,16 @@ def _greedy(given: GreedyPolicy, env: gym.Env) -> Policy:
 def probability(answer: Answer, action: int) -> float:
     """Returns π(a|s)."""
     return float(answer == action) if isinstance(answer, int) else answer[action]
+
+
+def sampled(answer: Answer, rng: Any) -> int:
+    """Returns an action: the first whose cumulative probability exceeds one ``random()``."""
+    if isinstance(answer, int):
+        return answer
+    possible = [action for action, probability in enumerate(answer) if probability > 0.0]
+    random, total = rng.random(), 0.0
+    for action in possible:
+        total += answer[action]
+        if random < total:
+            return action
+    return possible[-1]

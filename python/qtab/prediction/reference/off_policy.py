@@ -1,0 +1,149 @@
+"""Off-policy methods for linear values, one transition at a time, in plain NumPy (Sutton & Barto, 2nd ed., chapter 11).
+
+Each object has the weights ``w`` of one run and changes them in place. Feature vectors are (d,) float64; that of a
+terminal state is zero. Sums run from left to right.
+"""
+
+from abc import ABC, abstractmethod
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from numpy.typing import NDArray
+
+from qtab.prediction.observation_policies import TablePolicy
+from qtab.prediction.reference.policies import policy_of, probability, sampled
+
+Vector = NDArray[np.float64]
+
+
+def dot(a: Vector, b: Vector) -> float:
+    """Returns Σ a b, added from left to right, unlike ``np.dot``."""
+    total = 0.0
+    for one, other in zip(a.tolist(), b.tolist(), strict=True):
+        total += one * other
+    return total
+
+
+class OffPolicyUpdate(ABC):
+    """The weights of a run and how a transition changes them.
+
+    Args:
+        w: (d,): the initial weights, which are changed.
+        alpha: α, the step size of the weights.
+        gamma: γ, the discount.
+        beta: β, the step size of the second weight vector, for the methods that have one.
+    """
+
+    def __init__(self, w: Vector, alpha: float, gamma: float, beta: float = 0.0) -> None:
+        self.w, self.alpha, self.gamma, self.beta = w, alpha, gamma, beta
+        self.v = np.zeros_like(w)
+
+    def start_episode(self) -> None:  # noqa: B027 - most methods have nothing to do
+        """Begins an episode: forgets what the previous one left, apart from the weights."""
+
+    def error(self, x: Vector, reward: float, next_x: Vector) -> float:
+        """Returns δ = R + γ wᵀx' - wᵀx."""
+        return reward + self.gamma * dot(self.w, next_x) - dot(self.w, x)
+
+    @abstractmethod
+    def update(self, x: Vector, reward: float, next_x: Vector, rho: float) -> None:
+        """Changes the weights by a transition from a state to the next one.
+
+        Args:
+            x: The features of the state.
+            reward: R.
+            next_x: The features of the next state.
+            rho: ρ = π(A|S) / b(A|S), the importance sampling ratio of the action.
+        """
+
+
+class SemiGradientTD(OffPolicyUpdate):
+    """Off-policy semi-gradient TD(0) (equation 11.2)."""
+
+    def update(self, x: Vector, reward: float, next_x: Vector, rho: float) -> None:
+        """W <- w + α ρ δ x."""
+        self.w += self.alpha * rho * self.error(x, reward, next_x) * x
+
+
+class GTD2(OffPolicyUpdate):
+    """GTD2 (section 11.7)."""
+
+    def update(self, x: Vector, reward: float, next_x: Vector, rho: float) -> None:
+        """W <- w + α ρ (x - γ x') xᵀv, v <- v + β ρ (δ - vᵀx) x, both with the old w and v."""
+        error, correction = self.error(x, reward, next_x), dot(self.v, x)
+        self.w += self.alpha * rho * (x - self.gamma * next_x) * correction
+        self.v += self.beta * rho * (error - correction) * x
+
+
+class TDC(OffPolicyUpdate):
+    """TD(0) with gradient correction, also known as GTD(0) (section 11.7)."""
+
+    def update(self, x: Vector, reward: float, next_x: Vector, rho: float) -> None:
+        """W <- w + α ρ (δ x - γ x' xᵀv), v <- v + β ρ (δ - vᵀx) x, both with the old w and v."""
+        error, correction = self.error(x, reward, next_x), dot(self.v, x)
+        self.w += self.alpha * rho * (error * x - self.gamma * next_x * correction)
+        self.v += self.beta * rho * (error - correction) * x
+
+
+class EmphaticTD(OffPolicyUpdate):
+    """One-step emphatic TD with an interest of 1 in every state (section 11.8)."""
+
+    emphasis = 0.0
+    last_rho = 0.0
+
+    def start_episode(self) -> None:
+        """Begins an episode with an emphasis of 1 in its first state."""
+        self.emphasis = self.last_rho = 0.0
+
+    def update(self, x: Vector, reward: float, next_x: Vector, rho: float) -> None:
+        """M <- γ ρ M + I with the ρ of the previous step, then w <- w + α M ρ δ x."""
+        self.emphasis = self.gamma * self.last_rho * self.emphasis + 1.0
+        self.last_rho = rho
+        self.w += self.alpha * self.emphasis * rho * self.error(x, reward, next_x) * x
+
+
+def weights_by_step(
+    method: OffPolicyUpdate,
+    env: gym.Env[Any, Any],
+    features: NDArray[np.float64],
+    target: NDArray[np.float64],
+    behavior: NDArray[np.float64],
+    steps: int,
+    seed: int,
+) -> NDArray[np.float64]:
+    """Returns the weights before the first step and after each one, (steps + 1, d).
+
+    The random numbers are those of :func:`qtab.estimate_values`: the environment's generator draws the first state of
+    an episode and the next states, and the agent's generator one ``random()`` for each action of a behavior that is not
+    deterministic, in the order state, action, next state.
+
+    Args:
+        method: The method, with its initial weights.
+        env: An environment whose observations are the numbers of its states.
+        features: (states, d): the feature vectors.
+        target: (states, actions): the probabilities of the policy whose values are estimated.
+        behavior: (states, actions): the probabilities of the policy that acts.
+        steps: The number of steps; a new episode begins where one ends.
+        seed: The seed of both generators.
+    """
+    rng = np.random.default_rng(np.random.SeedSequence(seed).spawn(1)[0])
+    follows, acts = policy_of(TablePolicy(target), env), policy_of(TablePolicy(behavior), env)
+    weights = np.empty((steps + 1, len(method.w)))
+    weights[0] = method.w
+    state, over = int(env.reset(seed=seed)[0]), False
+    method.start_episode()
+    for step in range(steps):
+        if over:
+            state = int(env.reset()[0])
+            method.start_episode()
+        answer = acts(state, [state])
+        action = sampled(answer, rng)
+        rho = probability(follows(state, [state]), action) / probability(answer, action)
+        observation, reward, terminated, truncated, _ = env.step(action)
+        next_state, over = int(observation), terminated or truncated
+        next_x = np.zeros(features.shape[1]) if terminated else features[next_state]
+        method.update(features[state], float(reward), next_x, rho)
+        weights[step + 1] = method.w
+        state = next_state
+    return weights
