@@ -16,6 +16,7 @@ from qtab.book.figures.chapter_06 import cliff, example_6_2, example_6_5, figure
 from qtab.book.figures.chapter_08 import changing_mazes, example_8_4, figure_8_2, figure_8_7, figure_8_8
 from qtab.book.figures.chapter_09 import figure_9_1, figure_9_2, figure_9_10
 from qtab.book.figures.chapter_10 import figure_10_1, figure_10_5
+from qtab.book.figures.chapter_11 import baird
 from qtab.book.figures.chapter_13 import short_corridor
 from qtab.book.result import Result
 
@@ -57,6 +58,11 @@ CHAPTERS: Sequence[Chapter] = (
         figure_10_1,
         *(mountain_car.FIGURE_10_2, mountain_car.FIGURE_10_3, mountain_car.FIGURE_10_4),
         figure_10_5,
+    ),
+    _chapter(
+        11,
+        "Off-policy methods with approximation",
+        *(baird.FIGURE_11_2, baird.FIGURE_11_5, baird.FIGURE_11_6),
     ),
     _chapter(
         12,

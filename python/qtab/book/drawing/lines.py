@@ -60,7 +60,8 @@ def draw_lines(result: Result, ax: "Axes | None") -> "Axes":
         )
     finish(ax, experiment.x_label, experiment.y_label, experiment.heading)
     legend = ax.get_legend()
-    if legend is not None and label_ends(ax, drawn, colors):
+    named = [(line, hue) for line, hue in zip(drawn, colors, strict=True) if line.named]
+    if legend is not None and label_ends(ax, [line for line, _ in named], [hue for _, hue in named]):
         legend.remove()
     return ax
 
