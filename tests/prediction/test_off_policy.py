@@ -1,6 +1,7 @@
 """Sampled and expected off-policy updates: equal in the mean, and sampled ones to the bit those of estimate_values."""
 
 from collections.abc import Iterator
+from itertools import islice
 from typing import Any
 
 import gymnasium as gym
@@ -17,6 +18,7 @@ from qtab.prediction.reference.off_policy import (
     EmphaticTD,
     OffPolicyUpdate,
     SemiGradientTD,
+    transitions,
     weights_by_step,
 )
 
@@ -46,9 +48,9 @@ class Problem:
 
     def steps(self, state: int) -> Iterator[tuple[float, float, float, int, bool]]:
         """The probability under the behavior, the ratio, the reward, the next state and the end of each transition."""
-        for action, transitions in self.env.P[state].items():
+        for action, outcomes in self.env.P[state].items():
             ratio = self.target[state, action] / self.behavior[state, action]
-            for probability, next_state, reward, ended in transitions:
+            for probability, next_state, reward, ended in outcomes:
                 yield self.behavior[state, action] * probability, ratio, reward, next_state, ended
 
     def x(self, state: int, ended: bool = False) -> Table:
@@ -116,7 +118,7 @@ def test_the_random_numbers_are_those_of_estimate_values(method: type[OffPolicyU
     env = gym.make("qtab/RandomWalk-v0", states=7)
     lean = np.tile([0.4, 0.6], (7, 1))
     estimates = qtab.estimate_values(env, lean, learning_rate=0.1, episodes=5, discount=0.5, seeds=[4])
-    found = weights_by_step(method(np.zeros(7), 0.1, 0.5), env, np.eye(7), lean, lean, 500, 4)
+    found = weights_by_step(method(np.zeros(7), 0.1, 0.5), np.eye(7), islice(transitions(env, lean, lean, 4), 500))
     recorded = {row.tobytes() for row in found}
     assert len(recorded) > 5
     assert all(row.tobytes() in recorded for row in estimates.weights[0])

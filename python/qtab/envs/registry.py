@@ -129,6 +129,7 @@ EXTRA: Mapping[str, EnvEntry] = {
     f"{PREFIX}JacksCarRental-v0": _table("qtab.envs.book.jacks_car_rental:jacks_car_rental"),
     f"{PREFIX}RandomMdp-v0": _table("qtab.envs.book.random_mdp:random_mdp"),
     f"{PREFIX}BairdCounterexample-v0": _table("qtab.envs.book.baird_counterexample:BairdCounterexampleEnv"),
+    f"{PREFIX}BoyanChain-v0": _table("qtab.envs.book.boyan_chain:BoyanChainEnv"),
 }
 """Environments that Gymnasium does not have, by their id."""
 

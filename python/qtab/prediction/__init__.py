@@ -3,10 +3,11 @@
 from qtab.prediction.estimate import estimate_values
 from qtab.prediction.estimates import ValueEstimates
 from qtab.prediction.features import state_aggregation, tile_coding
-from qtab.prediction.linear import LinearGeometry, expected_updates, linear_geometry
+from qtab.prediction.linear import LSTD, LinearGeometry, expected_updates, linear_geometry
 from qtab.prediction.settings import METHODS, PredictionSettings
 
 __all__ = [
+    "LSTD",
     "METHODS",
     "LinearGeometry",
     "PredictionSettings",

@@ -142,6 +142,7 @@ QUANTITIES: Mapping[str, Quantities] = {
     ),
     "qtab/AccessControlQueue-v0": Quantities(_STATE, ("reject", "accept")),
     "qtab/BairdCounterexample-v0": Quantities(_STATE, ("dashed", "solid")),
+    "qtab/BoyanChain-v0": Quantities(_STATE, ("step",)),
     "qtab/BlockingMaze-v0": Quantities(_STATE, ("up", "right", "down", "left")),
     "qtab/DynaMaze-v0": Quantities(_STATE, ("up", "right", "down", "left")),
     "qtab/Racetrack-v0": Quantities(

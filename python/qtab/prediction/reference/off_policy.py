@@ -5,7 +5,8 @@ terminal state is zero. Sums run from left to right.
 """
 
 from abc import ABC, abstractmethod
-from typing import Any
+from collections.abc import Iterable, Iterator
+from typing import Any, NamedTuple
 
 import gymnasium as gym
 import numpy as np
@@ -103,47 +104,64 @@ class EmphaticTD(OffPolicyUpdate):
         self.w += self.alpha * self.emphasis * rho * self.error(x, reward, next_x) * x
 
 
-def weights_by_step(
-    method: OffPolicyUpdate,
-    env: gym.Env[Any, Any],
-    features: NDArray[np.float64],
-    target: NDArray[np.float64],
-    behavior: NDArray[np.float64],
-    steps: int,
-    seed: int,
-) -> NDArray[np.float64]:
-    """Returns the weights before the first step and after each one, (steps + 1, d).
+class Transition(NamedTuple):
+    """A step of an episode."""
+
+    state: int
+    reward: float
+    next_state: int
+    terminated: bool
+    """Whether the next state is terminal, so that its value is zero."""
+    over: bool
+    """Whether the episode ends here."""
+    rho: float
+    """The importance sampling ratio of the action."""
+
+
+def transitions(
+    env: gym.Env[Any, Any], target: NDArray[np.float64], behavior: NDArray[np.float64], seed: int
+) -> Iterator[Transition]:
+    """Yields the steps of one episode after another, without end.
 
     The random numbers are those of :func:`qtab.estimate_values`: the environment's generator draws the first state of
     an episode and the next states, and the agent's generator one ``random()`` for each action of a behavior that is not
     deterministic, in the order state, action, next state.
 
     Args:
-        method: The method, with its initial weights.
         env: An environment whose observations are the numbers of its states.
-        features: (states, d): the feature vectors.
         target: (states, actions): the probabilities of the policy whose values are estimated.
         behavior: (states, actions): the probabilities of the policy that acts.
-        steps: The number of steps; a new episode begins where one ends.
         seed: The seed of both generators.
     """
     rng = np.random.default_rng(np.random.SeedSequence(seed).spawn(1)[0])
     follows, acts = policy_of(TablePolicy(target), env), policy_of(TablePolicy(behavior), env)
-    weights = np.empty((steps + 1, len(method.w)))
-    weights[0] = method.w
-    state, over = int(env.reset(seed=seed)[0]), False
-    method.start_episode()
-    for step in range(steps):
-        if over:
-            state = int(env.reset()[0])
-            method.start_episode()
+    state = int(env.reset(seed=seed)[0])
+    while True:
         answer = acts(state, [state])
         action = sampled(answer, rng)
         rho = probability(follows(state, [state]), action) / probability(answer, action)
-        observation, reward, terminated, truncated, _ = env.step(action)
-        next_state, over = int(observation), terminated or truncated
-        next_x = np.zeros(features.shape[1]) if terminated else features[next_state]
-        method.update(features[state], float(reward), next_x, rho)
-        weights[step + 1] = method.w
-        state = next_state
-    return weights
+        next_state, reward, terminated, truncated, _ = env.step(action)
+        over = terminated or truncated
+        yield Transition(state, float(reward), int(next_state), terminated, over, rho)
+        state = int(env.reset()[0]) if over else int(next_state)
+
+
+def weights_by_step(
+    method: OffPolicyUpdate, features: NDArray[np.float64], steps: Iterable[Transition]
+) -> NDArray[np.float64]:
+    """Returns the weights before the first step and after each one, (steps + 1, d).
+
+    Args:
+        method: The method, with its initial weights.
+        features: (states, d): the feature vectors.
+        steps: The steps, from :func:`transitions`.
+    """
+    weights = [method.w.copy()]
+    method.start_episode()
+    for step in steps:
+        next_x = np.zeros(features.shape[1]) if step.terminated else features[step.next_state]
+        method.update(features[step.state], step.reward, next_x, step.rho)
+        weights.append(method.w.copy())
+        if step.over:
+            method.start_episode()
+    return np.array(weights)

@@ -4,6 +4,7 @@ import dataclasses
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
+from itertools import islice
 from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 
 import gymnasium as gym
@@ -16,7 +17,7 @@ from qtab.book.result import Draw, Result
 from qtab.book.runner import FloatArray
 from qtab.prediction.linear import LinearGeometry, expected_updates, linear_geometry
 from qtab.prediction.linear.expected_updates import ExpectedMethod
-from qtab.prediction.reference.off_policy import TDC, OffPolicyUpdate, SemiGradientTD, weights_by_step
+from qtab.prediction.reference.off_policy import TDC, OffPolicyUpdate, SemiGradientTD, transitions, weights_by_step
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -57,7 +58,8 @@ class Sampled:
         env: Any = gym.make(ENV, disable_env_checker=True)
         plain = env.unwrapped
         method = self.method(np.array(INITIAL_WEIGHTS), self.learning_rate, DISCOUNT, self.second_learning_rate)
-        return weights_by_step(method, env, plain.features, plain.target, plain.behavior, UPDATES, seed)
+        steps = transitions(env, plain.target, plain.behavior, seed)
+        return weights_by_step(method, plain.features, islice(steps, UPDATES))
 
 
 @dataclass(frozen=True)
