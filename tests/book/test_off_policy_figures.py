@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import qtab
+from qtab.book.figures.chapter_11 import figure_11_3
 from qtab.book.figures.chapter_11.baird import UPPER, CounterexampleExperiment
 from qtab.book.result import Result
 
@@ -68,3 +69,29 @@ def test_several_runs_are_averaged_with_their_standard_errors() -> None:
     assert line.error[-1] > 0
     [exact] = [line for line in result.lines if line.name == "expected TDC: w8"]
     assert exact.runs == 1
+
+
+def test_the_smallest_errors_of_the_split_examples_are_at_the_books_values() -> None:
+    split = {line.name: line.mean.tolist() for line in computed("example-11.2").lines}
+    presplit = {line.name: line.mean.tolist() for line in computed("example-11.3").lines}
+    assert split["true values"] == split["TD fixed point"] == split["smallest Bellman error"] == [0.5, 1.0, 0.0]
+    assert split["smallest TD error"] == [0.5, 0.75, 0.25]
+    assert presplit["true values"] == [1.0, 0.0, 1.0, 0.0]
+    assert presplit["TD fixed point"] == [0.5, 0.5, 1.0, 0.0]
+    assert presplit["smallest Bellman error"] == presplit["smallest TD error"] == [0.5, 0.5, 0.75, 0.25]
+
+
+def test_distances_in_the_plane_are_errors() -> None:
+    places = {line.name: np.array([line.x[0], line.mean[0]]) for line in computed("figure-11.3").lines}
+    geometry, weights = figure_11_3.geometry(), figure_11_3.weights()
+    arrow = np.linalg.norm(places[figure_11_3.BACKED_UP] - places[figure_11_3.ANY])
+    assert arrow == pytest.approx(np.sqrt(geometry.projected_bellman_error(weights[figure_11_3.ANY])))
+    best, *others = figure_11_3.POINTS
+    for name in others:
+        # Pythagoras: the value error is the distance from the plane and the distance within it.
+        square = geometry.value_error(weights[best]) + ((places[name] - places[best]) ** 2).sum()
+        assert square == pytest.approx(geometry.value_error(weights[name]))
+    apart = [np.linalg.norm(places[one] - places[other]) for one, other in (others, (best, others[0]))]
+    assert min(apart) > 0.5
+    ax = computed("figure-11.3").plot()
+    assert {text.get_text() for text in ax.texts} >= set(places)

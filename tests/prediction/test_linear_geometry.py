@@ -62,6 +62,24 @@ def test_the_bellman_error_of_the_a_presplit_example_is_minimal_at_the_books_val
     np.testing.assert_allclose(found.td_fixed_point, [0.5, 1.0, 0.0], atol=1e-14)
 
 
+def test_processes_with_the_same_data_have_different_bellman_errors() -> None:
+    """Example 11.4: with a value of zero everywhere, BE is 0 in the first process and 2/3 in the second."""
+    to_a, to_b = (0.5, 0, 1.0, False), (0.5, 1, -1.0, False)
+    first = linear_geometry(chain([(1.0, 1, 0.0, False)], [to_a, to_b], start=[1.0, 0.0]), "random", discount=0.9)
+    either = [(0.5, 1, 0.0, False), (0.5, 2, 0.0, False)]
+    hidden = [(probability, state, -1.0, False) for probability, state, _, _ in either]
+    second = linear_geometry(
+        chain(either, [(1.0, 0, 1.0, False)], hidden, start=[1.0, 0.0, 0.0]), "random", np.array([0, 1, 1]), 0.9
+    )
+    np.testing.assert_allclose(first.distribution, [1 / 3, 2 / 3])
+    np.testing.assert_allclose(second.distribution, [1 / 3] * 3)
+    assert first.bellman_error([0.0, 0.0]) == 0.0
+    assert second.bellman_error([0.0, 0.0]) == pytest.approx(2 / 3)
+    # What depends on the data alone is the same.
+    for objective in ("td_error", "projected_bellman_error"):
+        np.testing.assert_allclose(second.minimizer(objective), first.minimizer(objective), atol=1e-12)
+
+
 @pytest.mark.parametrize("trace_decay", [0.0, 0.6])
 @pytest.mark.parametrize("objective", OBJECTIVES)
 def test_no_other_weights_have_a_smaller_error(objective: Any, trace_decay: float) -> None:

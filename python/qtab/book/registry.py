@@ -16,7 +16,7 @@ from qtab.book.figures.chapter_06 import cliff, example_6_2, example_6_5, figure
 from qtab.book.figures.chapter_08 import changing_mazes, example_8_4, figure_8_2, figure_8_7, figure_8_8
 from qtab.book.figures.chapter_09 import figure_9_1, figure_9_2, figure_9_10, section_9_8
 from qtab.book.figures.chapter_10 import figure_10_1, figure_10_5
-from qtab.book.figures.chapter_11 import baird
+from qtab.book.figures.chapter_11 import baird, figure_11_3, split_examples
 from qtab.book.figures.chapter_13 import short_corridor
 from qtab.book.result import Result
 
@@ -62,7 +62,8 @@ CHAPTERS: Sequence[Chapter] = (
     _chapter(
         11,
         "Off-policy methods with approximation",
-        *(baird.FIGURE_11_2, baird.FIGURE_11_5, baird.FIGURE_11_6),
+        *(baird.FIGURE_11_2, figure_11_3, split_examples.EXAMPLE_11_2, split_examples.EXAMPLE_11_3),
+        *(baird.FIGURE_11_5, baird.FIGURE_11_6),
     ),
     _chapter(
         12,
