@@ -11,11 +11,23 @@ A solution is plain Python with NumPy and Gymnasium. Each exercise is a module i
 
 from qtab.exercises.collection import EXERCISES, find
 from qtab.exercises.exercise import Exercise
+from qtab.exercises.function_check import FunctionCheck
 from qtab.exercises.grader import check
+from qtab.exercises.learner_check import LearnerCheck
 from qtab.exercises.record import Difference
 from qtab.exercises.report import CheckResult, Report
 
-__all__ = ["EXERCISES", "CheckResult", "Difference", "Exercise", "Report", "check", "find"]
+__all__ = [
+    "EXERCISES",
+    "CheckResult",
+    "Difference",
+    "Exercise",
+    "FunctionCheck",
+    "LearnerCheck",
+    "Report",
+    "check",
+    "find",
+]
 
 
 def __dir__() -> list[str]:

@@ -1,6 +1,7 @@
 """All exercises, by name and by number."""
 
 from collections.abc import Mapping
+from importlib import import_module
 
 from qtab._utils.shown import did_you_mean, shown
 from qtab.exercises.definitions import (
@@ -39,20 +40,36 @@ EXERCISES: Mapping[str, Exercise] = {
 """The exercises by their names, in the book's order."""
 
 
-def find(exercise: str | int) -> Exercise:
+def find(exercise: str | int | Exercise) -> Exercise:
     """Returns an exercise; ``print(find("sarsa").starter)`` shows its task.
 
     Args:
-        exercise: Its name, such as ``"sarsa"``, or its number, such as 7 or ``"7"``.
+        exercise: Its name, such as ``"sarsa"``, or its number, such as 7 or ``"7"``. An exercise of your own is
+            ``"module:NAME"``, the module that defines it and its name there, or the exercise itself.
 
     Raises:
         ValueError: if there is no such exercise.
-        TypeError: if ``exercise`` is neither text nor an integer.
+        TypeError: if ``exercise`` is neither text, an integer nor an exercise.
+        ImportError: if the module of an exercise of your own cannot be imported.
     """
+    if isinstance(exercise, Exercise):
+        return exercise
+    if isinstance(exercise, str) and ":" in exercise:
+        return _own(exercise)
     if isinstance(exercise, bool) or not isinstance(exercise, str | int):
-        raise TypeError(f"exercise must be a name or a number, got {shown(exercise)}")
+        raise TypeError(f"exercise must be a name, a number or an Exercise, got {shown(exercise)}")
     name = str(exercise).strip().lower().replace("-", "_").replace(" ", "_")
     for found in EXERCISES.values():
         if name in (found.name, str(found.number)):
             return found
     raise ValueError(f"there is no exercise {exercise!r}{did_you_mean(name, EXERCISES)}: see qtab.exercises.EXERCISES")
+
+
+def _own(exercise: str) -> Exercise:
+    """Returns an exercise that a module defines, by ``"module:NAME"``."""
+    module, _, name = exercise.partition(":")
+    defined = {key: value for key, value in vars(import_module(module)).items() if isinstance(value, Exercise)}
+    if name in defined:
+        return defined[name]
+    known = f"its exercises are {', '.join(defined)}" if defined else "it defines no exercise"
+    raise ValueError(f"exercise must be module:NAME, got {exercise!r}{did_you_mean(name, defined)}: {known}")

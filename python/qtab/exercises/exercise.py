@@ -1,7 +1,7 @@
 """An exercise: the function to write, its checks, and the mistakes to recognise."""
 
 import inspect
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -29,10 +29,10 @@ class Check(Protocol):
 @with_fields
 @dataclass(frozen=True, repr=False)
 class Exercise:
-    """A function to write."""
+    """A function to write. Pass an exercise of your own to :func:`qtab.exercises.check` in place of a name."""
 
     number: int
-    """Its number, from 1 to 12."""
+    """Its number, from 1 to 12; any other number in an exercise of your own."""
     name: str
     """Its name, which is that of the function: ``"sarsa"``."""
     title: str
@@ -42,11 +42,14 @@ class Exercise:
     starter: str
     """The code to start from: the function without its body. Its docstring is the task."""
     model: Solution
-    """The function of the reference. Its parameter ``wrong`` has the keys of mistakes to build in."""
-    mistakes: Sequence[str]
-    """The keys of the mistakes that a check may recognise."""
+    """The function of the reference. Its parameter ``wrong`` has the keys of mistakes to build in, a frozenset of str;
+    without mistakes, it needs no such parameter."""
+    mistakes: Sequence[str] | Mapping[str, str]
+    """The keys of the mistakes that a check may recognise: those that qtab explains, or explanations of your own by
+    their keys; empty for none."""
     checks: Sequence[Check]
-    """The checks, from simple to hard."""
+    """The checks, from simple to hard: each a :class:`~qtab.exercises.FunctionCheck` or a
+    :class:`~qtab.exercises.LearnerCheck`."""
 
     def __repr__(self) -> str:
         """Returns one line; ``print(exercise.starter)`` shows the task."""

@@ -1,12 +1,14 @@
-"""Checks of functions that are no learners: several calls, whose results are compared."""
+"""Checks of functions that are not learners: several calls, whose results are compared."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass
+from numbers import Real
 from typing import Any
 
 import numpy as np
 
+from qtab._utils.fields import with_fields
 from qtab.exercises.exercise import Solution, parameters
 from qtab.exercises.guard import guarded
 from qtab.exercises.record import Event, Misuse, Record, equal
@@ -15,18 +17,21 @@ from qtab.exercises.recording_env import RANDOM_NUMBERS
 Arguments = Mapping[str, Any]
 
 
+@with_fields
 @dataclass(frozen=True)
 class FunctionCheck:
-    """Calls a function several times."""
+    """A check of an exercise: calls a function several times, and compares what it returns, changes and draws."""
 
     title: str
+    """The settings, in a few words."""
     model: Solution
+    """The function of the reference, as in the exercise. The names of its parameters are those of the arguments."""
     calls: Callable[[], Iterable[Arguments]]
     """Returns the arguments of each call by name, always the same ones. Calls may share arrays."""
     returns: Sequence[tuple[str, Any]] = ()
-    """The name and an example of each returned value: an array of the right shape, or an integer."""
+    """The name and an example of each returned value: an array of the right shape and dtype, an int or a float."""
     changes: Sequence[str] = ()
-    """The arguments that the function changes."""
+    """The names of the arguments, all arrays, that the function changes. It must not change any others."""
 
     def run(self, function: Solution, record: Record, seconds: float) -> None:
         """Calls a function, and records what it returns, changes and draws."""
@@ -63,6 +68,10 @@ class FunctionCheck:
                 if not isinstance(value, int | np.integer) or isinstance(value, bool):
                     raise Misuse(f"{place}: {name} must be an integer, got {_kind(value)}")
                 yield name, int(value)
+            elif isinstance(example, float):
+                if not isinstance(value, Real) or isinstance(value, bool):
+                    raise Misuse(f"{place}: {name} must be a number, got {_kind(value)}")
+                yield name, np.asarray(value, dtype=np.float64)
             else:
                 wanted = f"an array of shape {example.shape} and dtype {example.dtype}"
                 if not isinstance(value, np.ndarray) or value.shape != example.shape or value.dtype != example.dtype:

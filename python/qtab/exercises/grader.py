@@ -7,7 +7,7 @@ from typing import Any
 from qtab._utils import checks
 from qtab._utils.shown import shown
 from qtab.exercises.collection import find
-from qtab.exercises.exercise import Check
+from qtab.exercises.exercise import Check, Exercise
 from qtab.exercises.guard import GLOBAL_NUMPY, GLOBAL_PYTHON
 from qtab.exercises.recognition import MODEL_SECONDS, recognised
 from qtab.exercises.record import Misuse, Record, equal, first_difference
@@ -20,7 +20,9 @@ NEVER_CHANGED = (
 )
 
 
-def check(exercise: str | int, solution: Callable[..., Any], *, exact: bool = True, seconds: float = 10.0) -> Report:
+def check(
+    exercise: str | int | Exercise, solution: Callable[..., Any], *, exact: bool = True, seconds: float = 10.0
+) -> Report:
     """Checks a function that you wrote against the reference, to the last bit.
 
     The function is called with the arguments that its exercise lists, in their order, in a few small checks. A
@@ -33,7 +35,8 @@ def check(exercise: str | int, solution: Callable[..., Any], *, exact: bool = Tr
     See :mod:`qtab.exercises.time_limit` for what the time limit cannot end.
 
     Args:
-        exercise: The name of the exercise, such as ``"sarsa"``, or its number, from 1 to 12.
+        exercise: The name of the exercise, such as ``"sarsa"``, or its number, from 1 to 12; or an
+            :class:`~qtab.exercises.Exercise` of your own.
         solution: The function.
         exact: Whether the numbers must be equal to the last bit. With False a check passes if all numbers of it are
             equal except for rounding (a relative difference of 1e-9).

@@ -34,9 +34,9 @@ def guarded(function: Callable[..., Any], arguments: Sequence[Any], record: Reco
             return call_within(seconds, function, arguments)
     except Misuse:
         raise
-    except TimeIsUp:
-        limit = f"{seconds:g} second{'' if seconds == 1 else 's'}"
-        raise Misuse(f"it was stopped after {limit}: is there a loop that never ends?") from None
+    except TimeIsUp as error:
+        where = f"{seconds:g} second{'' if seconds == 1 else 's'}{_line(function, error)}"
+        raise Misuse(f"it was stopped after {where}. Is there a loop that never ends?") from None
     except (Exception, SystemExit) as error:
         raise Misuse(f"it raised {_named(error)}{_line(function, error)}") from None
     finally:

@@ -9,6 +9,7 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
+from qtab._utils.fields import with_fields
 from qtab.config import Config
 from qtab.envs.metadata.quantities import quantities_of
 from qtab.exercises.exercise import Solution, parameters
@@ -19,15 +20,22 @@ from qtab.reference.parts.discretizers import TileCoding
 from qtab.reference.parts.streams import agent_stream
 
 
+@with_fields
 @dataclass(frozen=True)
 class LearnerCheck:
-    """Lets a learner learn for a few episodes."""
+    """A check of an exercise: lets a learner learn for a few episodes, and compares its table after each step."""
 
     title: str
+    """The settings, in a few words."""
     model: Solution
+    """The function of the reference, as in the exercise. Its parameters are among ``env``, the name of the table,
+    ``episodes``, ``rng`` and the names of ``settings``."""
     env_id: str
+    """Gymnasium's id of an environment with Discrete observations and actions."""
     episodes: int
+    """The number of episodes."""
     max_episode_steps: int
+    """The time limit of an episode, in steps."""
     settings: Mapping[str, Any] = field(default_factory=dict)
     """The learning rate, the discount and the others, by the names of the parameters."""
     table: str = "q"
@@ -35,6 +43,7 @@ class LearnerCheck:
     spread: float = 0.0
     """The initial values lie between minus this number and this number."""
     seed: int = 0
+    """The seed of the environment, of ``rng`` and of the initial values."""
 
     def run(self, function: Solution, record: Record, seconds: float) -> None:
         """Calls a learner, and records its tables, draws and actions."""

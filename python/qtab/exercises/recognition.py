@@ -1,6 +1,7 @@
 """Recognises mistakes: builds each of them into the reference, and looks for the one that gives the same numbers."""
 
-from collections.abc import Sequence
+import inspect
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import combinations
@@ -68,20 +69,23 @@ def recognised(exercise: Exercise, records: Sequence[Record]) -> Recognition:
         if not same and ROUNDING in exercise.mistakes and _explains(exercise, {ROUNDING}, finished, exact=True):
             return Recognition((MISTAKES[ROUNDING],), in_all_checks=in_all)
         return Recognition()
+    texts = exercise.mistakes if isinstance(exercise.mistakes, Mapping) else MISTAKES
     for exact in (True, False):
         keys = [key for key in exercise.mistakes if exact or key != ROUNDING]
         single = [key for key in keys if _explains(exercise, {key}, finished, exact)]
         if single:
-            return Recognition(tuple(MISTAKES[key] for key in single), len(single) > 1, exact, in_all)
+            return Recognition(tuple(texts[key] for key in single), len(single) > 1, exact, in_all)
         for pair in combinations(keys, 2):
             if _explains(exercise, set(pair), finished, exact):
-                return Recognition(tuple(MISTAKES[key] for key in pair), False, exact, in_all)
+                return Recognition(tuple(texts[key] for key in pair), False, exact, in_all)
     return Recognition()
 
 
 def _explains(exercise: Exercise, keys: set[str], finished: Sequence[tuple[Check, Record]], exact: bool) -> bool:
     """Returns whether the reference with these mistakes built in gives the same records."""
-    model = partial(exercise.model, wrong=frozenset(keys))
+    model = exercise.model
+    if "wrong" in inspect.signature(model).parameters:
+        model = partial(model, wrong=frozenset(keys))
     for one, record in finished:
         theirs = Record(_Same(record.events, exact))
         try:

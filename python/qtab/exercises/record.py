@@ -130,7 +130,8 @@ def _entries(quantity: str, mine: Any, other: Any, before: Any) -> Iterator[str]
     for index in places[:MAX_ENTRIES]:
         one, two = shown_apart(mine, other, tuple(index))
         old = f"before {before[tuple(index)]:.6g}, " if isinstance(before, np.ndarray) else ""
-        yield f"{quantity}[{', '.join(map(str, index))}]: {old}yours {one}, reference {two}"
+        entry = f"{quantity}[{', '.join(map(str, index))}]" if index else quantity
+        yield f"{entry}: {old}yours {one}, reference {two}"
     if len(places) > MAX_ENTRIES:
         yield f"and {len(places) - MAX_ENTRIES} more entries"
 

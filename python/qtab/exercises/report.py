@@ -99,6 +99,8 @@ class Report:
     def _heading(self) -> str:
         count = sum(result.passed for result in self.results)
         found = f"all {count} checks passed" if self.passed else f"{count} of {len(self.results)} checks passed"
+        if len(self.results) == 1:
+            found = f"its check {'passed' if self.passed else 'failed'}"
         return f"exercise {self.exercise.number}, {self.exercise.name}: {found}"
 
     def _notes(self) -> list[str]:
