@@ -24,6 +24,7 @@ SUBCOMMANDS = {
     "sweep": "train many settings with many seeds, as a study file describes; resumes if called again",
     "report": "turn the store of a sweep into tables, plots and one HTML page",
     "book": "run an experiment of Sutton & Barto's book: its settings, a table, a figure",
+    "exercises": "list the exercises, hand them out to a class, grade a folder of submissions",
     "playground": "open a page that trains agents in the browser",
     "bench": "compare the speed of training with the article's plain loop",
     "completion": "print the script that completes commands, flags and choices in bash or zsh",

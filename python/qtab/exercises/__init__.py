@@ -5,10 +5,15 @@
     print(qtab.exercises.find("sarsa").starter)  # the task, and the code to start from
     qtab.exercises.check("sarsa", sarsa)  # shows where your function and the reference part
     qtab.exercises.check("sarsa", sarsa).assert_passed()  # in pytest
+    qtab.exercises.hand_out(["epsilon_greedy", "sarsa"], "homework.ipynb")  # for a class
+    print(qtab.exercises.grade("submissions", ["epsilon_greedy", "sarsa"]))
 
 A solution is plain Python with NumPy and Gymnasium. Each exercise is a module in :mod:`qtab.exercises.definitions`.
 """
 
+from qtab.exercises.classroom.grading import grade
+from qtab.exercises.classroom.handing_out import hand_out
+from qtab.exercises.classroom.marks import Mark, Marks
 from qtab.exercises.collection import EXERCISES, find
 from qtab.exercises.exercise import Exercise
 from qtab.exercises.function_check import FunctionCheck
@@ -24,9 +29,13 @@ __all__ = [
     "Exercise",
     "FunctionCheck",
     "LearnerCheck",
+    "Mark",
+    "Marks",
     "Report",
     "check",
     "find",
+    "grade",
+    "hand_out",
 ]
 
 

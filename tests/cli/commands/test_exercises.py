@@ -1,0 +1,28 @@
+"""``qtab exercises`` as a teacher runs it."""
+
+from pathlib import Path
+
+from qtab.exercises import EXERCISES
+from support.processes.command import qtab_here
+
+
+def test_it_lists_the_exercises_and_shows_a_task(tmp_path: Path) -> None:
+    listed = qtab_here("exercises", cwd=tmp_path).stdout.splitlines()
+    assert [line.split()[1] for line in listed] == list(EXERCISES)
+    assert qtab_here("exercises", "2", cwd=tmp_path).stdout.rstrip() == EXERCISES["sample_average"].starter.rstrip()
+
+
+def test_it_hands_out_and_grades(tmp_path: Path) -> None:
+    folder = tmp_path / "submissions"
+    folder.mkdir()
+    done = qtab_here("exercises", "sample_average,1", "--out", "submissions/ada.ipynb", cwd=tmp_path)
+    assert done.stdout == f"Saved the tasks to {Path('submissions/ada.ipynb')}\n", done.stderr
+    grading = ("--grade", "submissions", "--save", "marks.csv", "--reports", "reports")
+    done = qtab_here("exercises", "sample_average,1", *grading, cwd=tmp_path)
+    assert done.stdout.splitlines()[:2] == [
+        "student  sample_average  epsilon_greedy  sum",
+        "ada      0 of 2          0 of 4          0 of 6",
+    ], done.stderr
+    assert done.stderr == ""
+    assert (tmp_path / "marks.csv").read_text(encoding="utf-8").endswith("\nada,0,0,0\n")
+    assert "2 checks passed" in (tmp_path / "reports" / "ada.txt").read_text(encoding="utf-8")
