@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 import qtab
-from qtab.exercises import EXERCISES, check, find
+from qtab.exercises import EXERCISES, check, definitions, find
 from qtab.exercises.mistakes import MISTAKES
-from qtab.exercises.record import Record, first_difference
+from qtab.exercises.record import Misuse, Record, first_difference
 
 SARSA = find("sarsa").model
 NAMES = sorted(EXERCISES)
@@ -182,6 +182,12 @@ def test_a_copied_table_and_an_unused_generator_are_remarked() -> None:
     assert any("rng is never used" in remark for remark in check("sarsa", own_generator).advice)
 
 
+def test_returned_arrays_are_not_said_to_change_in_place() -> None:
+    report = check("value_iteration", lambda P, *_: (np.zeros(len(P)), np.zeros(len(P), dtype=np.int64)))  # noqa: N803
+    assert not report.passed
+    assert report.advice == ()
+
+
 def test_a_report_is_an_assertion_and_a_table() -> None:
     report = check(7, book_sarsa)
     with pytest.raises(AssertionError, match=r"exercise 7, sarsa: 0 of 3 checks passed"):
@@ -205,3 +211,17 @@ def test_exercises_are_found_by_name_and_number() -> None:
         qtab.exercises.check("sarsa", 3)  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="seconds must be positive"):
         check("sarsa", SARSA, seconds=0)
+
+
+def test_mistakes_that_hardly_converge_do_not_delay_a_report() -> None:
+    exercise, sweeps = find("value_iteration"), definitions.value_iteration.MOST_SWEEPS
+    random_walk = partial(exercise.model, wrong=frozenset(["average_not_max", "no_discount"]))  # beside a cliff
+    with pytest.raises(Misuse, match=f"no convergence in {sweeps} sweeps"):
+        exercise.checks[0].run(random_walk, Record(), 60.0)
+
+    def fewer_sweeps(P, discount, tolerance):  # noqa: N803 - Gymnasium's name
+        return exercise.model(P, discount, 100 * tolerance)
+
+    report = check("value_iteration", fewer_sweeps)
+    assert not report.passed
+    assert report.mistakes == ()

@@ -18,6 +18,10 @@ class Check(Protocol):
     def title(self) -> str:
         """The settings, in a few words."""
 
+    @property
+    def changes(self) -> Sequence[str]:
+        """The names of the arrays that the function changes in place."""
+
     def run(self, function: Solution, record: Record, seconds: float) -> None:
         """Calls a function, and fills its record.
 

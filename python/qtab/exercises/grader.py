@@ -67,7 +67,7 @@ def check(
     report = Report(found, tuple(results))
     if report.passed:
         return report
-    return replace(report, recognition=recognised(found, records), advice=tuple(_advice(records, references)))
+    return replace(report, recognition=recognised(found, records), advice=tuple(_advice(found, records, references)))
 
 
 def _record(one: Check, function: Callable[..., Any], seconds: float) -> Record:
@@ -80,8 +80,9 @@ def _record(one: Check, function: Callable[..., Any], seconds: float) -> Record:
     return record
 
 
-def _advice(records: Sequence[Record], references: Sequence[Record]) -> Iterator[str]:
-    """Yields remarks on tables that never change and generators that are never used, if all calls returned."""
+def _advice(exercise: Exercise, records: Sequence[Record], references: Sequence[Record]) -> Iterator[str]:
+    """Yields remarks on arrays that never change and generators that are never used, if all calls returned."""
+    tables = {name for one in exercise.checks for name in one.changes}
     if any(fault not in (GLOBAL_NUMPY, GLOBAL_PYTHON) for record in records for fault in record.faults):
         return
     for quantity in {event.quantity: None for reference in references for event in reference.events}:
@@ -89,7 +90,7 @@ def _advice(records: Sequence[Record], references: Sequence[Record]) -> Iterator
             continue
         if quantity == RANDOM_NUMBERS:
             yield "rng is never used: draw all random numbers from it"
-        elif quantity in ("q", "w", "values", "estimates", "counts"):
+        elif quantity in tables:
             yield NEVER_CHANGED.format(table=quantity)
 
 

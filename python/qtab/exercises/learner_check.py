@@ -45,6 +45,11 @@ class LearnerCheck:
     seed: int = 0
     """The seed of the environment, of ``rng`` and of the initial values."""
 
+    @property
+    def changes(self) -> tuple[str, ...]:
+        """The name of the array that the learner changes."""
+        return (self.table,)
+
     def run(self, function: Solution, record: Record, seconds: float) -> None:
         """Calls a learner, and records its tables, draws and actions."""
         with closing(gym.make(self.env_id, max_episode_steps=self.max_episode_steps)) as env:

@@ -110,7 +110,13 @@ MISTAKES: Mapping[str, str] = {
     "no_probabilities": "the probabilities of the next states are missing in the sum",
     "uniform_actions": "all actions have the same weight. Weigh them by policy[state, action]",
     "discounted_reward": "the reward is discounted. Only the value of the next state is",
-    "one_sweep_more": "there is one sweep too many: stop after the first one in which no value changes by tolerance",
+    "one_sweep_more": (
+        "there is one sweep too many: stop after the first one in which no value changes by more than tolerance"
+    ),
+    "signed_change": (
+        "a value that falls does not count as changed, so that the sweeps end too soon. Take the largest absolute "
+        "change, abs(new - old)"
+    ),
     "average_not_max": "a value is the mean of the action values. It must be the largest",
 }
 """What is wrong and how to fix it, by the key of the mistake."""

@@ -10,7 +10,10 @@ from qtab.exercises.definitions.tables import Transitions, action_value, transit
 from qtab.exercises.exercise import Exercise
 from qtab.exercises.function_check import FunctionCheck
 from qtab.exercises.parts import NONE, Mistakes
+from qtab.exercises.record import Misuse
 
+MOST_SWEEPS = 1000
+"""The number of sweeps after which the reference gives up, if mistakes are built in: some of them hardly converge."""
 STARTER = '''\
 import numpy as np
 
@@ -39,15 +42,23 @@ def value_iteration(
     tolerance: float,
     wrong: Mistakes = NONE,
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Returns the optimal values and a greedy policy."""
-    values, extra = np.zeros(len(P)), "one_sweep_more" in wrong
+    """Returns the optimal values and a greedy policy.
+
+    Raises:
+        Misuse: if the values do not converge with the mistakes that are built in.
+    """
+    values, extra, sweeps = np.zeros(len(P)), "one_sweep_more" in wrong, 0
     while True:
+        sweeps += 1
+        if wrong and sweeps > MOST_SWEEPS:
+            raise Misuse(f"no convergence in {MOST_SWEEPS} sweeps")
         before = values.copy()
         source = before if "two_arrays" in wrong else values
         for state in range(len(P)):
             q = [action_value(P, source, state, action, discount, wrong) for action in range(len(P[state]))]
             values[state] = np.mean(q) if "average_not_max" in wrong else max(q)
-        if np.abs(values - before).max() <= tolerance:
+        change = values - before
+        if (change if "signed_change" in wrong else np.abs(change)).max() <= tolerance:
             if not extra:
                 break
             extra = False
@@ -76,6 +87,6 @@ EXERCISE = Exercise(
     section="4.4",
     starter=STARTER,
     model=value_iteration,
-    mistakes=("two_arrays", "one_sweep_more", "average_not_max", "no_discount", "discounted_reward"),
+    mistakes=("two_arrays", "one_sweep_more", "signed_change", "average_not_max", "no_discount", "discounted_reward"),
     checks=[_check("CliffWalking-v1", 48, 0.9), _check("FrozenLake-v1", 16, 0.95)],
 )
