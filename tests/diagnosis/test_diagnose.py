@@ -1,5 +1,6 @@
 """The article's run is diagnosed and led to a solved task; evidence, reports and bad input."""
 
+import json
 from dataclasses import replace
 from typing import Any
 
@@ -37,6 +38,28 @@ def test_the_articles_run_has_its_faults(article: qtab.Run, diagnosis: qtab.Diag
     reached = article.episode_returns > -200
     assert diagnosis["exploration"].evidence["first episode that reaches it"] == int(np.argmax(reached))
     assert diagnosis["exploration"].evidence["second half"] == reached[2500:].mean()
+
+
+def test_shares_are_shown_in_percent_and_stored_as_numbers(diagnosis: qtab.Diagnosis) -> None:
+    grid = diagnosis["grid too coarse"]
+    share = grid.evidence["share of steps that stay in their cell"]
+    assert 0.6 < share < 0.7
+    assert f"cells: 285; share of steps that stay in their cell: {100 * share:.3g} %\n" in str(grid)
+    assert f"share of steps that stay in their cell: {100 * share:.3g} %" in grid._repr_html_()
+    assert json.loads(json.dumps(dict(grid.evidence))) == grid.evidence
+
+
+def test_closer_limits_are_nowhere_wider() -> None:
+    low, high = np.array([-2.4, -20.0, -0.21, -20.0]), np.array([2.4, 20.0, 0.21, 20.0])
+    settings: dict[str, Any] = {"discretizer": "bins", "bins": (3, 3, 6, 6), "low": tuple(low), "high": tuple(high)}
+    found = qtab.diagnose(qtab.train("CartPole-v1", episodes=500, seed=0, **settings), seeds=0)["limits too wide"]
+    (change,) = found.changes
+    assert (np.array(change["low"]) >= low).all()
+    assert (np.array(change["high"]) <= high).all()
+    assert change["high"][0] == 2.4  # the bounds of the space are wider
+    assert change["high"][1] < 10
+    assert "bins of cart velocity: 3; bins that its values cover:" in str(found)
+    assert "The values of cart velocity lie within" in found.meaning
 
 
 @pytest.mark.slow

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab.diagnosis.facts import Facts
-from qtab.diagnosis.finding import Finding, Unchecked, as_keywords, changes, percent
+from qtab.diagnosis.finding import Finding, Share, Unchecked, as_keywords, changes, percent
 
 MOST_UNCHANGED = 0.5
 """A larger share of steps that stay in their cell is reported."""
@@ -25,11 +25,11 @@ def coarse_grid(facts: Facts) -> Finding | Unchecked | None:
     if unchanged <= MOST_UNCHANGED:
         return None
     shape = facts.run.discretizer.shape
-    evidence = {"cells": float(np.prod(shape)), "share of steps that stay in their cell": unchanged}
+    evidence = {"cells": float(np.prod(shape)), "share of steps that stay in their cell": Share(unchanged)}
     meaning = f"{percent(unchanged)} of the steps do not change the cell: the agent cannot see what they did."
     mixed = mixed_cells(facts)
     if mixed is not None:
-        evidence["share of states whose best action is not their cell's"] = mixed
+        evidence["share of states whose best action is not their cell's"] = Share(mixed)
         meaning += f" {percent(mixed)} of the states need another action than most states of their cell."
     tiles = changes(config, *_tiles(facts))
     return Finding(
@@ -102,13 +102,14 @@ def narrow_limits(facts: Facts) -> Finding | Unchecked | None:
     if share <= MOST_OUTSIDE:
         return None
     component = int(outside.mean(axis=0).argmax())
+    name = _name(facts, component, len(low))
     wide = _covering(facts, observed)
     return Finding(
         title="Many states lie outside the limits of the discretizer.",
         evidence={
-            "share of the last steps outside": share,
-            f"lower limit of component {component}": float(low[component]),
-            f"upper limit of component {component}": float(high[component]),
+            "share of the last steps outside": Share(share),
+            f"lower limit of {name}": float(low[component]),
+            f"upper limit of {name}": float(high[component]),
             "lowest value seen": float(observed[:, component].min()),
             "highest value seen": float(observed[:, component].max()),
         },
@@ -131,15 +132,16 @@ def wide_limits(facts: Facts) -> Finding | Unchecked | None:
     if not coarse.any():
         return None
     component = int(np.where(coarse, covered, np.inf).argmin())
-    close = _covering(facts, observed)
+    name, cells = _name(facts, component, len(low)), "tiles" if facts.config.discretizer == "tiles" else "bins"
+    close = _within(_covering(facts, observed), low, high)
     return Finding(
         title="The limits of the discretizer are too wide to tell states apart.",
         evidence={
-            f"bins or tiles of component {component}": int(counts[component]),
-            "of these, covered by its values": float(covered[component]),
+            f"{cells} of {name}": int(counts[component]),
+            f"{cells} that its values cover": float(covered[component]),
         },
-        meaning=f"The values of component {component} lie within {covered[component]:.2g} of its {counts[component]} "
-        "bins or tiles, so that states which need different actions share them.",
+        meaning=f"The values of {name} lie within {covered[component]:.2g} of its {counts[component]} {cells}, so that "
+        "states which need different actions share them.",
         advice=f"use closer limits: {as_keywords(close)}",
         changes=changes(facts.config, close),
     )
@@ -183,6 +185,21 @@ def _covering(facts: Facts, observed: NDArray[np.float64]) -> dict[str, Any]:
         "low": tuple(np.where(bounded, low, _rounded(least - room, np.floor)).tolist()),
         "high": tuple(np.where(bounded, high, _rounded(most + room, np.ceil)).tolist()),
     }
+
+
+def _within(close: dict[str, Any], low: NDArray[np.float64], high: NDArray[np.float64]) -> dict[str, Any]:
+    """Returns limits that are nowhere wider than the present ones, so that no component loses cells."""
+    closer_low, closer_high = np.maximum(low, close["low"]), np.minimum(high, close["high"])
+    is_range = closer_low < closer_high
+    return {
+        "low": tuple(np.where(is_range, closer_low, low).tolist()),
+        "high": tuple(np.where(is_range, closer_high, high).tolist()),
+    }
+
+
+def _name(facts: Facts, component: int, count: int) -> str:
+    """Returns the name of one of ``count`` components of the observations."""
+    return facts.run.axes[component - count].name  # with time_aware the steps taken come first
 
 
 def _rounded(limits: NDArray[np.float64], outwards: Any) -> NDArray[np.float64]:

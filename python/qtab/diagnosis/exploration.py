@@ -8,7 +8,7 @@ import numpy as np
 
 from qtab.config.options import PREFERENCES
 from qtab.diagnosis.facts import Facts
-from qtab.diagnosis.finding import Finding, Unchecked, as_keywords, change, changes, given, percent
+from qtab.diagnosis.finding import Finding, Share, Unchecked, as_keywords, change, changes, given, percent
 from qtab.diagnosis.learning_rate import overwrites
 from qtab.results.rates import epsilons
 from qtab.results.words import cell_in_words, map_columns
@@ -41,7 +41,7 @@ def coverage(facts: Facts) -> Finding | Unchecked | None:
     return Finding(
         title="Many actions were never tried" + (", or their values never changed." if facts.visits is None else "."),
         evidence={
-            "share of untried actions in visited states": untried,
+            "share of untried actions in visited states": Share(untried),
             "visited states": int(visited.sum()),
             "states of the table": len(visited),
             "updates per tried action": per_entry,
@@ -91,10 +91,10 @@ def exploration(facts: Facts) -> Finding | Unchecked | None:
         return None  # it found the goal, and forgot it
     by_chance = float((facts.random.episode_returns > facts.failure_return).mean())
     first = int(np.argmax(reached)) if reached.any() else None
-    evidence = {
-        "share of episodes that reach the goal, first half": early,
-        "second half": float(reached[half:].mean()),
-        "by random actions": by_chance,
+    evidence: dict[str, float] = {
+        "share of episodes that reach the goal, first half": Share(early),
+        "second half": Share(reached[half:].mean()),
+        "by random actions": Share(by_chance),
     }
     if first is not None:
         evidence["first episode that reaches it"] = first
@@ -210,7 +210,7 @@ def _of_values(facts: Facts) -> Finding | Unchecked | None:
     return Finding(
         title="The agent still explores a lot at the end.",
         evidence={
-            "share of the last steps with a worse action": share_worse,
+            "share of the last steps with a worse action": Share(share_worse),
             setting: float(getattr(config, setting)),
             "typical difference between the actions of a state": typical,
         },

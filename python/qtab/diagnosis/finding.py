@@ -15,6 +15,10 @@ COLUMNS = ("finding", "evidence", "change")
 """The columns of a table of findings."""
 
 
+class Share(float):
+    """A share of a whole, from 0 to 1, which is shown in percent."""
+
+
 @dataclass(frozen=True)
 class Unchecked:
     """A check that could not be made, which is not the same as one that found nothing."""
@@ -55,12 +59,14 @@ class Finding:
 
     def __str__(self) -> str:
         """Returns a few lines: the title, the evidence, the meaning and the advice."""
-        evidence = ", ".join(f"{name} {number_text(value)}" for name, value in self.evidence.items())
+        evidence = "; ".join(f"{name}: {number_text(value)}" for name, value in self.evidence.items())
         return f"{self.title}\n  evidence  {evidence}\n  meaning   {self.meaning}\n  change    {self.advice}"
 
 
 def number_text(value: float) -> str:
-    """Returns a number with four digits, an integer in full."""
+    """Returns a number with four digits, an integer in full, a :class:`Share` in percent."""
+    if isinstance(value, Share):
+        return percent(value)
     return f"{value:,}" if isinstance(value, int) else f"{value:.4g}"
 
 

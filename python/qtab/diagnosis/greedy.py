@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils.shown import counted
-from qtab.diagnosis.finding import Finding, Unchecked, changes, percent
+from qtab.diagnosis.finding import Finding, Share, Unchecked, changes, percent
 from qtab.envs.actions import flat
 from qtab.envs.registry import UNLIMITED_MAX_EPISODE_STEPS
 from qtab.results.run import Run
@@ -127,7 +127,7 @@ def greedy_loop(facts: "Facts") -> Finding | Unchecked | None:
         evidence={
             "greedy policy": float(returns.mean()),
             f"last {len(last)} training episodes": float(last.mean()),
-            "share of greedy episodes that repeat states": share,
+            "share of greedy episodes that repeat states": Share(share),
             "time limit": run.config.max_episode_steps or UNLIMITED_MAX_EPISODE_STEPS,
         },
         meaning=f"{percent(share)} of {counted(len(returns), 'greedy episode')} visit only {counted(states, 'state')} "

@@ -3,7 +3,7 @@
 import numpy as np
 
 from qtab.diagnosis.facts import Facts
-from qtab.diagnosis.finding import Finding, Unchecked, changes, percent
+from qtab.diagnosis.finding import Finding, Share, Unchecked, changes, percent
 from qtab.results.rates import epsilons
 
 MOST_STATES = 0.3
@@ -29,7 +29,7 @@ def too_optimistic(facts: Facts) -> Finding | Unchecked | None:
         evidence={
             "highest initial value": highest,
             "highest possible return": possible,
-            "share of visited states above it": share,
+            "share of visited states above it": Share(share),
         },
         meaning=f"In {percent(share)} of the visited states the best value is still higher than any return can be: the "
         "agent still tries actions that look promising only because they are new.",
@@ -58,7 +58,10 @@ def too_pessimistic(facts: Facts) -> Finding | Unchecked | None:
     best = max(0.0, float(facts.run.episode_returns.max()), _best_value(facts)) / facts.run.discretizer.n_active
     return Finding(
         title="The initial values are too low for so little exploration.",
-        evidence={"mean epsilon": epsilon, "share of visited states with untried actions that look worse": share},
+        evidence={
+            "mean epsilon": epsilon,
+            "share of visited states with untried actions that look worse": Share(share),
+        },
         meaning=f"In {percent(share)} of the visited states an action was never tried, because the values of those "
         "that were tried are higher than the initial ones.",
         advice=f"use higher initial values, such as initial_q={best:g}, or a larger epsilon",

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab.diagnosis.facts import Facts
-from qtab.diagnosis.finding import Finding, Unchecked, as_keywords, changes, percent
+from qtab.diagnosis.finding import Finding, Share, Unchecked, as_keywords, changes, percent
 from qtab.diagnosis.returns import still_improving
 from qtab.results.rates import learning_rates
 from qtab.training.train import train
@@ -90,7 +90,7 @@ def slow_learning(facts: Facts) -> Finding | Unchecked | None:
     longer = {"episodes": 5 * facts.config.episodes}
     return Finding(
         title="The learning rate is too small for so few updates.",
-        evidence={"mean learning rate": rate, "updates per value": updates, "initial value left": left},
+        evidence={"mean learning rate": rate, "updates per value": updates, "initial value left": Share(left)},
         meaning=f"After {updates:,.3g} updates {percent(left)} of the initial value is still in a value.",
         advice=(f"use a larger learning rate, such as learning_rate={faster:g}, or " if is_faster else "")
         + f"train longer, such as episodes={longer['episodes']}",

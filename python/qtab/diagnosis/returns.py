@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from qtab.config.presets import presets
 from qtab.diagnosis.facts import Facts
-from qtab.diagnosis.finding import Finding, Unchecked, changes, percent
+from qtab.diagnosis.finding import Finding, Share, Unchecked, changes, percent
 from qtab.envs.registry import is_registered
 from qtab.results.rates import epsilons
 from qtab.training.verdict import judge
@@ -117,7 +117,7 @@ def unlucky_seed(facts: Facts) -> Finding | Unchecked | None:
         evidence={
             "rank of this seed": rank,
             "seeds": len(returns) + 1,
-            "share of the others that solve it": solved,
+            "share of the others that solve it": Share(solved),
             "median of the others": float(np.median(returns)),
         },
         meaning=f"With the same settings {percent(solved)} of {len(returns)} other seeds solve the environment.",

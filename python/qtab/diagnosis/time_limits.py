@@ -4,7 +4,7 @@ import numpy as np
 
 from qtab.config.options import FIXED, fixed_settings
 from qtab.diagnosis.facts import LONGEST_MOUNTAIN_CAR, Facts
-from qtab.diagnosis.finding import Finding, Unchecked, as_keywords, changes, percent
+from qtab.diagnosis.finding import Finding, Share, Unchecked, as_keywords, changes, percent
 from qtab.envs.metadata.goals import own_time_limit
 
 LEAST_WEIGHT = 0.05
@@ -33,7 +33,9 @@ def horizon(facts: Facts) -> Finding | Unchecked | None:
         "discount": discount,
         "steps ahead": ahead,
         "shortest route" if is_known else "median episode length": shortest,
-        "weight of the goal at the start" if is_known else "weight of its last reward at the start": discount**shortest,
+        "weight of the goal at the start" if is_known else "weight of its last reward at the start": Share(
+            discount**shortest
+        ),
     }
     route = f"at least {shortest} steps"
     if facts.is_usual_mountain_car:
@@ -48,7 +50,7 @@ def horizon(facts: Facts) -> Finding | Unchecked | None:
     if (run.episode_returns == -run.episode_lengths).all():  # every step costs 1
         values = facts.q_values.max(axis=1)[facts.visited] * run.discretizer.n_active
         share = float(np.mean(values <= -0.9 * ahead)) if len(values) else 0.0
-        evidence[f"share of visited states near the floor {-ahead:.4g}"] = share
+        evidence[f"share of visited states near the floor {-ahead:.4g}"] = Share(share)
         if share > 0:
             meaning += f" Without a goal in sight every state is worth {-ahead:.3g}, and all actions look the same."
     costs = bool((run.episode_returns < 0).all())
@@ -87,7 +89,7 @@ def time_limit(facts: Facts) -> Finding | None:
         evidence={
             "time limit": limit,
             "the environment's own": own,
-            "share of episodes that time out": timed_out,
+            "share of episodes that time out": Share(timed_out),
         },
         meaning=f"{percent(timed_out)} of the episodes end by the time limit, after fewer steps than the environment "
         "allows.",
@@ -106,7 +108,7 @@ def truncation(facts: Facts) -> Finding | None:
     share = timed_out / len(facts.run.terminated)
     return Finding(
         title="Time-outs are treated as terminal states.",
-        evidence={"episodes that timed out": timed_out, "share of all episodes": share},
+        evidence={"episodes that timed out": timed_out, "share of all episodes": Share(share)},
         meaning=f"{percent(share)} of the episodes end by the time limit. The state where that happens depends on the "
         "clock, which the agent does not see, and its value is learned as if nothing followed.",
         advice="use on_truncation='bootstrap': the value of the last state then counts",
