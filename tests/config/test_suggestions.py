@@ -54,8 +54,15 @@ def test_steps_are_not_episodes() -> None:
 
 def test_nothing_is_suggested_where_nothing_is_similar() -> None:
     message = "unknown setting 'colour'; help(qtab.train) and qtab train --help list the settings"
+    message += "; arguments of an environment are given as env_kwargs={'colour': ...}"
     with pytest.raises(TypeError, match=f"^{re.escape(message)}$"):
         qtab.Config().replace(colour="red")  # type: ignore[call-arg]
+
+
+def test_arguments_of_environments_are_env_kwargs() -> None:
+    message = "unknown setting 'is_slippery' (did you mean env_kwargs={'is_slippery': ...}?)"
+    with pytest.raises(TypeError, match=f"^{re.escape(message)}$"):
+        qtab.train("FrozenLake-v1", is_slippery=False)  # type: ignore[call-arg]
 
 
 @pytest.mark.parametrize("name", ["seed", "n_seeds", "num_runs"])

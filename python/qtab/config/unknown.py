@@ -21,6 +21,12 @@ _OTHER_NAMES = {name: setting.other_names for name, setting in SETTINGS.items()}
 """The names of the settings and of the functions' arguments in other libraries and textbooks."""
 _STEPS = ("total_timesteps", "n_timesteps", "num_timesteps", "timesteps", "total_steps")
 
+_OF_ENVIRONMENTS = (
+    *("is_slippery", "map_name", "desc", "success_rate", "reward_schedule", "is_rainy", "fickle_passenger"),
+    *("natural", "sab", "goal_velocity", "gravity", "sutton_barto_reward", "continuous", "enable_wind"),
+)
+"""Arguments of Gymnasium's environments, which belong in ``env_kwargs``."""
+
 
 def check_names(names: Iterable[str], known: Collection[str], function: str = "train", kind: str = "setting") -> None:
     """Rejects unknown settings.
@@ -62,9 +68,17 @@ def meant(name: str, known: Collection[str]) -> str | None:
 
 
 def _suggestion(name: str, known: Collection[str], function: str, kind: str) -> str:
+    takes_env_kwargs = "env_kwargs" in known
+    if takes_env_kwargs and name in _OF_ENVIRONMENTS:
+        return f" (did you mean {_as_env_kwargs(name)}?)"
     found = meant(name, known)
     if found is None:
         command = " and qtab train --help list" if function == "train" else " lists"
-        return f"; help(qtab.{function}){command} the {kind}s"
+        own = f"; arguments of an environment are given as {_as_env_kwargs(name)}" if takes_env_kwargs else ""
+        return f"; help(qtab.{function}){command} the {kind}s{own}"
     counted = " qtab counts episodes, not steps" if name in _STEPS else ""
     return f" (did you mean {found!r}?{counted})"
+
+
+def _as_env_kwargs(name: str) -> str:
+    return f"env_kwargs={{{shown(name)}: ...}}"
