@@ -128,6 +128,13 @@ class LocalMaskEnv(grids.CliffEnv):
         return observation, reward, terminated, truncated, {"action_mask": mask}
 
 
+class FloatMaskEnv(grids.CliffEnv):
+    """Its action masks are floats, as in Python stepping they must not be."""
+
+    def action_masks(self):
+        return np.ones(4)
+
+
 def test_masks_that_cannot_be_compiled_are_refused_with_their_line_if_the_run_needs_them() -> None:
     pattern = (
         r"backend='numba' asks: .*test_ordinary_classes\.py:\d+: the action mask.*write a method action_masks\(self\)"
@@ -135,6 +142,9 @@ def test_masks_that_cannot_be_compiled_are_refused_with_their_line_if_the_run_ne
     with pytest.raises(ValueError, match=pattern):
         qtab.train(LocalMaskEnv(), episodes=3, backend="numba", action_mask=True)
     qtab.train(LocalMaskEnv(), episodes=3, max_episode_steps=20, backend="numba")
+    pattern = r"test_ordinary_classes\.py:\d+: the action mask is an array of float64 .*; return an array of 4 booleans"
+    with pytest.raises(ValueError, match=pattern):
+        qtab.train(FloatMaskEnv(), episodes=3, backend="numba", action_mask=True)
 
 
 def test_a_changed_attribute_changes_the_compiled_code() -> None:

@@ -4,6 +4,8 @@ import ast
 from types import FunctionType
 from typing import Any
 
+import numpy as np
+
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting import specials
 from qtab.compilation.rewriting.program import Compiled, Program
@@ -58,7 +60,8 @@ def _self_name(function: FunctionType) -> str:
 def _add(program: Program, code: str, result: Value, uses: set[str], compiled: Compiled) -> None:
     kind: Any = result.kind
     count = int(program.env.action_space.n)  # type: ignore[attr-defined]
-    if not isinstance(kind, Array) or kind.shape not in (None, (count,)) or kind.ndim != 1:
+    is_array = isinstance(kind, Array) and np.dtype(kind.dtype).kind in "biu"
+    if not is_array or kind.shape not in (None, (count,)) or kind.ndim != 1:
         reason = f"the action mask is {in_words(kind) if kind is not None else 'not an array'}"
         raise NotCompilable(reason, compiled.file, compiled.lines[0][1], f"return an array of {count} booleans")
     if compiled.changes:
