@@ -18,6 +18,8 @@ from qtab.training.setup.environment import PythonEnvironment
 from qtab.training.setup.resolved_run import ResolvedRun
 
 _LOGGER = logging.getLogger("qtab")
+_PLAYED_AGAIN = ("state of the environment", "position of the environment's generator", "observation of the state")
+"""The ends of the errors if an episode of compiled code that is played again is different."""
 
 
 def restore(trainer: _core.Trainer, resolved: ResolvedRun, earlier: Run) -> None:
@@ -42,10 +44,14 @@ def restore(trainer: _core.Trainer, resolved: ResolvedRun, earlier: Run) -> None
     try:
         is_lost = trainer.restore(state.checkpoint, tables, episodes)
     except ValueError as error:
-        raise ValueError(
-            f"run must have an undamaged state from this version of qtab: {error}; "
-            "qtab.train(..., initial_q=run.q_table) continues to learn from its table"
-        ) from None
+        learn_on = "qtab.train(..., initial_q=run.q_table) continues to learn from its table"
+        if earlier.config.backend == "numba" and str(error).endswith(_PLAYED_AGAIN):
+            raise ValueError(
+                "run must be resumed in the environment as it was: the run was stopped within episode "
+                f"{len(earlier.episode_returns):,} (counted from 0), whose steps have other results now. Undo the "
+                f"changes of its code and of the values that it uses, or begin a new run: {learn_on}"
+            ) from None
+        raise ValueError(f"run must have an undamaged state from this version of qtab: {error}; {learn_on}") from None
     if is_lost:
         _LOGGER.warning(
             "the run was stopped within episode %s (counted from 0), which cannot be continued: a new episode begins, "

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import qtab
+from support.environments.gym_classes import grids
 from support.environments.gym_classes.grids import CliffEnv, MaskedGridEnv
 from support.lockstep.compiled_runs import LONG, Grows, stopped, trained_until, windy
 from support.parity import assert_same_run
@@ -103,3 +104,11 @@ def test_large_arrays_are_shared_and_not_written_into() -> None:
     assert not np.shares_memory(twin.heights, env.heights)
     twin.step(0) if twin.reset() else None
     assert env.heights[0] == 0.0
+
+
+@posix_only
+def test_an_edited_class_says_what_to_do(monkeypatch: pytest.MonkeyPatch) -> None:
+    part = stopped(0.02, windy, **LONG)
+    monkeypatch.setattr(grids, "MOVES", {action: grids.MOVES[3 - action] for action in range(4)})
+    with pytest.raises(ValueError, match=r"^run must be resumed in the environment as it was: .* within episode \d+"):
+        qtab.resume(part, env=windy())
