@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 
 import qtab
-from qtab.book.drawing import draw_lines
+from qtab.book.drawing import draw_lines, pale
 from qtab.book.drawing.colors import line_colors
-from qtab.book.drawing.end_labels import label_ends
+from qtab.book.drawing.end_labels import BRIGHTEST, label_ends, text_shade
+from qtab.book.drawing.minimum_labels import label_minima
 from qtab.book.line import Line
-from qtab.plots.parts.colors import sequential
+from qtab.plots.parts.colors import brightness, sequential
 
 plt: Any = pytest.importorskip("matplotlib.pyplot")
 
@@ -88,3 +89,56 @@ def test_a_figure_with_more_runs_than_the_books_says_so(name: str) -> None:
     experiment = qtab.book.EXPERIMENTS[name]
     assert experiment.runs == 1_000
     assert "1,000 runs here, as a few stuck runs dominate the mean of 100" in experiment.book
+
+
+def minima(heights: Any) -> list[Line]:
+    """Lines with a minimum in the middle, at these heights."""
+    return [line(f"n = {2**k}", [0.9, height, 0.9]) for k, height in enumerate(heights)]
+
+
+def test_lines_with_a_minimum_are_named_below_it() -> None:
+    figure, ax = plt.subplots()
+    ax.set(xlim=(0, 2), ylim=(0, 1))
+    assert label_minima(ax, minima([0.8, 0.6, 0.599, 0.02]), ["black"] * 4)
+    assert {text.get_text() for text in ax.texts} == {"n = 1", "n = 2, 4", "n = 8"}
+    heights = {text.get_text(): text.get_position()[1] for text in ax.texts}
+    assert heights["n = 1"] < 0.8
+    assert 0.02 < heights["n = 8"] < heights["n = 2, 4"] < 0.6  # there is no room below the lowest
+    boxes = [text.get_window_extent() for text in ax.texts]
+    assert not any(one.overlaps(other) for one in boxes for other in boxes if one is not other)
+    plt.close(figure)
+
+
+@pytest.mark.parametrize(
+    "lines", [minima([0.8, 0.5, 0.2]), [*minima([0.8, 0.5, 0.2]), line("n = 8", [0.9, 0.5, 0.1])], minima([-0.5] * 4)]
+)
+def test_other_lines_have_a_legend(lines: list[Line]) -> None:
+    figure, ax = plt.subplots()
+    ax.set(xlim=(0, 2), ylim=(0, 1))
+    assert not label_minima(ax, lines, ["black"] * len(lines))
+    assert not ax.texts
+    plt.close(figure)
+
+
+def test_names_in_light_colors_are_darkened() -> None:
+    from matplotlib.colors import to_hex
+
+    figure, ax = plt.subplots()
+    assert text_shade("#1f5fa8", ax) == "#1f5fa8"
+    assert brightness(text_shade("#addc30", ax)) == pytest.approx(BRIGHTEST, abs=0.01)
+    assert pale("#000000", ax) == "#999999"
+    ax.set_facecolor("black")
+    assert text_shade("#addc30", ax) == to_hex("#addc30")
+    plt.close(figure)
+
+
+def test_rounding_is_no_standard_error_and_diverged_runs_do_not_widen_the_table() -> None:
+    result = qtab.book.run("example-6.6", runs=2, progress=False)
+    first = result.lines[0]
+    mean, error = np.array([0.1, 1e200, 2.0]), np.array([1e-17, 1e200, 0.5])
+    x = np.array([1.0, 10.0, 25.0])
+    odd = dataclasses.replace(
+        first, x=x, mean=mean, error=error, truncated=first.truncated[:3], diverged=first.diverged[:3]
+    )
+    rows = [row.split()[1:4] for row in str(dataclasses.replace(result, lines=(odd,))).splitlines()[-3:]]
+    assert rows == [["1", "0.1", "0"], ["10", "1e+200", "1e+200"], ["25", "2.00", "0.50"]]

@@ -37,6 +37,8 @@ class Description:
     """The limits of the x axis; None fits the data."""
     y_range: tuple[float, float] | None = None
     """The limits of the y axis; None fits the data."""
+    x_words: Mapping[float, str] = field(default_factory=dict)
+    """What the table shows in place of an x coordinate that only numbers a quantity."""
     y_marks: Mapping[str, float] = field(default_factory=dict)
     """The y coordinates of dashed lines, each by its text."""
 
@@ -58,10 +60,8 @@ class Description:
             runs: The requested number of runs.
             seed: The seed of the first run.
         """
-        several = sorted(set(counts), reverse=True)
-        text = (
-            f"{' and '.join(f'{count:,}' for count in several)} {'run' if several == [1] else 'runs'} of each setting"
-        )
+        several = sorted(set(counts))
+        text = f"{' or '.join(f'{count:,}' for count in several)} {'run' if several == [1] else 'runs'} of each setting"
         if runs != self.runs:
             text += f" ({'FEWER' if runs < self.runs else 'more'} than the {self.runs:,} of the full figure)"
         return f"{text}, seeds from {seed}"

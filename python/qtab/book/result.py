@@ -24,6 +24,10 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 TEXT_WIDTH = 100
+ROUNDING = 1e-14
+"""The relative standard error up to which runs differ only by rounding."""
+LARGE = 1e7
+"""Numbers of at least this size are shown by powers of ten."""
 CSV_COLUMNS = ("line", "x", "mean", "standard_error", "runs", "capped_episodes", "diverged_runs")
 
 Draw: TypeAlias = Callable[["Result", "Axes | None"], "Axes"]
@@ -144,9 +148,11 @@ def _rows(result: Result) -> list[str]:
             if experiment.table_x is not None and x not in experiment.table_x:
                 continue
             error = line.error[index]
+            if error <= ROUNDING * abs(line.mean[index]):
+                error = 0.0  # all runs are equal, up to the rounding of their mean
             row = [
                 line.name,
-                f"{x:g}",
+                experiment.x_words.get(x, f"{x:g}"),
                 _rounded(line.mean[index], error),
                 "-" if math.isnan(error) else _rounded(error, error),
                 str(line.truncated[index]),
@@ -166,4 +172,6 @@ def _rounded(value: float, error: float) -> str:
     """Returns a number rounded to the first two digits of its standard error."""
     if math.isnan(error) or error <= 0:
         return f"{value:.5g}"
+    if abs(value) >= LARGE:
+        return f"{value:.2g}"  # a run that diverges
     return f"{value:,.{max(0, 1 - math.floor(math.log10(error)))}f}"

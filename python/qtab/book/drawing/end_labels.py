@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from qtab.book.line import Line
+from qtab.plots.parts.colors import brightness, is_dark
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -16,6 +17,8 @@ SIZE = 9.0
 """The font size, in points."""
 LINE_HEIGHT = 1.25
 """The smallest distance between two labels, in font sizes."""
+BRIGHTEST = 0.45
+"""The largest brightness of text on a light background, from 0 to 1."""
 MAX_SHIFT = 3.0
 """The largest distance of a label from its line, in font sizes; if one has to move further, all lines get a legend."""
 
@@ -42,12 +45,22 @@ def label_ends(ax: "Axes", lines: Sequence[Line], colors: Sequence[Any]) -> bool
             end,
             (6, shift),
             textcoords="offset points",
-            color=hue,
+            color=text_shade(hue, ax),
             fontsize=SIZE,
             va="center",
             annotation_clip=False,
         )
     return True
+
+
+def text_shade(hue: Any, ax: "Axes") -> Any:
+    """Returns the color of a line for text, darkened if it is hard to read on the background of the axes."""
+    from matplotlib.colors import to_hex, to_rgb
+
+    if is_dark(ax):
+        return hue
+    red, green, blue = (part * min(1.0, BRIGHTEST / max(brightness(hue), 1e-6)) for part in to_rgb(hue))
+    return to_hex((red, green, blue))
 
 
 def _last_point(ax: "Axes", line: Line) -> "tuple[float, float] | None":

@@ -54,17 +54,22 @@ def draw_grids(result: Result, ax: "Axes | None", grids: Sequence[CellMap], colu
     axes: Any = figure.subplots(rows, columns, squeeze=False)
     for part in axes.flat[len(grids) :]:
         part.remove()
+    shown = [np.where(grid_map(grid.layout).rows[..., 0] >= 0, one, np.nan) for grid in grids for one in _values(grid)]
+    norm = common_norm(shown or [np.zeros(1)])
     for part, grid in zip(axes.flat, grids, strict=False):
         raster = grid_map(grid.layout)
         if grid.values is not None:
-            values = np.where(raster.rows[..., 0] >= 0, grid.values, np.nan)
-            draw_heat_map(part, raster, values, common_norm([values]), grid.title, _text)
+            draw_heat_map(part, raster, shown.pop(0), norm, grid.title, _text)
         if grid.best is not None:
             draw_moves(part, raster, grid.best & (raster.rows >= 0), ACTIONS)
             finish_panel(part, raster, grid.title)
         part.set(xlabel="", ylabel="", xticks=[], yticks=[])
     last: Axes = axes.flat[len(grids) - 1]
     return last
+
+
+def _values(grid: CellMap) -> list[FloatArray]:
+    return [] if grid.values is None else [grid.values]
 
 
 def _text(value: float) -> str:

@@ -8,9 +8,11 @@ import numpy as np
 
 from qtab.book.drawing.colors import line_colors
 from qtab.book.drawing.end_labels import label_ends
+from qtab.book.drawing.minimum_labels import label_minima
 from qtab.book.line import Line
 from qtab.book.result import Result
 from qtab.plots.parts.axes import axes_or_new
+from qtab.plots.parts.colors import is_dark
 from qtab.plots.parts.labels import finish
 
 if TYPE_CHECKING:
@@ -18,8 +20,8 @@ if TYPE_CHECKING:
 
 MAX_MARKERS = 40
 """With a line of more points, a figure has no markers."""
-BROAD: Mapping[str, Any] = {"linewidth": 6, "alpha": 0.4, "zorder": 1}
-"""The style of a line that would hide others, or be hidden by them."""
+BROAD: Mapping[str, Any] = {"linewidth": 6, "zorder": 1}
+"""The style of a line that would hide others, or be hidden by them; its color is :func:`pale`."""
 MOST_LABELED = 100
 """A logarithmic axis over less than this ratio is also labeled between the powers of ten."""
 
@@ -36,7 +38,8 @@ def draw_lines(result: Result, ax: "Axes | None") -> "Axes":
         draw_band(ax, line, hue)
         style = BROAD if line.broad else {"linewidth": 1.6, **marker}
         label = line.name if line.named else "_nolegend_"
-        ax.plot(line.x, line.mean, "--" if line.dashed else "-", color=hue, label=label, **style)
+        shade = pale(hue, ax) if line.broad else hue
+        ax.plot(line.x, line.mean, "--" if line.dashed else "-", color=shade, label=label, **style)
     if experiment.log_x:
         ax.set_xscale("log")
     if experiment.x_ticks is not None:
@@ -61,9 +64,21 @@ def draw_lines(result: Result, ax: "Axes | None") -> "Axes":
     finish(ax, experiment.x_label, experiment.y_label, experiment.heading)
     legend = ax.get_legend()
     named = [(line, hue) for line, hue in zip(drawn, colors, strict=True) if line.named]
-    if legend is not None and label_ends(ax, [line for line, _ in named], [hue for _, hue in named]):
+    lines, hues = [line for line, _ in named], [hue for _, hue in named]
+    if legend is not None and (label_ends(ax, lines, hues) or label_minima(ax, lines, hues)):
         legend.remove()
     return ax
+
+
+def pale(hue: Any, ax: "Axes") -> Any:
+    """Returns a color that is mixed with the background, and not transparent, so that a legend shows it as it is."""
+    from matplotlib.colors import to_hex, to_rgb, to_rgba
+
+    *back, opacity = to_rgba(ax.get_facecolor())
+    if opacity < 1:
+        back = [0.0, 0.0, 0.0] if is_dark(ax) else [1.0, 1.0, 1.0]
+    red, green, blue = (0.4 * front + 0.6 * behind for front, behind in zip(to_rgb(hue), back, strict=True))
+    return to_hex((red, green, blue))
 
 
 def draw_band(ax: "Axes", line: Line, hue: Any, alpha: float = 0.25) -> None:

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 CHARACTER = 0.6
 """The mean width of a character, in font sizes."""
-HANDLE = 4.0
+HANDLE = 5.0
 """The width of a legend's line and of the space around it, in font sizes."""
 MAX_LEGEND = 0.6
 """The largest part of the axes' height that a legend inside them may take."""
@@ -198,7 +198,7 @@ def _legend(ax: "Axes", handles: Any, names: list[str], title: str, size: float,
     longest = max((len(line) for label in labels for line in label.split("\n")), default=1)
     style: dict[str, Any] = {
         **{"fontsize": size, "title": fitted(title, room, size) or None, "title_fontsize": size, "alignment": "left"},
-        **{"edgecolor": "none", "framealpha": 0.85, "columnspacing": 1.5},
+        **{"edgecolor": "none", "framealpha": 0.85, "columnspacing": 1.5, "handlelength": 3.0},
         "ncols": max(1, min(len(labels), int(width / ((longest * CHARACTER + HANDLE) * size)))),
     }
     if not has_layout:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from qtab.book.drawing import BROAD, figure_of_several, line_colors
+from qtab.book.drawing import BROAD, figure_of_several, line_colors, pale
 from qtab.book.experiment import ExactExperiment
 from qtab.book.line import Line, exact_line
 from qtab.book.result import Result
@@ -47,8 +47,8 @@ def _draw(result: Result, ax: "Axes | None") -> "Axes":
     upper, lower = figure.subplots(2, sharex=True)
     for line, hue in zip(values, line_colors(values, upper), strict=True):
         # The final values lie behind the others as a broad band: sweep 32 has almost reached them.
-        style = BROAD if line.name == FINAL else {"linewidth": 1.4}
-        upper.plot(line.x, line.mean, color=hue, label=line.name, **style)
+        style = {**BROAD, "color": pale(hue, upper)} if line.name == FINAL else {"linewidth": 1.8, "color": hue}
+        upper.plot(line.x, line.mean, label=line.name, **style)
     finish(upper, "", "value: the probability of winning")
     lower.bar(policy.x, policy.mean, width=1.0, color=line_colors([policy], lower)[0])
     finish(lower, "capital", POLICY)

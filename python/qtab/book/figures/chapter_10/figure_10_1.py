@@ -47,7 +47,7 @@ def draw_cost_to_go(result: Result, ax: "Axes | None") -> "Axes":
         ModuleNotFoundError: without matplotlib; the message names the ``pip install``.
         ValueError: if ``ax`` is not None.
     """
-    figure = figure_of_several(result, ax, 9, 5.5)
+    figure = figure_of_several(result, ax, 10, 6.6)
     x, y = np.meshgrid(_POSITIONS, _VELOCITIES, indexing="ij")
     panel: Any = None
     for index, (name, surface) in enumerate(result.surfaces.items()):
@@ -56,7 +56,7 @@ def draw_cost_to_go(result: Result, ax: "Axes | None") -> "Axes":
         panel.set_title(f"{name}: up to {surface.max():.0f}", fontsize="medium")
         panel.set(xlabel="position", ylabel="velocity", xticks=(-1.2, -0.5, 0.5), yticks=(-0.07, 0, 0.07))
         panel.tick_params(labelsize="x-small")
-        panel.set_box_aspect(None, zoom=0.8)
+        panel.set_box_aspect(None, zoom=0.92)
     last: Axes = panel
     return last
 
@@ -101,7 +101,8 @@ EXPERIMENT = CostToGo(
         *(Setting(f"episode {episode}", ENV, {**_SARSA, "episodes": episode}, mean_length) for episode in EPISODES),
     ),
     runs=1,
-    x_label="1: largest, 2: mean",
+    x_label="over the states",
+    x_words={1: "largest", 2: "mean"},
     y_label="cost-to-go",
     draw=draw_cost_to_go,
 )
