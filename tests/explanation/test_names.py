@@ -1,5 +1,6 @@
 """Explanations and findings name states and actions as pictures do."""
 
+import re
 from typing import Any
 
 import gymnasium as gym
@@ -7,6 +8,7 @@ import pytest
 
 import qtab
 from qtab.envs.grid_worlds import ACTION_NAMES
+from qtab.explanation.text import text
 from qtab.results.words import Names, cell_in_words
 
 FLOOR = ("S..", "..#", "..G")
@@ -74,6 +76,13 @@ def test_an_environment_names_states_and_actions() -> None:
     step = explained(NamedFloor())
     assert (step.state, step.next_state) == ("row 0, column 0", "row 0, column 1")
     assert step.action_name in ACTIONS
+
+
+def test_the_value_of_each_action_is_named() -> None:
+    named, unnamed = (text("", [explained(floor())]) for floor in (NamedFloor, Floor))
+    (line,) = re.findall(r"values (.*)", named)
+    assert [part.rpartition(" ")[0] for part in line.split(", ")] == [*ACTIONS]
+    assert re.search(r"values [^a-z]*\n", unnamed)
 
 
 def test_without_names_there_are_numbers() -> None:

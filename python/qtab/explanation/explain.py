@@ -191,6 +191,7 @@ def _explained(run: Run, watcher: Watcher, index: int, names: Names) -> Explaine
         state=names.state(step.observation),
         action=run.actions[choice.action],
         action_name=names.actions[choice.action],
+        action_names=tuple(names.actions[index] for index in range(len(choice.values))),
         choice=choice,
         next_cell=_cell(run, step.next_rows[0]),
         next_state=names.state(step.next_observation),

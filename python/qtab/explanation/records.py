@@ -187,6 +187,8 @@ class ExplainedStep:
     off-policy Monte Carlo control before the last action that is not greedy."""
     note: str
     """The reason why no value changed; empty if one did."""
+    action_names: tuple[str, ...] = ()
+    """The names of all actions, in the order of ``choice.values``."""
 
     @property
     def reward_text(self) -> str:

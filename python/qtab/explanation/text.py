@@ -33,7 +33,7 @@ def details(step: ExplainedStep) -> list[tuple[str, str]]:
     """Returns the lines of a step, each with its label."""
     lines = [
         ("state", f"{step.state}; {place(step.rows, step.cell)}"),
-        ("action", f"{step.action_name}; values {', '.join(number(value) for value in step.choice.values)}"),
+        ("action", f"{step.action_name}; values {_values(step)}"),
         ("why", str(step.choice)),
         ("reward", f"{step.reward_text}, then {step.next_state}; {ending(step)}"),
     ]
@@ -58,6 +58,14 @@ def details(step: ExplainedStep) -> list[tuple[str, str]]:
     if len(step.planning) > SHOWN_PLANNING:
         lines.append(("planning", f"and {len(step.planning) - SHOWN_PLANNING} more"))
     return lines
+
+
+def _values(step: ExplainedStep) -> str:
+    """Returns the values that the policy compared, each after the name of its action if it has one."""
+    named = zip(step.action_names, step.choice.values, strict=False)
+    if not step.action_names or step.action_names[0] == "action 0":
+        return ", ".join(number(value) for value in step.choice.values)
+    return ", ".join(f"{name} {number(value)}" for name, value in named)
 
 
 def policy_lines(update: PolicyUpdate) -> list[tuple[str, str]]:
