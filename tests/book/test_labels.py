@@ -110,7 +110,12 @@ def test_lines_with_a_minimum_are_named_below_it() -> None:
 
 
 @pytest.mark.parametrize(
-    "lines", [minima([0.8, 0.5, 0.2]), [*minima([0.8, 0.5, 0.2]), line("n = 8", [0.9, 0.5, 0.1])], minima([-0.5] * 4)]
+    "lines",
+    [
+        minima([0.8, 0.5, 0.2]),
+        [*minima([0.8, 0.5]), *(line(f"n = {k}", [0.9, 0.5, k]) for k in (0.1, 0.2))],
+        minima([-0.5] * 4),
+    ],
 )
 def test_other_lines_have_a_legend(lines: list[Line]) -> None:
     figure, ax = plt.subplots()

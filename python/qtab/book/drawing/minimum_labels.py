@@ -27,11 +27,12 @@ MAX_SHIFT = 4.0
 def label_minima(ax: "Axes", lines: Sequence[Line], colors: Sequence[Any]) -> bool:
     """Writes the name of each line below its minimum, in the color of the line.
 
-    Returns False and writes nothing if a line has its minimum at an end or outside the axes, or if the labels do not
-    fit, so that a legend is needed.
+    Returns False and writes nothing if several lines have their minimum at an end, if one has it outside the axes, or
+    if the labels do not fit, so that a legend is needed.
     """
     points = [point for line in lines if (point := _minimum(ax, line)) is not None]
-    if len(lines) < LEAST_LINES or len(points) < len(lines):
+    at_ends = sum(x in (line.x[0], line.x[-1]) for line, (x, _) in zip(lines, points, strict=False))
+    if len(lines) < LEAST_LINES or len(points) < len(lines) or at_ends > 1:
         return False
     pixels = SIZE * ax.figure.dpi / 72
     bottom = ax.get_window_extent().y0 + LINE_HEIGHT * pixels / 2
@@ -64,14 +65,14 @@ def label_minima(ax: "Axes", lines: Sequence[Line], colors: Sequence[Any]) -> bo
 
 
 def _minimum(ax: "Axes", line: Line) -> "tuple[float, float] | None":
-    """Returns the lowest point of a line, if it is between the ends of the line and inside the axes."""
+    """Returns the lowest point of a line, if it is inside the axes."""
     if not np.isfinite(line.mean).any():
         return None
     lowest = int(np.nanargmin(line.mean))
     x, y = float(line.x[lowest]), float(line.mean[lowest])
     (left, right), (low, high) = sorted(ax.get_xlim()), sorted(ax.get_ylim())
     inside = left <= x <= right and low <= y <= high
-    return (x, y) if inside and 0 < lowest < len(line.x) - 1 else None
+    return (x, y) if inside else None
 
 
 def _joined(names: Sequence[str]) -> str:
