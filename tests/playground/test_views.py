@@ -1,7 +1,9 @@
 """What the pictures show: bars of action values, hatched states, the end of an episode, axes and labels."""
 
+import math
 from typing import Any
 
+import numpy as np
 import pytest
 
 from support.playground import Playground
@@ -65,6 +67,7 @@ def _is_grey(color: list[int]) -> bool:
         ("#env=CartPole-v1&example=0", "the pole fell."),
         ("#env=CartPole-v1&example=2&seed=0", "time is up."),
         ("#env=Taxi-v4&example=1", "the passenger arrived."),
+        ("#env=Acrobot-v1&example=0", "the end rose above the line."),
     ],
 )
 def test_the_end_of_an_episode_is_said_in_words(playground: Playground, fragment: str, end: str) -> None:
@@ -178,3 +181,38 @@ def test_a_cell_without_numbers_is_not_selected(playground: Playground, fragment
     playground.settled()
     assert playground.text("inspection") == before
     assert playground.page.locator("#problem").is_hidden()
+
+
+def test_a_map_of_angles_shows_the_whole_circle(playground: Playground) -> None:
+    playground.open("#env=Acrobot-v1&episodes=100")
+    shown = playground.page.evaluate(
+        """() => {
+          const { values, motion } = playground.view;
+          const { path, map } = values.content;
+          const [observations, cells] = ["observations", "cells"].map((name) => Array.from(motion.episode[name]));
+          const [edges, label] = [[map.xEdges[0], map.xEdges.at(-1)], motion.canvas.getAttribute("aria-label")];
+          return { path, edges, observations, cells, label };
+        }"""
+    )
+    assert shown["edges"] == [-math.pi, math.pi]
+    observations = np.reshape(shown["observations"], (-1, 6))
+    places = [place for place in shown["path"] if place is not None]
+    angles = [np.arctan2(observations[:, sine], observations[:, sine - 1]) for sine in (1, 3)]
+    np.testing.assert_allclose(places, np.transpose(angles), atol=1e-6)
+    # A line across the map would join the two ends of a circle.
+    turns = (np.abs(np.diff(places, axis=0)) > math.pi).any(axis=1).sum()
+    assert turns > 0
+    assert shown["path"].count(None) == turns
+    cell = np.floor((np.array(places[0]) + math.pi) / (2 * math.pi) * 48).astype(int)
+    assert shown["cells"][0] == (47 - cell[1]) * 48 + cell[0]
+    cosine, sine, cosine2, sine2 = observations[0, :4]
+    height = -cosine - (cosine * cosine2 - sine * sine2)
+    assert shown["label"] == f"The agent: the end of the links is at height {height:.2f}, the line at 1."
+
+
+def test_the_state_of_two_links_is_said_by_its_angles(playground: Playground) -> None:
+    playground.open("#env=Acrobot-v1&episodes=20")
+    playground.page.evaluate("() => playground.view.pick(24 * 48 + 36, 'press')")
+    playground.settled()
+    state = "θ1 1.64 rad, θ2 −0.0654 rad, angular velocity of θ1 0 rad/s, angular velocity of θ2 0 rad/s"
+    assert playground.text("inspector-title") == f"State: {state}"

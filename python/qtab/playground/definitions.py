@@ -13,7 +13,7 @@ from qtab.config.options import n_tables
 from qtab.config.preset_settings import CLIFF_WALKING
 from qtab.config.presets import presets
 from qtab.envs.grid_worlds import ACTION_NAMES
-from qtab.envs.metadata.quantities import quantities_of
+from qtab.envs.metadata.quantities import Quantities, quantities_of
 from qtab.explanation.equations import bootstrap_symbol
 from qtab.playground.environments import ENVIRONMENTS, Entry
 from qtab.playground.settings import LEFT_OUT, OFFERED, rules, settings
@@ -45,6 +45,7 @@ def _environment(key: str, entry: Entry) -> dict[str, Any]:
         "python": entry.env or None,
         "env_kwargs": dict(entry.env_kwargs),
         "best_known": entry.best_known,
+        "chaotic": entry.chaotic,
         "grids": {name: _plain(asdict(grid)) for name, grid in entry.grids.items()},
         # Those of an environment whose observations are the numbers of its states.
         "observations": None,
@@ -54,7 +55,6 @@ def _environment(key: str, entry: Entry) -> dict[str, Any]:
         # None is unknown.
         "states": None,
         "layout": None,
-        "table": None,
         "threshold": None,
         **(_grid_world(entry) if entry.grids else _gymnasium(entry)),
     }
@@ -98,20 +98,32 @@ def _gymnasium(entry: Entry) -> dict[str, Any]:
         parts = [space] if tabular else space
         return {**made, "states": int(np.prod([part.n for part in parts])), "layout": [*entry.layout]}
     if tabular:
-        return {**made, "states": int(space.n), "layout": _layout(unwrapped), "table": _table(unwrapped)}
+        return {**made, "states": int(space.n), "layout": _layout(unwrapped)}
     low, high = space.low, space.high
     bounded = bool(np.isfinite([low, high]).all()) and bool((np.abs([low, high]) < 1e6).all())
-    components = [quantity.name for quantity in description.observation]
-    plane = description.plane or components[:2]
+    options = _options(given, low.tolist(), high.tolist(), bounded)
+    plane = description.plane or [quantity.name for quantity in description.observation[:2]]
     return made | {
         "observations": [
             {"name": quantity.name, "unit": quantity.unit or None, "low": _finite(lower), "high": _finite(upper)}
             for quantity, lower, upper in zip(description.observation, low.tolist(), high.tolist(), strict=True)
         ],
-        "discretizers": ["round", "bins", "tiles"] if bounded else ["bins", "tiles"],
-        "options": _options(given, low.tolist(), high.tolist(), bounded),
-        "map": {"x": components.index(plane[0]), "y": components.index(plane[1])},
+        # Rounding needs a scale for the observations.
+        "discretizers": [*(["round"] if "scale" in options else []), "bins", "tiles"],
+        "options": options,
+        "map": {axis: _axis(description, name) for axis, name in zip("xy", plane, strict=True)},
     }
+
+
+def _axis(description: Quantities, name: str) -> dict[str, Any]:
+    """An axis of the map of values: a component of the observations, or an angle by the component of its cosine."""
+    angles = {angle.quantity.name: angle for angle in description.angles}
+    if name in angles:
+        quantity, component = angles[name].quantity, angles[name].cosine
+    else:
+        component = [quantity.name for quantity in description.observation].index(name)
+        quantity = description.observation[component]
+    return {"name": name, "unit": quantity.unit or None, "component": component, "is_angle": name in angles}
 
 
 def _options(given: Mapping[str, Mapping[str, Any]], low: Any, high: Any, bounded: bool) -> dict[str, Any]:
@@ -133,32 +145,6 @@ def _layout(env: Any) -> list[str]:
     letters[np.unravel_index(env.start_state_index, env.shape)] = "S"
     letters[rows - 1, columns - 1] = "G"
     return ["".join(row) for row in letters.tolist()]
-
-
-def _table(env: Any) -> dict[str, Any]:
-    """``P`` in a shorter form: the outcomes of each state and action (index of the probability, state, reward, end)."""
-    states = range(len(env.P))
-    outcomes = [[env.P[state][action] for action in sorted(env.P[state])] for state in states]
-    probabilities = sorted({float(outcome[0]) for row in outcomes for cell in row for outcome in cell})
-    return {
-        "probabilities": probabilities,
-        "outcomes": [
-            [
-                [
-                    [probabilities.index(float(p)), int(state), _short(reward), int(end)]
-                    for p, state, reward, end in cell
-                ]
-                for cell in row
-            ]
-            for row in outcomes
-        ],
-        "initial": [float(probability) for probability in env.initial_state_distrib],
-    }
-
-
-def _short(number: float) -> float:
-    """Returns a number as an integer if it is one, which takes fewer letters."""
-    return int(number) if float(number).is_integer() else float(number)
 
 
 def _finite(value: float) -> float | None:

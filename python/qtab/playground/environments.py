@@ -4,10 +4,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal, TypeAlias
 
+from qtab.config.preset_settings import ACROBOT
 from qtab.envs.grid_worlds import DYNA_MAZE, WIND, WINDY_GRID_WORLD
 from qtab.envs.metadata.goals import BEST_KNOWN_MOUNTAIN_CAR
 
-Drawing: TypeAlias = Literal["mountain_car", "cart_pole", "frozen_lake", "cliff", "grid", "taxi", "blackjack"]
+Drawing: TypeAlias = Literal[
+    "mountain_car", "cart_pole", "acrobot", "frozen_lake", "cliff", "grid", "taxi", "blackjack"
+]
 
 
 @dataclass(frozen=True)
@@ -41,6 +44,8 @@ class Entry:
     """Settings in place of the package's presets, if those train longer than the page does."""
     layout: tuple[str, ...] = ()
     """The map of the states that the page shows if not all are cells of one map; a blank is no state."""
+    chaotic: bool = False
+    """Whether a difference in the last bit of a sine soon changes a run, so that the page's differs from Python's."""
 
 
 _WINDY = GridWorld(WINDY_GRID_WORLD, WIND, step_reward=-1.0, goal_reward=-1.0)
@@ -89,6 +94,14 @@ _BLACKJACK: Mapping[str, Any] = {
     "episodes": 50_000,
 }
 
+# Fewer tilings and episodes than in the package's preset: 16 runs fit into the memory of the page.
+_ACROBOT: Mapping[str, Any] = {
+    **ACROBOT,
+    "tilings": 16,
+    "tiles": (3, 3, 3, 3, 6, 6),
+    "episodes": 1000,
+}
+
 _LAKE = "Cross the frozen lake to the goal without falling into a hole. The reward is 1 at the goal and 0 elsewhere{}"
 _SLIPPERY = "; the ice is slippery, so only one move in three goes in the intended direction."
 _ICE = {"is_slippery": False}
@@ -106,6 +119,15 @@ ENVIRONMENTS: Mapping[str, Entry] = {
         "Balance a pole on a cart by pushing the cart left or right. Each step earns 1, up to 500 steps.",
         "cart_pole",
         "CartPole-v1",
+    ),
+    "Acrobot-v1": Entry(
+        "Acrobot",
+        "Swing the end of two links above the line by a motor at the joint between them. Each step costs 1. On the map "
+        "θ1 is the angle of the first link from hanging down, and θ2 that of the second link from the first.",
+        "acrobot",
+        "Acrobot-v1",
+        presets={"learns": _ACROBOT},
+        chaotic=True,
     ),
     "FrozenLake-v1": Entry("Frozen lake", _LAKE.format(_SLIPPERY), "frozen_lake", "FrozenLake-v1"),
     "FrozenLake-v1 (not slippery)": Entry(

@@ -23,8 +23,7 @@ export function complete(environment, given) {
 function environmentOf({ id, ...painted }) {
   const known = definitions.environments[id];
   if (!known) throw new Error(`unknown environment '${id}'`);
-  if (known.table) return { kind: "table", table: known.table, columns: known.layout[0].length };
-  if (known.drawing !== "grid") return { kind: known.drawing };
+  if (known.drawing !== "grid") return { kind: known.drawing, layout: known.layout, ...known.env_kwargs };
   return { kind: "grid", ...(painted.layout ? painted : Object.values(known.grids)[0]) };
 }
 

@@ -1,4 +1,4 @@
-// The run as a Python program, which learns the same table.
+// The run as a Python program, which learns the same table unless the task is chaotic.
 
 import { make } from "./controls/elements.js";
 import { counted } from "./format.js";

@@ -91,7 +91,9 @@ export class Store {
       return this.entry.states === null
         ? value === "identity"
           ? "the observations are not numbered states"
-          : "some observations have no bounds"
+          : this.entry.observations.some(({ low }) => low === null)
+            ? "some observations have no bounds"
+            : `too many cells with ${this.entry.observations.length} components`
         : "the states are numbered and need none";
     }
     const { rules, settings: known } = this.definitions;
@@ -119,7 +121,7 @@ export class Store {
     const { environment, seed, seeds, grid } = this.state;
     const asked = environment === PAINTED ? { id: environment, ...grid } : { id: environment };
     const { map: plane, observations } = this.entry;
-    const map = plane ? { map: { ...plane, at: observations.map(() => 0), columns: RASTER, rows: RASTER } } : {};
+    const map = plane ? { map: { x: plane.x.component, y: plane.y.component, at: observations.map(() => 0), columns: RASTER, rows: RASTER } } : {};
     return { environment: asked, settings, seeds: Array.from({ length: seeds }, (_, index) => seed + index), ...map };
   }
 }

@@ -6,9 +6,22 @@ use serde_json::Value;
 use crate::json::{integer, shown};
 
 /// The longest side of a grid, in cells.
-pub(crate) const MAX_SIDE: usize = 40;
+const MAX_SIDE: usize = 40;
 /// The changes of row and column for up, right, down, left.
 const MOVES: [(isize, isize); 4] = [(-1, 0), (0, 1), (1, 0), (0, -1)];
+
+/// The rows of the map of an environment: at least one, of one length.
+pub(super) fn layout(environment: &Value) -> Result<Vec<&str>, String> {
+    let layout = environment.get("layout").and_then(Value::as_array);
+    let lines: Option<Vec<&str>> = layout.into_iter().flatten().map(Value::as_str).collect();
+    let lines = lines.ok_or("layout must hold texts")?;
+    let columns = lines.first().map_or(0, |line| line.len());
+    let side = 1..=MAX_SIDE;
+    if !side.contains(&lines.len()) || !side.contains(&columns) || lines.iter().any(|line| line.len() != columns) {
+        return Err(format!("layout must hold 1 to {MAX_SIDE} rows of one length, from 1 to {MAX_SIDE} cells"));
+    }
+    Ok(lines)
+}
 
 /// A map: the kinds of its cells, and their rewards.
 pub(crate) struct GridWorld {
@@ -22,14 +35,8 @@ pub(crate) struct GridWorld {
 
 impl GridWorld {
     pub(crate) fn parse(environment: &Value) -> Result<Self, String> {
-        let layout = environment.get("layout").and_then(Value::as_array);
-        let lines: Option<Vec<&str>> = layout.into_iter().flatten().map(Value::as_str).collect();
-        let lines = lines.ok_or("layout must hold texts")?;
-        let columns = lines.first().map_or(0, |line| line.len());
-        let side = 1..=MAX_SIDE;
-        if !side.contains(&lines.len()) || !side.contains(&columns) || lines.iter().any(|line| line.len() != columns) {
-            return Err(format!("layout must hold 1 to {MAX_SIDE} rows of one length, from 1 to {MAX_SIDE} cells"));
-        }
+        let lines = layout(environment)?;
+        let columns = lines[0].len();
         let cells: Vec<u8> = lines.concat().into_bytes();
         if cells.iter().any(|cell| !b".#SG".contains(cell)) {
             return Err("layout must consist of '.', '#', 'S' and 'G'".into());

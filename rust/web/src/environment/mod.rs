@@ -1,26 +1,29 @@
 //! The environment of a request.
 
+mod acrobot;
 mod blackjack;
 mod board;
 mod grid_world;
 mod taxi;
 
 use qtab_core::envs::classic_control::{CartPole, MountainCar};
-use qtab_core::envs::tabular::{Outcome, TabularMdp};
+use qtab_core::envs::tabular::TabularMdp;
+use qtab_core::envs::toy_text::{FrozenLake, LakeRewards, cliff_walking, frozen_lake};
 use serde_json::Value;
 
+pub(crate) use self::acrobot::CompactAcrobot;
 pub(crate) use self::blackjack::NumberedBlackjack;
 pub(crate) use self::board::Board;
-use self::grid_world::{GridWorld, MAX_SIDE};
-use crate::json::{integer, numbers};
+use self::grid_world::{GridWorld, layout};
 
-/// The largest number of outcomes in a transition table.
-const MAX_OUTCOMES: usize = 100_000;
+/// The columns of the map of `CliffWalking`.
+const CLIFF_COLUMNS: usize = 12;
 
 /// An environment that the page can choose.
 pub(crate) enum Environment {
     MountainCar(MountainCar),
     CartPole(CartPole),
+    Acrobot(CompactAcrobot),
     Blackjack(NumberedBlackjack),
     /// A transition table, with a map whose cells are its states.
     Table(TabularMdp, Board),
@@ -35,15 +38,26 @@ impl Environment {
         match environment.get("kind").and_then(Value::as_str) {
             Some("mountain_car") => Ok(Self::MountainCar(MountainCar::default())),
             Some("cart_pole") => Ok(Self::CartPole(CartPole::default())),
+            Some("acrobot") => Ok(Self::Acrobot(CompactAcrobot::v1())),
             Some("blackjack") => Ok(Self::Blackjack(NumberedBlackjack::V1)),
             Some("taxi") => taxi::table().map(Self::Taxi),
-            Some("table") => table(environment),
+            Some("frozen_lake") => Ok(Self::without_walls(lake(environment)?, layout(environment)?[0].len())),
+            Some("cliff") => {
+                let mdp = cliff_walking(false).map_err(|error| error.to_string())?;
+                Ok(Self::without_walls(mdp, CLIFF_COLUMNS))
+            }
             Some("grid") => {
                 let grid = GridWorld::parse(environment)?;
                 Ok(Self::Table(grid.mdp()?, Board::of_states(grid.columns(), &grid.walls())))
             }
             _ => Err("environment must be one of the playground's".into()),
         }
+    }
+
+    /// A table whose states are all cells of its map.
+    fn without_walls(mdp: TabularMdp, columns: usize) -> Self {
+        let board = Board::of_states(columns, &vec![false; mdp.num_states()]);
+        Self::Table(mdp, board)
     }
 
     /// The bounds of the observation space; `None` for numbered states.
@@ -56,6 +70,7 @@ impl Environment {
                 (-0.418_879_03, 0.418_879_03),
                 (f32::NEG_INFINITY, f32::INFINITY),
             ]),
+            Self::Acrobot(_) => Some(CompactAcrobot::BOUNDS),
             Self::Blackjack(_) | Self::Table(..) | Self::Taxi(_) => None,
         }
     }
@@ -64,7 +79,7 @@ impl Environment {
     pub(crate) fn mdp(&self) -> Option<&TabularMdp> {
         match self {
             Self::Table(mdp, _) | Self::Taxi(mdp) => Some(mdp),
-            Self::MountainCar(_) | Self::CartPole(_) | Self::Blackjack(_) => None,
+            Self::MountainCar(_) | Self::CartPole(_) | Self::Acrobot(_) | Self::Blackjack(_) => None,
         }
     }
 
@@ -74,49 +89,23 @@ impl Environment {
             Self::Table(_, board) => Some(board.clone()),
             Self::Taxi(_) => Some(taxi::board(first)),
             Self::Blackjack(_) => Some(NumberedBlackjack::board()),
-            Self::MountainCar(_) | Self::CartPole(_) => None,
+            Self::MountainCar(_) | Self::CartPole(_) | Self::Acrobot(_) => None,
+        }
+    }
+
+    /// The components that are the cosine of an angle; the next component is its sine.
+    pub(crate) fn cosines(&self) -> &'static [usize] {
+        match self {
+            Self::Acrobot(_) => CompactAcrobot::COSINES,
+            _ => &[],
         }
     }
 }
 
-/// A table in the form that `definitions.py` writes: `P` refers to the probabilities by index.
-fn table(environment: &Value) -> Result<Environment, String> {
-    let invalid = || "table must hold probabilities, outcomes and initial".to_string();
-    let table = environment.get("table").ok_or_else(invalid)?;
-    let numbers = |name: &str| table.get(name).and_then(numbers).ok_or_else(invalid);
-    let (probabilities, initial) = (numbers("probabilities")?, numbers("initial")?);
-    let states = table.get("outcomes").and_then(Value::as_array).ok_or_else(invalid)?;
-    let num_actions = states.first().and_then(Value::as_array).map_or(0, Vec::len);
-    let mut pairs = Vec::new();
-    let mut count = 0;
-    for state in states {
-        let actions = state.as_array().filter(|actions| actions.len() == num_actions).ok_or_else(invalid)?;
-        for action in actions {
-            let outcomes = action.as_array().ok_or_else(invalid)?;
-            count += outcomes.len();
-            if count > MAX_OUTCOMES {
-                return Err(format!("table must have at most {MAX_OUTCOMES} outcomes"));
-            }
-            let outcomes: Option<Vec<Outcome>> = outcomes.iter().map(|entry| outcome(entry, &probabilities)).collect();
-            pairs.push(outcomes.ok_or_else(invalid)?);
-        }
-    }
-    let columns =
-        environment.get("columns").and_then(|columns| integer(columns, MAX_SIDE as u32)).unwrap_or(0) as usize;
-    if columns == 0 || states.len() % columns != 0 {
-        return Err(format!("columns must divide the {} states", states.len()));
-    }
-    let mdp = TabularMdp::new(num_actions, &initial, &pairs).map_err(|error| error.to_string())?;
-    let board = Board::of_states(columns, &vec![false; mdp.num_states()]);
-    Ok(Environment::Table(mdp, board))
-}
-
-fn outcome(entry: &Value, probabilities: &[f64]) -> Option<Outcome> {
-    let [probability, state, reward, terminated] = entry.as_array()?.as_slice() else { return None };
-    Some(Outcome {
-        probability: *probabilities.get(integer(probability, u32::MAX)? as usize)?,
-        state: integer(state, u32::MAX)?.into(),
-        reward: reward.as_f64()?,
-        terminated: integer(terminated, 1)? == 1,
-    })
+/// The frozen lake of a map, slippery unless the environment says otherwise.
+fn lake(environment: &Value) -> Result<TabularMdp, String> {
+    let is_slippery = environment.get("is_slippery").and_then(Value::as_bool).unwrap_or(true);
+    let lines: Vec<Vec<u8>> = layout(environment)?.into_iter().map(|line| line.as_bytes().to_vec()).collect();
+    let success_rate = is_slippery.then_some(FrozenLake::SUCCESS_RATE);
+    frozen_lake(&lines, success_rate, LakeRewards::default()).map_err(|error| error.to_string())
 }

@@ -1,15 +1,15 @@
 //! The cells of a value map: those of a table's map, or of a plane through the observations.
 
+mod axis;
 pub(crate) mod best;
 
 use serde_json::Value;
 
-use crate::environment::{Board, Bounds, Environment};
+use self::axis::Axis;
+use crate::environment::{Board, Environment};
 use crate::json::{integer, numbers};
 use crate::settings::Discretizer;
 
-/// The largest number of cells along an axis; finer grids are shown at this many points.
-const MAX_CELLS: usize = 128;
 /// The number of cells along an axis if the discretizer has no cells.
 const DEFAULT_CELLS: u32 = 48;
 
@@ -22,10 +22,10 @@ pub(crate) enum Cells {
     Plane(Plane),
 }
 
-/// Two components of the observations; the others are fixed.
+/// Two axes through the observations; the other components are fixed.
 #[derive(Clone, Debug)]
 pub(crate) struct Plane {
-    components: [usize; 2],
+    axes: [Axis; 2],
     at: Vec<f64>,
     /// The edges of the columns, ascending.
     pub(crate) x_edges: Vec<f64>,
@@ -53,7 +53,8 @@ impl Cells {
             }
         };
         let last = bounds.len() as u32 - 1;
-        let components = [bounded("x", 0, last)? as usize, bounded("y", 1.min(last), last)? as usize];
+        let axes = [bounded("x", 0, last)?, bounded("y", 1.min(last), last)?]
+            .map(|component| Axis::new(environment, component as usize));
         let counts = [bounded("columns", DEFAULT_CELLS, 128)?.max(1), bounded("rows", DEFAULT_CELLS, 128)?.max(1)];
         let at = match get("at") {
             None => vec![0.0; bounds.len()],
@@ -61,9 +62,9 @@ impl Cells {
                 .filter(|at| at.len() == bounds.len())
                 .ok_or("map.at must hold a number for each component")?,
         };
-        let [x_edges, mut y_edges] = [0, 1].map(|axis| edges(discretizer, bounds, components[axis], counts[axis]));
+        let [x_edges, mut y_edges] = [0, 1].map(|axis| axes[axis].edges(discretizer, bounds, counts[axis]));
         y_edges.reverse();
-        Ok(Self::Plane(Plane { components, at, x_edges, y_edges }))
+        Ok(Self::Plane(Plane { axes, at, x_edges, y_edges }))
     }
 
     pub(crate) fn columns(&self) -> usize {
@@ -94,8 +95,9 @@ impl Cells {
                 }
                 let middle = |edges: &[f64], index: usize| edges[index].midpoint(edges[index + 1]);
                 let mut observation = plane.at.clone();
-                observation[plane.components[0]] = middle(&plane.x_edges, cell % self.columns());
-                observation[plane.components[1]] = middle(&plane.y_edges, cell / self.columns());
+                let [x, y] = plane.axes;
+                x.put(&mut observation, middle(&plane.x_edges, cell % self.columns()));
+                y.put(&mut observation, middle(&plane.y_edges, cell / self.columns()));
                 Some(observation)
             }
         }
@@ -108,32 +110,11 @@ impl Cells {
                 observation.first().and_then(|&state| board.cells.get(state as usize)).copied().unwrap_or(0)
             }
             Self::Plane(plane) => {
-                let [x, y] = plane.components.map(|component| observation.get(component).copied().unwrap_or(0.0));
+                let [x, y] = plane.axes.map(|axis| axis.place(observation));
                 let column = plane.x_edges[1..self.columns()].partition_point(|&edge| edge <= x);
                 let row = plane.y_edges[1..self.rows()].partition_point(|&edge| edge > y);
                 row * self.columns() + column
             }
-        }
-    }
-}
-
-/// The edges of the cells along a component, ascending.
-fn edges(discretizer: &Discretizer, bounds: Bounds, component: usize, count: u32) -> Vec<f64> {
-    let even = |low: f64, high: f64, count: u32| {
-        (0..=count).map(|edge| low + (high - low) * f64::from(edge) / f64::from(count)).collect()
-    };
-    match discretizer {
-        Discretizer::Grid(grid) => {
-            let edges = &grid.edges[component];
-            if edges.len() > MAX_CELLS + 1 {
-                return even(edges[0], edges[edges.len() - 1], MAX_CELLS as u32);
-            }
-            edges.clone()
-        }
-        Discretizer::Tiles { limits, .. } => even(limits[component].0, limits[component].1, count),
-        Discretizer::Identity => {
-            let (low, high) = bounds[component];
-            even(low.into(), high.into(), count)
         }
     }
 }

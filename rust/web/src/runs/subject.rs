@@ -101,6 +101,12 @@ pub(crate) fn subject(environment: &Environment, discretizer: &Discretizer) -> O
         (&Environment::CartPole(env), Discretizer::Tiles { features, .. }) => {
             Box::new(EnvWithFeatures { env, features: (**features).clone(), n_active })
         }
+        (&Environment::Acrobot(env), Discretizer::Grid(grid)) => {
+            Box::new(EnvWithFeatures { env, features: grid.features.clone(), n_active })
+        }
+        (&Environment::Acrobot(env), Discretizer::Tiles { features, .. }) => {
+            Box::new(EnvWithFeatures { env, features: (**features).clone(), n_active })
+        }
         _ => return None,
     })
 }

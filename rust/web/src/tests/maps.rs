@@ -1,5 +1,7 @@
 //! The values in a report, and the optimal or best known values to compare them with.
 
+use std::f64::consts::PI;
+
 use serde_json::Value;
 
 use super::{ARTICLE, GRID, MOUNTAIN_CAR, call, finish, inspect, of_table, start, table};
@@ -102,4 +104,38 @@ fn the_map_of_blackjack_shows_each_state_once() {
         let state = (sum * 11 + cell % 21 % 11 + 1) * 2 + ace;
         assert_eq!(shown.to_bits(), values[2 * state].max(values[2 * state + 1]).to_bits(), "{cell}");
     }
+}
+
+#[test]
+fn the_map_of_acrobot_shows_its_angles() {
+    let settings = of_table(r#""sarsa""#).replace(
+        r#""discretizer": "identity""#,
+        r#""discretizer": "tiles", "tilings": 4, "tiles": [2], "low": [-1, -1, -1, -1, -12.5, -28],
+        "high": [1, 1, 1, 1, 12.5, 28]"#,
+    );
+    let map = r#"{"x": 0, "y": 2, "at": [0, 0, 0, 0, 0, 0], "columns": 8, "rows": 4}"#;
+    let request = format!(
+        r#"{{"call": "start", "environment": {{"kind": "acrobot"}}, "settings": {settings}, "seeds": [1], "map": {map}}}"#
+    );
+    let mut playground = Playground::default();
+    assert_eq!(call(&mut playground, &request).get("error"), None);
+    finish(&mut playground, 1_000_000);
+    call(&mut playground, r#"{"call": "report", "map": true, "episode": true}"#);
+    for name in ["xEdges", "yEdges"] {
+        let edges = playground.floats(name).expect("edges");
+        let ends = [edges[0], edges[edges.len() - 1]].map(f64::abs);
+        assert_eq!(ends, [PI; 2], "{name}");
+    }
+    let values = playground.floats("values").expect("values").to_vec();
+    assert_eq!(values.len(), 32);
+    // The first cell of the second row: a column is an eighth of a circle wide, a row a quarter high.
+    let [theta1, theta2] = [-7.0 / 8.0, 1.0 / 4.0].map(|half_circles: f64| half_circles * PI);
+    inspect(&mut playground, 8);
+    let observation = playground.floats("observation").expect("an observation");
+    for (number, expected) in observation.iter().zip([theta1.cos(), theta1.sin(), theta2.cos(), theta2.sin(), 0.0, 0.0])
+    {
+        assert!((number - expected).abs() < 1e-15, "{observation:?}");
+    }
+    let largest = playground.floats("actionValues").expect("values").iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    assert_eq!(values[8].to_bits(), largest.to_bits());
 }

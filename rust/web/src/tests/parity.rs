@@ -1,9 +1,10 @@
 //! Learned values equal those of the core, with its parts put together by hand.
 
-use qtab_core::envs::classic_control::{CartPole, MountainCar};
+use qtab_core::envs::classic_control::{Acrobot, CartPole, MountainCar};
 use qtab_core::envs::tabular::{Outcome, TabularMdp};
 use qtab_core::features::{Axis, Identity, Rounding, TileCoding};
 use qtab_core::learners::{Agent, QLearning, Sarsa, SarsaLambda, TdLearner, TraceKind, Traces};
+use qtab_core::numeric::numpy_f32_cos_sin;
 use qtab_core::policies::{AnyPolicy, EpsilonGreedy, TieBreaking};
 use qtab_core::q_table::TerminalUpdate;
 use qtab_core::random::{AgentRng, Pcg64, SeedSequence};
@@ -122,4 +123,33 @@ fn steps_slices_and_inspections_change_nothing() {
             assert_eq!(table(&mut in_parts, index), learned, "{algorithm}, seed {index}");
         }
     }
+}
+
+#[test]
+fn acrobot_learns_what_the_core_learns() {
+    let settings = r#"{"algorithm": "sarsa", "learning_rate": 0.5, "discount": 1, "learning_rate_schedule": "constant",
+        "initial_q": 0, "terminal_update": "target", "on_truncation": "bootstrap", "exploration": "epsilon_greedy",
+        "epsilon": 0.1, "epsilon_schedule": "constant", "ties": "first", "discretizer": "tiles", "tilings": 8,
+        "tiles": [3], "low": [-1, -1, -1, -1, -12, -28], "high": [1, 1, 1, 1, 12, 28], "episodes": 10,
+        "max_episode_steps": 200, "bit_generator": "PCG64"}"#;
+    let mut playground = Playground::default();
+    start(&mut playground, r#"{"kind": "acrobot"}"#, settings, "[7]");
+    finish(&mut playground, 1_000_000);
+    let limits = [1.0, 1.0, 1.0, 1.0, 12.0, 28.0];
+    let tiles: TileCoding<f32, 8> = TileCoding::new(&limits.map(|limit: f64| -limit), &limits, &[3; 6], 8);
+    // NumPy's cosine and sine of the first observation.
+    let env = Acrobot { f32_cos_sin: numpy_f32_cos_sin, ..Acrobot::default() };
+    let seed = SeedSequence::new(&[7]);
+    let task = NativeTask::new(env, tiles, Some(200), Pcg64::new(&seed));
+    let agent = Agent {
+        table: QTable::<0>::new(vec![0.0; 8 * 4096 * 3], 3),
+        policy: AnyPolicy::EpsilonGreedy { epsilon: Schedule::constant(0.1), ties: TieBreaking::First },
+        learning_rate: LearningRate::scheduled(Schedule::constant(0.5), 8),
+        discount: 1.0,
+        terminal_update: TerminalUpdate::Target,
+        masks: None,
+    };
+    let mut trainer = Trainer::new(task, TdLearner { agent, rule: Sarsa }, AgentRng::pcg64(&seed));
+    trainer.advance(Budget { episodes: 10, work: WHOLE }).expect("tiles have no bounds");
+    assert_eq!(table(&mut playground, 0), trainer.learner().agent.table.values());
 }

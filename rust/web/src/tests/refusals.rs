@@ -62,6 +62,25 @@ fn what_is_not_json_is_refused() {
 }
 
 #[test]
+fn the_map_of_a_lake_has_a_start_and_rows_of_one_length() {
+    for (layout, message) in [
+        (r"[]", "layout must hold 1 to 40 rows of one length, from 1 to 40 cells"),
+        (r#"["SF", "G"]"#, "layout must hold 1 to 40 rows of one length, from 1 to 40 cells"),
+        (r"[3]", "layout must hold texts"),
+        (r#"["FG"]"#, ""),
+        (r#"["SG"]"#, "no error"),
+    ] {
+        let settings = of_table(r#""sarsa""#);
+        let request = format!(
+            r#"{{"call": "start", "environment": {{"kind": "frozen_lake", "layout": {layout}}}, "settings": {settings}, "seeds": [0]}}"#
+        );
+        let response = call(&mut Playground::default(), &request);
+        let error = response.get("error").and_then(Value::as_str).unwrap_or("no error");
+        assert!(error.starts_with(message) && (error == "no error") == (message == "no error"), "{layout}: {error}");
+    }
+}
+
+#[test]
 fn tables_too_large_are_refused() {
     let (error, _) = error_of(r#""scale": [10, 100]"#, r#""scale": [1e300, 1e300]"#);
     assert_eq!(error, "scale must be such that the table has at most 16777216 rows, got an array of 2");

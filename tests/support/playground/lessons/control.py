@@ -1,6 +1,7 @@
-"""What the page says of MountainCar and CartPole."""
+"""What the page says of MountainCar, CartPole and Acrobot."""
 
 import numpy as np
+import pytest
 
 from support.playground.lessons import Claims, Lesson, Lessons, last
 
@@ -47,6 +48,27 @@ def solved_pole(lesson: Lesson, _: Lessons) -> None:
     assert all(episode.total == 500 for episode in lesson.greedy_of_all(runs))
 
 
+def acrobot_with_tiles(lesson: Lesson, _: Lessons) -> None:
+    returns = lesson.runs().episode_returns
+    assert returns[:, :10].mean() < -300
+    assert returns[:, 200:300].mean() > -105
+    assert returns[:, -100:].mean() > -90
+
+
+def acrobot_without_traces(lesson: Lesson, others: Lessons) -> None:
+    returns = lesson.runs().episode_returns - others["Acrobot-v1", "Tile coding"].runs().episode_returns
+    assert -returns[:, :100].mean() == pytest.approx(40, abs=15)
+    assert -returns[:, -100:].mean() == pytest.approx(10, abs=4)
+
+
+def acrobot_in_bins(lesson: Lesson, _: Lessons) -> None:
+    assert np.prod(lesson.settings["bins"]) == 4096
+    many = -lesson.runs().episode_returns[:, -100:].mean()
+    few = -lesson.runs(bins=(2, 2, 2, 2, 4, 4)).episode_returns[:, -100:].mean()
+    assert many == pytest.approx(300, abs=40)
+    assert few == pytest.approx(many / 2, rel=0.2)
+
+
 CLAIMS: Claims = {
     ("MountainCar-v0", "The article: fails"): article,
     ("MountainCar-v0", "Optimistic: better"): optimistic_car,
@@ -54,4 +76,7 @@ CLAIMS: Claims = {
     ("CartPole-v1", "Too coarse: fails"): coarse_pole,
     ("CartPole-v1", "Bins"): pole_in_bins,
     ("CartPole-v1", "Solved: tile coding"): solved_pole,
+    ("Acrobot-v1", "Tile coding"): acrobot_with_tiles,
+    ("Acrobot-v1", "One-step Sarsa: slower"): acrobot_without_traces,
+    ("Acrobot-v1", "Bins: slow"): acrobot_in_bins,
 }

@@ -11,6 +11,7 @@ const BOARD = Array.from({ length: 16 }, (_, index) => cell(index % 4, Math.floo
 const DRAWINGS = {
   mountain_car: `<path d="M2 6 C8 12 12 29 20 29 C28 29 32 8 41 5" ${STROKE}/><path d="M41 5v-5l-6 2.5 6 2.5" fill="currentColor"/><circle cx="20" cy="25" r="3.4" fill="currentColor"/>`,
   cart_pole: `<path d="M2 29h40" ${STROKE}/><rect x="13" y="21" width="18" height="7" rx="2" fill="currentColor"/><path d="M22 21 L28 2" ${STROKE}/>`,
+  acrobot: `<path d="M3 6h38" ${STROKE} stroke-dasharray="1 5"/><path d="M22 13L33 19L25 29" ${STROKE}/><circle cx="22" cy="13" r="3" fill="currentColor"/><circle cx="33" cy="19" r="2.500" fill="currentColor"/>`,
   frozen_lake: BOARD + '<circle cx="17.500" cy="11.500" r="3" fill="currentColor"/><circle cx="33.500" cy="11.500" r="3" fill="currentColor"/><circle cx="33.500" cy="19.500" r="3" fill="currentColor"/>',
   cliff: BOARD + cells([[1, 3], [2, 3]]),
   taxi: `<path d="M4 24h36v-7l-7-2-5-8H16l-5 8-7 2z" fill="currentColor" opacity=".85"/><circle cx="13" cy="25" r="4" fill="currentColor"/><circle cx="31" cy="25" r="4" fill="currentColor"/>`,
@@ -27,7 +28,7 @@ function drawing(key, entry) {
   return svg;
 }
 
-/** Shows the environments as radio buttons, and the title and sentence of the chosen one. */
+/** Shows the environments as radio buttons, the title and sentence of the chosen one, and whether Python learns the same. */
 export function setUpEnvironments(store, group, title, sentence) {
   const choices = Object.entries(store.definitions.environments).map(([key, entry]) => [key, drawing(key, entry), entry.title]);
   const mark = radioButtons(group, "environment", choices, (key) => store.update(exampleState(store, key, 0)));
@@ -36,6 +37,7 @@ export function setUpEnvironments(store, group, title, sentence) {
     group.scrollLeft = Math.max(chosen.offsetLeft - group.offsetLeft - group.clientWidth / 3, 0);
     title.textContent = store.entry.title;
     sentence.textContent = store.entry.sentence;
+    for (const claim of document.querySelectorAll("[data-chaotic]")) claim.hidden = claim.dataset.chaotic !== String(store.entry.chaotic);
   };
   store.subscribe(show);
   show(store.state);

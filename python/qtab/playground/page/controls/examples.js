@@ -57,6 +57,25 @@ export const EXAMPLES = {
       look: "True online Sarsa(λ) with 16 tilings. The curve rises to 500, the time limit, and the greedy agent keeps the pole up to the end.",
     },
   ],
+  "Acrobot-v1": [
+    {
+      preset: "learns",
+      title: "Tile coding",
+      look: "True online Sarsa(λ) with 16 tilings. The first swing-ups take hundreds of steps, those after 200 episodes about a hundred, and the last ones fewer than 90 on average over 16 seeds. On the map both links are at rest; an arrow to the left is a torque of −1, one to the right a torque of +1.",
+    },
+    {
+      preset: "learns",
+      settings: { algorithm: "sarsa" },
+      title: "One-step Sarsa: slower",
+      look: "The same tiles without traces: each update changes the value of a single step, and what is learned at the line spreads back slowly. Over 16 seeds, the first 100 episodes take about 40 steps more on average, and the last 100 about 10 more.",
+    },
+    {
+      preset: "learns",
+      settings: { algorithm: "q_learning", discretizer: "bins", bins: [4, 4, 4, 4, 4, 4], learning_rate: 0.5 },
+      title: "Bins: slow",
+      look: "4 bins for each of the six components make 4,096 states, and none of them learns from its neighbors: after 1,000 episodes a swing-up still takes about 300 steps on average over 16 seeds. With 2, 2, 2, 2, 4 and 4 bins there are only 256 states, and it takes about half as many.",
+    },
+  ],
   "FrozenLake-v1": lake(
     "With ε = 0 and initial values of 0 all actions look alike, and the agent always takes the first. It never sees the goal, so there is nothing to learn from: all values stay 0.",
     "The only change: initial values of 1. Every action that has been tried looks worse than the untried ones, so the agent tries everything. It then reaches the goal in about three out of four episodes, as often as an optimal policy does. On slippery ice both sometimes fall into a hole: with seed 0, the greedy agent shown below does.",

@@ -73,7 +73,7 @@ function named({ name, unit }) {
   return unit ? `${name} (${unit})` : name;
 }
 
-const DIRECTIONS = { left: [-1, 0], right: [1, 0], up: [0, -1], down: [0, 1], west: [-1, 0], east: [1, 0], north: [0, -1], south: [0, 1] };
+const DIRECTIONS = { left: [-1, 0], right: [1, 0], up: [0, -1], down: [0, 1], west: [-1, 0], east: [1, 0], north: [0, -1], south: [0, 1], "-1": [-1, 0], "+1": [1, 0] };
 const NO_ACTION = 255;
 const MIN_ARROW_CELL = 13;
 const HATCH = 6; // pixels between the lines of cells that were never visited

@@ -1,12 +1,13 @@
 // The greedy agent in motion: an episode on a canvas, with a pause button and a slider for its steps.
 
+import { acrobot } from "./acrobot.js";
 import { blackjack, taxi } from "./games.js";
 import { cartPole, gridWorld, mountainCar } from "./scenes.js";
 import { onResize, surface } from "./surface.js";
 import { onThemeChange } from "./theme.js";
 import { counted, number } from "../format.js";
 
-const SCENES = { mountain_car: mountainCar, cart_pole: cartPole, taxi, blackjack };
+const SCENES = { mountain_car: mountainCar, cart_pole: cartPole, acrobot, taxi, blackjack };
 const PAUSE_AT_END = 1.2;
 const MAX_TRAIL = 60;
 

@@ -102,7 +102,24 @@ export function pathOf(episode, { plane, drawing, layout }) {
   const { observations, components } = episode;
   const places = [];
   for (let at = 0; at < observations.length; at += components) {
-    places.push([observations[at + plane.xIndex], observations[at + plane.yIndex]]);
+    const place = placeOn(plane, observations.subarray(at, at + components));
+    if (at && hasTurned(plane, place, places.at(-1))) places.push(null);
+    places.push(place);
   }
   return places;
+}
+
+/** Whether an angle has passed from π to −π, or back, between two places. */
+function hasTurned({ x, y }, place, before) {
+  return [x, y].some(({ is_angle }, axis) => is_angle && Math.abs(place[axis] - before[axis]) > Math.PI);
+}
+
+/** The place of an observation along an axis of a plane: a component, or the angle of a cosine and the sine after it. */
+export function along({ component, is_angle }, observation) {
+  return is_angle ? Math.atan2(observation[component + 1], observation[component]) : observation[component];
+}
+
+/** The place of an observation on a plane. */
+export function placeOn({ x, y }, observation) {
+  return [along(x, observation), along(y, observation)];
 }

@@ -11,10 +11,12 @@ import { StateMap } from "../drawing/value_map.js";
 import { count, counted, number } from "../format.js";
 import { showInspection } from "./inspector.js";
 import {
+  along,
   bestContent,
   DIVERGED,
   learnedContent,
   pathOf,
+  placeOn,
   showLegend,
   spokenResult,
   statusText,
@@ -254,9 +256,8 @@ export class View {
     const { environment, grid } = this.store.state;
     const { entry } = this.store;
     const layout = environment === PAINTED ? grid.layout : entry.layout;
-    const { observations, map, actions } = entry;
-    const plane = map && { x: observations[map.x], y: observations[map.y], xIndex: map.x, yIndex: map.y };
     const rewards = environment === PAINTED ? grid.rewards : null;
+    const { map: plane, actions } = entry;
     return { plane, layout, rewards, actions, drawing: entry.drawing };
   }
 
@@ -321,7 +322,7 @@ export class View {
 
   placeOf(observation, cell) {
     const { plane } = this.values.content;
-    return plane ? [observation[plane.xIndex], observation[plane.yIndex]] : cell;
+    return plane ? placeOn(plane, observation) : cell;
   }
 
   showAgent(step) {
@@ -348,12 +349,15 @@ export class View {
     return `${place}${kind}: value ${number(map.values[cell])}${policy}, visited ${counted(Math.round(map.visits[cell]), "time")}.`;
   }
 
-  /** The state of an inspected cell: its observation, or its position on the grid. */
+  /** The state of an inspected cell: its observation, with angles for their cosines and sines, or its position on the grid. */
   stateText({ cell, observation }) {
-    const { observations, drawing } = this.store.entry;
+    const { observations, drawing, map } = this.store.entry;
     if (!observations) return stateWords(drawing, cell, this.result.map.columns);
-    const parts = observations.map(({ name, unit }, index) => `${name} ${number(Number(observation[index].toFixed(6)), 3)}${unit ? ` ${unit}` : ""}`);
-    return parts.join(", ");
+    const angles = [map.x, map.y].filter((axis) => axis.is_angle);
+    const isSine = (index) => angles.some(({ component }) => component + 1 === index);
+    const axes = observations.map((each, component) => angles.find((angle) => angle.component === component) ?? { ...each, component });
+    const text = (axis) => `${axis.name} ${number(Number(along(axis, observation).toFixed(6)), 3)}${axis.unit ? ` ${axis.unit}` : ""}`;
+    return axes.filter((_, index) => !isSine(index)).map(text).join(", ");
   }
 
   pick(cell, how) {
