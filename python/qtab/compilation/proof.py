@@ -142,11 +142,15 @@ def _difference(
 
 
 def _first(name: str, one: NDArray[Any], other: NDArray[Any], indexed: bool) -> tuple[str, Any, Any] | None:
-    """Returns the first number of two arrays of one dtype whose bytes differ, with its name; None without any."""
+    """Returns the first number of two arrays of one dtype whose bytes differ, with its name; None without any.
+
+    All NaN are equal: their signs depend on the processor, and compiled code refuses or repeats what reads them.
+    """
     if one.tobytes() == other.tobytes():
         return None
     for index in range(len(one)):
-        if one[index].tobytes() != other[index].tobytes():
+        are_nan = one[index] != one[index] and other[index] != other[index]
+        if one[index].tobytes() != other[index].tobytes() and not are_nan:
             return f"{name}[{index}]" if indexed else name, one[index].item(), other[index].item()
     return None
 

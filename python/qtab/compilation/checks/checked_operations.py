@@ -149,6 +149,17 @@ absolute: Any = compiled(_absolute)
 """``abs`` of an int64."""
 
 
+def _sum_of_integers(values: Any) -> Any:
+    total = 0
+    for value in values:
+        total = _add(total, np.int64(value))
+    return total
+
+
+sum_of_integers: Any = compiled(_sum_of_integers)
+"""``sum`` of a list or a tuple of integers of one type, or of booleans."""
+
+
 def _range_check(low: int, high: int) -> Any:
     source = f"def check(value):\n    if value < {low} or value > {high}:\n        raise OverflowError\n"
     scope: dict[str, Any] = {}
@@ -165,6 +176,15 @@ RANGE_CHECKS: dict[Any, Any] = {
     for name in ("int8", "int16", "int32", "uint8", "uint16", "uint32", "uint64")
 }
 """Functions that raise an error for integers outside the range of a type."""
+
+
+def _not_nan(value: Any) -> Any:
+    if value != value:
+        raise ValueError
+
+
+not_nan: Any = compiled(_not_nan)
+"""Raises an error for NaN."""
 
 
 def _float_range_check(name: str) -> Any:
@@ -212,7 +232,9 @@ def _math_function(name: str) -> Any:
     scope: dict[str, Any] = {"math": math, "np": np, "defined": compiled(_defined), "to_int": to_int}
     smallest = {"log": "0.0", "log10": "0.0", "log2": "0.0", "log1p": "-1.0"}
     if name in MATH_TWO:
-        source = f"def f(x, y):\n    return math.{name}(np.float64(x), np.float64(y))\n"
+        # The sign of a NaN depends on the order of operations, and on the processor.
+        check = "    if z != z:\n        raise ValueError\n" if name == "copysign" else ""
+        source = f"def f(x, y):\n    z = np.float64(y)\n{check}    return math.{name}(np.float64(x), z)\n"
     else:
         condition = f"z <= {smallest[name]}" if name in smallest else "z < 0.0" if name == "sqrt" else ""
         check = f"    if {condition}:\n        raise ValueError\n" if condition else ""

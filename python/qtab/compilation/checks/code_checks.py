@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 from numba.core import ir, types
 
+from qtab.compilation.checks import containers
+from qtab.compilation.checks.builtin_calls import check_builtin, is_builtin
 from qtab.compilation.checks.checked_operations import (
     DRAW_CHECKS,
     FLOAT_RANGE_CHECKS,
@@ -15,31 +17,40 @@ from qtab.compilation.checks.checked_operations import (
     INTEGER_OPERATIONS,
     MATH,
     RANGE_CHECKS,
-    absolute,
     exact_integer,
     negative,
-    rounded,
     to_int,
 )
-from qtab.compilation.checks.exact_values import check_integers, check_mixed_operation, checks_after, compared
+from qtab.compilation.checks.exact_values import (
+    check_compared,
+    check_integers,
+    check_mixed_operation,
+    checks_after,
+    compared,
+)
 from qtab.compilation.checks.known_functions import (
     DRAWS,
     DRAWS_DIFFERENT,
     MATH_ADVICE,
     MATH_ROUNDED,
-    NUMPY_DIFFERENT,
-    NUMPY_EXTREMES,
-    NUMPY_OPERATORS,
-    NUMPY_SUMS,
-    NUMPY_WRITES,
     OTHER_MATH,
 )
-from qtab.compilation.checks.made_arrays import arrays_differ, check_made_array, check_numbers, check_of
+from qtab.compilation.checks.lost_numbers import LostNumbers
+from qtab.compilation.checks.made_arrays import arrays_differ, check_of
 from qtab.compilation.checks.mixed_numbers import MIXED_OPERATIONS, NUMBER, MixedNumbers
-from qtab.compilation.checks.number_types import NUMBERS, holds, is_int64, is_narrow, leaf, mixed, of_integers
+from qtab.compilation.checks.number_types import (
+    CONVERT,
+    NUMBERS,
+    holds,
+    is_int64,
+    is_narrow,
+    joins_boolean,
+    leaf,
+    mixed,
+)
+from qtab.compilation.checks.numpy_calls import check_array_method, check_numpy_call
 from qtab.compilation.checks.typed_code import TypedCode
 
-CONVERT = "convert the numbers with np.int64(...) or np.float64(...)"
 MIXED = "a number that is sometimes an integer and sometimes a float: the sign of a zero would differ"
 WRITE_FLOATS = "write a float in every case, such as 0.0 for 0"
 COMPARISONS = (operator.lt, operator.le, operator.gt, operator.ge, operator.eq, operator.ne)
@@ -51,12 +62,15 @@ class Checks(TypedCode):
     def run(self) -> bool:
         """Changes the code; returns whether there were changes."""
         self.mixed = MixedNumbers(self, self.state.func_id.func)
+        self.lost = LostNumbers(self, self.mixed)
         for block in self.state.func_ir.blocks.values():
             body: list[Any] = []
             after: list[Any] = []
             for statement in block.body:
-                if self.mixed.is_lost(statement):
+                if self.lost.in_statement(statement):
                     self.refuse(statement, MIXED, WRITE_FLOATS)
+                elif (refused := containers.refused(self, statement)) is not None:
+                    self.refuse(statement, *refused)
                 if not (isinstance(statement, ir.Assign) and getattr(statement.value, "op", "") == "phi"):
                     body, after = body + after, []
                 if isinstance(statement, ir.Assign) and isinstance(statement.value, ir.Expr):
@@ -67,6 +81,8 @@ class Checks(TypedCode):
                     body += self._store(statement, block.scope)
                 body.append(statement)
                 if isinstance(statement, ir.Assign):
+                    if isinstance(leaf(self.type_of(statement.target)), types.Complex):
+                        self.refuse(statement, "a complex number", "compute its real and imaginary parts")
                     after += checks_after(self, self.mixed, statement, block.scope)
             block.body = body + after
         return self.made > 0
@@ -87,7 +103,9 @@ class Checks(TypedCode):
         """Refuses a number whose type is another one in Python, where it comes from another branch."""
         kinds = [leaf(self.type_of(source)) for source in sources]
         target = leaf(self.type_of(statement.target))
-        if any((is_narrow(kind) or kind == types.float32) and kind != target for kind in kinds):
+        if any(joins_boolean(self.type_of(source), self.type_of(statement.target)) for source in sources):
+            self.refuse(statement, "a number that is sometimes a boolean", "convert the boolean with int(...)")
+        elif any((is_narrow(kind) or kind == types.float32) and kind != target for kind in kinds):
             self.refuse(statement, "numbers of several types", CONVERT)
 
     def _expression(self, statement: Any, scope: Any) -> list[Any]:
@@ -119,7 +137,7 @@ class Checks(TypedCode):
         kinds = [leaf(one) for one in given]
         if not all(isinstance(kind, NUMBERS) for kind in kinds):
             sides = compared(expression, *given) if function in (*COMPARISONS, operator.contains) else []
-            return [one for side, paths in sides for one in check_integers(self, scope, side, paths, expression.loc)]
+            return [one for side, paths in sides for one in check_compared(self, scope, side, paths, expression.loc)]
         if function is operator.matmul:
             return self.refuse(expression, "a matrix product may add in another order", "add in a loop")
         if function not in INTEGER_OPERATIONS and function not in COMPARISONS:
@@ -133,6 +151,8 @@ class Checks(TypedCode):
         if function in MIXED_OPERATIONS and self.mixed.is_mixed_operation(expression.lhs, expression.rhs):
             return check_mixed_operation(self, expression, scope)
         scalars = not any(isinstance(one, types.Array) for one in given)
+        if not scalars and self.lost.in_array(expression.lhs, expression.rhs):
+            return self.refuse(expression, MIXED, WRITE_FLOATS)
         integers = scalars and all(isinstance(kind, types.Integer | types.Boolean) for kind in kinds)
         if function in COMPARISONS:
             return self._comparison(expression, scope, given) if scalars else []
@@ -201,32 +221,16 @@ class Checks(TypedCode):
         name = str(getattr(key, "__name__", key)).rpartition(".")[2]
         if any(map(_draws_elsewhere, (key, called))):
             self.refuse(expression, f"{name} does not draw from the generator of the environment", "draw from rng")
-        elif key in (int, float, round, sum, pow, divmod, min, max, abs):
-            return self._builtin_call(statement, scope, key, given)
+        elif is_builtin(key):
+            return check_builtin(self, statement, scope, key)
         elif getattr(key, "__module__", None) == "math" or getattr(math, name, None) is key:
             return self._math_call(statement, scope, key, name)
         elif isinstance(key, np.ufunc) or str(getattr(key, "__module__", "")).partition(".")[0] == "numpy":
-            self._numpy_call(expression, key, name, given)
-            return check_made_array(self, statement, scope, name)
-        return []
-
-    def _builtin_call(self, statement: Any, scope: Any, key: Any, given: list[Any]) -> list[Any]:
-        expression = statement.value
-        kinds = [types.unliteral(one) for one in given]
-        if key is round and len(given) > 1:
-            self.refuse(expression, "round with digits can differ", "write math.floor(x + 0.5)")
-        elif key in (pow, divmod):
-            self.refuse(expression, f"{key.__name__} can differ", "write products, or a // b and a % b")
-        elif key in (min, max, abs) and (reason := mixed([leaf(kind) for kind in kinds])):
-            self.refuse(expression, reason, CONVERT)
-        elif key is abs and isinstance(kinds[0], types.Integer):
-            return self.replace(statement, scope, absolute, expression.args, [types.int64])
-        elif key is sum and not of_integers(kinds[0]):
-            self.refuse(expression, "a sum of floats may be added in another order", "add in a loop")
-        elif key is round and isinstance(kinds[0], types.Integer | types.Boolean):
-            statement.value = ir.Expr.cast(expression.args[0], expression.loc)  # as a float it might be rounded
-        elif key in (int, round) and len(kinds) == 1 and isinstance(kinds[0], types.Float):
-            return self.replace(statement, scope, to_int if key is int else rounded, expression.args, [types.float64])
+            if self.lost.in_numpy(expression, name):
+                return self.refuse(expression, MIXED, WRITE_FLOATS)
+            return check_numpy_call(self, statement, scope, key, name)
+        else:
+            self.refuse(expression, f"{name} may give another result in compiled code", "write operators")
         return []
 
     def _math_call(self, statement: Any, scope: Any, key: Any, name: str) -> list[Any]:
@@ -239,24 +243,6 @@ class Checks(TypedCode):
         integer = name in MATH_ROUNDED and isinstance(types.unliteral(self.type_of(expression.args[0])), types.Integer)
         check = self.check(exact_integer, scope, expression.args, expression.loc) if integer else []
         return [*check, *self.replace(statement, scope, MATH[key], expression.args, None)]
-
-    def _numpy_call(self, expression: Any, key: Any, name: str, given: list[Any]) -> None:
-        kinds = [kind for kind in map(leaf, given) if isinstance(kind, NUMBERS)]
-        if name in NUMPY_OPERATORS:
-            self.refuse(expression, f"np.{name} differs for some numbers", NUMPY_OPERATORS[name])
-        elif name in NUMPY_EXTREMES and not all(isinstance(kind, types.Integer) for kind in kinds):
-            self.refuse(expression, f"np.{name}: zeros may differ in sign", NUMPY_EXTREMES[name])
-        elif name in NUMPY_DIFFERENT:
-            self.refuse(expression, f"np.{name} rounds differently in compiled code", NUMPY_DIFFERENT[name])
-        elif name in NUMPY_WRITES:
-            self.refuse(expression, f"np.{name} can change an array of self", "assign to the elements in a loop")
-        elif name in NUMPY_SUMS and not (given and of_integers(given[0])):
-            self.refuse(expression, f"np.{name} may add in another order", "add in a loop")
-        elif isinstance(key, np.ufunc):
-            if len(given) > key.nin:
-                self.refuse(expression, f"np.{name} with an array for the result", "assign the result")
-            elif reason := mixed(kinds):
-                self.refuse(expression, f"np.{name}: {reason}", CONVERT)
 
     def _method_call(self, statement: Any, scope: Any, given: list[Any]) -> list[Any]:
         expression = statement.value
@@ -273,14 +259,7 @@ class Checks(TypedCode):
                 own = self.check_arguments(expression, scope, DRAW_CHECKS[name]) if name in DRAW_CHECKS else []
                 return [*(one for check in checks for one in check), *own]
         elif isinstance(of, types.Array):
-            if name in NUMPY_SUMS and not of_integers(of):
-                self.refuse(expression, f"array.{name}() may add in another order", "add in a loop")
-            elif name in ("min", "max") and not of_integers(of):
-                self.refuse(expression, f"array.{name}(): zeros may differ in sign", NUMPY_EXTREMES[name])
-            elif name in ("sort", "fill", "partition", "put", "itemset") and not of.mutable:
-                self.refuse(expression, f"array.{name}() changes an array of self", "copy the array first")
-            elif name == "fill" and expression.args:
-                return check_numbers(self, scope, expression.args[0], of.dtype, expression)
+            return check_array_method(self, expression, scope, name, of)
         return []
 
     def check_integer_argument(self, variable: Any, scope: Any, loc: Any) -> list[Any]:

@@ -8,7 +8,7 @@ from typing import Any
 
 from numba.core import types
 
-from qtab.compilation.checks.checked_operations import INPLACE, compiled, exact_float, exact_integer
+from qtab.compilation.checks.checked_operations import INPLACE, compiled, exact_float, exact_integer, not_nan
 from qtab.compilation.checks.mixed_numbers import ELEMENT, NUMBER, MixedNumbers, Path, Paths, converted
 from qtab.compilation.checks.number_types import is_int64
 from qtab.compilation.checks.typed_code import TypedCode
@@ -31,6 +31,16 @@ def check_integers(code: TypedCode, scope: Any, variable: Any, paths: Paths, loc
             return code.refuse(SimpleNamespace(loc=loc), reason, "write a float, such as 1e18 or math.inf")
     of_int64 = _of_int64(code.type_of(variable), paths)
     return code.check(_checker(of_int64), scope, [variable], loc) if of_int64 else []
+
+
+def check_compared(code: TypedCode, scope: Any, variable: Any, paths: Paths, loc: Any) -> list[Any]:
+    """Returns the statements that check numbers in a variable that are compared with floats within tuples and lists.
+
+    Python finds a NaN equal to itself there, because it compares objects first; an error is raised at a NaN.
+    """
+    found = check_integers(code, scope, variable, paths, loc)
+    floats = frozenset(path for path in paths if isinstance(_at(code.type_of(variable), path), types.Float))
+    return [*found, *(code.check(_checker(floats, True), scope, [variable], loc) if floats else [])]
 
 
 def check_mixed_operation(code: TypedCode, expression: Any, scope: Any) -> list[Any]:
@@ -95,12 +105,12 @@ def _elements(of: Any) -> Iterator[tuple[Path, Any]]:
 
 
 def _pairs(one: Any, other: Any, path: Path, other_path: Path) -> Iterator[tuple[Path | None, Path | None]]:
-    """Yields the places of int64 that are compared with floats: in the first value, or in the second."""
+    """Yields the places of numbers that are compared with floats: in the first value, or in the second."""
     one, other = types.unliteral(one), types.unliteral(other)
     if isinstance(one, types.BaseTuple) and isinstance(other, types.BaseTuple):
         for index, (inner, outer) in enumerate(zip(one, other, strict=False)):
             yield from _pairs(inner, outer, (*path, index), (*other_path, index))
-    elif one == types.int64 and isinstance(other, types.Float):
+    elif (one == types.int64 or isinstance(one, types.Float)) and isinstance(other, types.Float):
         yield path, None
     elif other == types.int64 and isinstance(one, types.Float):
         yield None, other_path
@@ -113,10 +123,11 @@ def _at(of: Any, path: Path) -> Any:
 
 
 @functools.cache
-def _checker(paths: Paths) -> Any:
-    """Returns a function of a value that checks the integers at paths."""
+def _checker(paths: Paths, are_floats: bool = False) -> Any:
+    """Returns a function of a value that checks the integers at paths, or that the floats there are not NaN."""
+    check = not_nan if are_floats else exact_integer
     if paths == {NUMBER}:
-        return exact_integer
+        return check
     lines = ["def check(value):", "    pass"]
     for path in sorted(paths):
         indent, found = "    ", "value"
@@ -126,7 +137,7 @@ def _checker(paths: Paths) -> Any:
                 indent, found = indent + "    ", f"item{depth}"
             else:
                 found = f"{found}[{index}]"
-        lines.append(f"{indent}exact_integer({found})")
-    scope: dict[str, Any] = {"exact_integer": exact_integer}
+        lines.append(f"{indent}checked({found})")
+    scope: dict[str, Any] = {"checked": check}
     exec("\n".join(lines), scope)  # noqa: S102 - code of this module
     return compiled(scope["check"])

@@ -7,6 +7,11 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+BUILTINS = ("abs", "bool", "chr", "enumerate", "float", "int", "isinstance", "iter", "len", "list", "max", "min",
+            "next", "ord", "print", "range", "round", "set", "slice", "sorted", "str", "sum", "tuple",
+            "zip")  # fmt: skip
+"""Python's own functions that give the same results, some of them with checks."""
+
 MATH_CHECKED = ("sin", "cos", "tan", "asin", "acos", "atan", "exp", "log", "log10", "sqrt", "sinh", "cosh", "tanh",
                 "log1p", "expm1", "log2")  # fmt: skip
 """Functions of ``math`` with the same bits that raise an error for some numbers."""
@@ -57,8 +62,10 @@ NUMPY_OPERATORS = {
     "left_shift": "write a << b",
     "right_shift": "write a >> b",
     "sign": "compare the number with 0",
+    "copysign": "write math.copysign(x, y)",
+    "signbit": "write math.copysign(1.0, x) < 0.0",
 }
-"""Functions of NumPy that differ for zeros, infinities or large shifts, and what to write instead."""
+"""Functions of NumPy that differ for zeros, infinities, large shifts or the signs of NaN, and what to write instead."""
 
 NUMPY_EXTREMES = {
     **{name: f"write {name[:3]}(x, y)" for name in ("minimum", "maximum")},
@@ -66,11 +73,23 @@ NUMPY_EXTREMES = {
 }
 """Functions of NumPy whose zeros may differ in sign for floats, and what to write instead."""
 
+NUMPY_OF_FLOATS = ("sin", "cos", "sqrt", "fabs", "isnan", "isinf", "isfinite", "full_like", "zeros", "ones", "empty")
+"""Functions of NumPy whose results have the same type for integers as for floats."""
+
 NUMPY_SUMS = {"sum", "mean", "std", "var", "dot", "matmul", "prod", "cumsum", "cumprod", "vdot", "inner", "average",
               "median", "percentile", "quantile", "nansum", "nanmean", "nanstd", "nanvar", "nanprod", "nancumsum",
               "nancumprod", "nanmedian", "trapz", "trapezoid", "norm", "convolve", "correlate", "cov",
               "corrcoef"}  # fmt: skip
 """Functions that may add or multiply floats in another order."""
+
+NUMPY_SUMS_OF_INTEGERS = {"sum", "prod", "cumsum", "cumprod", "nansum", "nanprod", "nancumsum", "nancumprod"}
+"""Those of them that are exact for integers. The others compute with floats."""
+
+NUMPY_SORTS = {
+    **dict.fromkeys(("sort", "unique", "partition"), "sort integers, or search in a loop"),
+    **dict.fromkeys(("argsort", "argpartition"), "search for the elements in a loop"),
+}
+"""Functions that may exchange equal elements, which are the same number only among integers."""
 
 NUMPY_WRITES = {"nan_to_num", "fill_diagonal", "nditer", "ndenumerate", "copyto", "put", "place", "putmask"}
 """Functions that may change an array of ``self`` without an error."""

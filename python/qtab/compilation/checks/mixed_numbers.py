@@ -29,8 +29,6 @@ EXACT_RESULTS = (operator.add, operator.sub, operator.mul)
 
 MIXED_OPERATIONS = (*INTEGER_RESULTS, *EXACT_RESULTS, operator.truediv)
 
-_CONTAINERS = (types.List, types.ListType, types.Set, types.DictType)
-
 
 class Callees:
     """The mixed numbers that functions receive and return, by their code, during one compilation."""
@@ -125,46 +123,6 @@ class MixedNumbers:
         """Returns whether an operator may have two integers in Python, at least one of which is a float here."""
         sides = (left, right)
         return any(map(self.is_mixed, sides)) and all(self.is_mixed(one) or self._is_whole(one) for one in sides)
-
-    def is_lost(self, statement: Any) -> bool:
-        """Returns whether mixed numbers go into a container, or into a function, whose results are not followed."""
-        value = getattr(statement, "value", None)
-        if isinstance(statement, ir.SetItem | ir.StaticSetItem):
-            of = self._code.type_of(statement.target)
-            return isinstance(of, _CONTAINERS) and self._mixes(value, of)
-        if not isinstance(statement, ir.Assign) or not isinstance(value, ir.Expr):
-            return False
-        if value.op in ("binop", "inplace_binop"):
-            function = INPLACE.get(value.fn, value.fn)
-            sides = (value.lhs, value.rhs)
-            return function in (operator.add, operator.mul) and any(self.of(one) - {NUMBER} for one in sides)
-        if value.op in ("getitem", "static_getitem"):
-            index = value.index if value.op == "getitem" else value.index_var
-            is_slice = index is not None and isinstance(self._code.type_of(index), types.SliceType)
-            return is_slice and bool(self.of(value.value))
-        if value.op != "call":
-            return False
-        called = self._code.typemap[value.func.name]
-        if isinstance(called, types.BoundFunction) and isinstance(called.this, _CONTAINERS):
-            key = called.typing_key
-            name = key[1] if isinstance(key, tuple) else str(key).rpartition(".")[2]
-            takes = name in ("append", "insert", "add", "extend")  # the last argument; the first may be an index
-            return any(map(self.of, value.args)) or (takes and self._mixes(value.args[-1], called.this))
-        key = called.typing_key if isinstance(called, types.Function) else None
-        is_sequence = key in (sorted, enumerate, zip, reversed, list, tuple, set) or (
-            key in (min, max) and len(value.args) == 1
-        )
-        return is_sequence and any(self._mixes(one) for one in value.args)
-
-    def _mixes(self, variable: Any, container: Any = None) -> bool:
-        """Returns whether a variable has mixed numbers, or is a tuple that, or a number which a container, mixes."""
-        of = types.unliteral(self._code.type_of(variable))
-        wanted = getattr(container, "value_type", getattr(container, "dtype", None))
-        given = getattr(of, "dtype", of)
-        if self.of(variable) or (wanted is not None and list(converted(given, wanted))):
-            return True
-        kinds = list(of) if isinstance(of, types.BaseTuple) and container is None else []
-        return any(map(is_whole, kinds)) and any(isinstance(types.unliteral(one), types.Float) for one in kinds)
 
     def _is_whole(self, variable: Any) -> bool:
         return is_whole(self._code.type_of(variable))

@@ -7,6 +7,9 @@ from numba.core import types
 
 NUMBERS = (types.Integer, types.Float, types.Boolean)
 
+CONVERT = "convert the numbers with np.int64(...) or np.float64(...)"
+"""The advice where numbers of several types meet."""
+
 
 def leaf(of: Any) -> Any:
     """Returns the type of a number, or of the numbers in an array."""
@@ -49,3 +52,11 @@ def holds(of: Any, value: Any) -> bool:
     if of == types.float32:
         return float(np.float32(value)) == value
     return bool(of == types.uint64) and isinstance(value, int) and 0 <= value < 2**63
+
+
+def joins_boolean(given: Any, wanted: Any) -> bool:
+    """Returns whether a boolean of a type becomes a number in another one. Those of NumPy add as no number does."""
+    given, wanted = types.unliteral(given), types.unliteral(wanted)
+    if isinstance(given, types.BaseTuple) and isinstance(wanted, types.BaseTuple) and len(given) == len(wanted):
+        return any(joins_boolean(*pair) for pair in zip(given, wanted, strict=True))
+    return isinstance(given, types.Boolean) and isinstance(wanted, types.Integer | types.Float)

@@ -9,7 +9,7 @@ from qtab.compilation.rewriting import specials
 from qtab.compilation.rewriting.expressions.containers import MAX_CASES, elements
 from qtab.compilation.rewriting.expressions.operators import comparison
 from qtab.compilation.rewriting.source.syntax import calls_own_functions
-from qtab.compilation.rewriting.values import BOOL, Scalar, TupleKind, Value, constant, in_words
+from qtab.compilation.rewriting.values import BOOL, FLOAT, MIXED, Scalar, TupleKind, Value, constant, in_words
 
 if TYPE_CHECKING:
     from qtab.compilation.rewriting.expressions.expressions import Expressions
@@ -47,7 +47,9 @@ def _is_one_of(
             raise scope.refuse(node, f"{in_words(item.kind)} == {in_words(one.kind)}", "compare numbers")
     name = scope.program.new_name("is_in")
     names = [one.code if constants else f"x{i}" for i, one in enumerate(choices)]
-    tests = " or ".join(f"key == {code}" for code in names) or "False"
+    # Tuples, since Python finds a NaN among elements that are the same object: the checks see the comparison of tuples.
+    is_float = item.kind in (FLOAT, MIXED)
+    tests = " or ".join(f"(key,) == ({code},)" if is_float else f"key == {code}" for code in names) or "False"
     parameters = "".join(f", {one}" for one in names) if not constants else ""
     scope.program.add(name, [f"def {name}(key{parameters}):", f"    return {tests}"])
     scope.compiled.uses.add(name)

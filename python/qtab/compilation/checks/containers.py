@@ -1,0 +1,126 @@
+"""Refusals of lists, sets and dicts that compare, order or convert their elements otherwise in compiled code."""
+
+import operator
+from typing import Any
+
+from numba.core import ir, types
+
+from qtab.compilation.checks.typed_code import TypedCode
+
+Refusal = tuple[str, str] | None
+"""A reason and an advice; None if the construct is not refused."""
+
+_KEYED = (types.Set, types.DictType)
+_WITHOUT_ORDER = (len, sorted, min, max, sum, any, all, set, bool)
+"""Functions whose results do not depend on the order of a set."""
+_SEARCHES = ("index", "count", "remove")
+_SETS_CHANGE = ("add", "discard", "remove", "clear")
+_DICTS_READ = ("get", "keys", "values", "items", "clear")
+
+
+def refused(code: TypedCode, statement: Any) -> Refusal:
+    """Returns why a statement is refused, and what to write instead.
+
+    Args:
+        code: The code of the function.
+        statement: The statement.
+    """
+    if isinstance(statement, ir.SetItem | ir.StaticSetItem):
+        index = statement.index if isinstance(statement, ir.SetItem) else statement.index_var
+        of, value = code.type_of(statement.target), types.unliteral(code.type_of(statement.value))
+        held = getattr(of, "value_type", getattr(of, "dtype", None))
+        if isinstance(of, types.List | types.DictType) and isinstance(value, types.Number) and value != held:
+            return f"{value} in {_in_words(of)} of {held}", "give all its numbers one type, such as 0.0 for 0"
+        return _other_key(of, code, index)
+    if not isinstance(statement, ir.Assign) or not isinstance(statement.value, ir.Expr):
+        return None
+    made, expression = code.type_of(statement.target), statement.value
+    if isinstance(made, _KEYED) and holds_floats(_key(made)):
+        return f"{_in_words(made)} of floats", "use integers as its elements, or compare numbers in a loop"
+    if expression.op == "getiter" and isinstance(code.type_of(expression.value), types.Set):
+        return _order()
+    if expression.op in ("getitem", "static_getitem"):
+        index = expression.index if expression.op == "getitem" else expression.index_var
+        return _other_key(code.type_of(expression.value), code, index)
+    if expression.op == "binop":
+        return _operation(code, expression)
+    return _call(code, expression) if expression.op == "call" else None
+
+
+def holds_floats(of: Any) -> bool:
+    """Returns whether a type is that of floats, or of tuples or lists that have some."""
+    of = types.unliteral(of)
+    if isinstance(of, types.BaseTuple):
+        return any(map(holds_floats, of))
+    return holds_floats(of.dtype) if hasattr(of, "dtype") else isinstance(of, types.Float | types.Complex)
+
+
+def _operation(code: TypedCode, expression: Any) -> Refusal:
+    left, right = (types.unliteral(code.type_of(one)) for one in (expression.lhs, expression.rhs))
+    numbers = (types.Integer, types.Float, types.Boolean)
+    if expression.fn in (operator.is_, operator.is_not) and isinstance(left, numbers) and isinstance(right, numbers):
+        return "`is` compares objects", "write =="
+    if expression.fn is operator.contains:
+        return _other_key(left, code, expression.rhs)
+    is_comparison = isinstance(left, types.List) and isinstance(right, types.List) and expression.fn is not operator.add
+    if is_comparison and (left != right or holds_floats(left)):
+        return "a comparison of lists of floats", "compare the elements in a loop"
+    return None
+
+
+def _call(code: TypedCode, expression: Any) -> Refusal:
+    called = code.typemap[expression.func.name]
+    given = [types.unliteral(code.type_of(one)) for one in expression.args]
+    if isinstance(called, types.BoundFunction):
+        key = called.typing_key
+        name = key[1] if isinstance(key, tuple) else str(key).rpartition(".")[2]
+        return _method(name, called.this, given, bool(expression.kws))
+    function = called.typing_key if isinstance(called, types.Function) else None
+    if function is sorted and (expression.kws or len(given) > 1 or holds_floats(given[0])):
+        return "sorted: equal elements may change their order", "sort integers, or search in a loop"
+    is_ordered = isinstance(called, types.Function) and function not in _WITHOUT_ORDER
+    return _order() if is_ordered and any(isinstance(one, types.Set) for one in given) else None
+
+
+def _method(name: str, of: Any, given: list[Any], named: bool) -> Refusal:
+    if isinstance(of, types.List):
+        if name == "sort" and (given or named or holds_floats(of)):
+            return "list.sort: equal elements may change their order", "sort integers, or search in a loop"
+        if name in _SEARCHES and (holds_floats(of) or given[:1] != [of.dtype]):
+            return f"list.{name}() of another type than integers", "compare the elements in a loop"
+    elif isinstance(of, types.Set):
+        if name not in _SETS_CHANGE:
+            return f"set.{name}()", "use a list, or `in`"
+        if given and given[0] != of.dtype:
+            return _other(given[0], of)
+    elif isinstance(of, types.DictType):
+        if name not in _DICTS_READ:
+            return f"dict.{name}()", "write d[key], or `key in d`"
+        if given and given[0] != of.key_type:
+            return _other(given[0], of)
+        if len(given) > 1 and given[1] != of.value_type:
+            return f"dict.get with {given[1]} beside {of.value_type}", "give a number of the same type"
+    return None
+
+
+def _other_key(of: Any, code: TypedCode, index: Any) -> Refusal:
+    if not isinstance(of, _KEYED) or index is None:
+        return None
+    given = types.unliteral(code.type_of(index))
+    return _other(given, of) if given != types.unliteral(_key(of)) else None
+
+
+def _other(given: Any, of: Any) -> Refusal:
+    return f"{given} beside {_key(of)} in {_in_words(of)}", "convert it: int(...)"
+
+
+def _order() -> Refusal:
+    return "the order of a set", "use a tuple or a list"
+
+
+def _key(of: Any) -> Any:
+    return of.key_type if isinstance(of, types.DictType) else of.dtype
+
+
+def _in_words(of: Any) -> str:
+    return "a dict" if isinstance(of, types.DictType) else "a set" if isinstance(of, types.Set) else "a list"
