@@ -1,0 +1,70 @@
+"""Figure 9.5: its walks and its updates are those of estimate_values to the bit, and the Fourier basis is better."""
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+import pytest
+
+import qtab
+from qtab.book.figures.chapter_09.figure_9_5 import BasisComparison, basis_features
+from qtab.book.figures.chapter_09.long_walk import Steps, gradient_monte_carlo, simulate
+from qtab.book.problems import thousand_states
+
+RECORD = (0, 1, 7, 60)
+
+
+@pytest.fixture(scope="module")
+def walks() -> list[Steps]:
+    return simulate([4, 5], RECORD[-1])
+
+
+def test_groups_of_states_have_the_values_of_estimate_values_to_the_bit(walks: list[Steps]) -> None:
+    rows = qtab.prediction.state_aggregation(1000, 100)
+    task = thousand_states()
+    estimates = qtab.estimate_values(
+        task.env,
+        task.policy,
+        method="monte_carlo",
+        learning_rate=0.01,
+        features=rows,
+        episodes=RECORD[-1],
+        record=RECORD,
+        seeds=[4, 5],
+    )
+    basis = np.eye(10)[rows[:, 0]]
+    # Other methods beside it, and walks of other lengths, change nothing.
+    _, found = gradient_monte_carlo(walks, [basis_features("polynomials", 3), basis], [1e-4, 0.01], RECORD)
+    assert found[:, :, ::100].tobytes() == estimates.weights.tobytes()
+
+
+def test_the_updates_of_a_basis_are_those_of_gradient_monte_carlo(walks: list[Steps]) -> None:
+    features = basis_features("Fourier basis", 5)
+    [found] = gradient_monte_carlo(walks, [features], [5e-3], RECORD)
+    w = np.zeros(6)
+    for state, target in zip(walks[1].states, walks[1].returns, strict=True):
+        w += 5e-3 * (target - w @ features[state]) * features[state]
+    np.testing.assert_allclose(found[1, -1], features @ w, rtol=1e-10)
+    assert len(walks[1].ends) == RECORD[-1]
+    assert len(walks[1].states) == walks[1].ends[-1]
+
+
+def test_bases_are_the_books() -> None:
+    place = (np.arange(1000) + 0.5) / 1000
+    np.testing.assert_allclose(basis_features("Fourier basis", 2), np.cos(np.pi * np.outer(place, [0, 1, 2])))
+    np.testing.assert_allclose(basis_features("polynomials", 2), np.stack([place**0, place, place * place], axis=1))
+
+
+def test_the_fourier_basis_learns_faster() -> None:
+    experiment: Any = qtab.book.find("9.5")
+    assert isinstance(experiment, BasisComparison)
+    result = dataclasses.replace(experiment, episodes=200).run(3, seed=2)
+    assert [line.name for line in result.lines] == list(experiment.line_names)
+    polynomials, fourier = result.lines[:3], result.lines[3:]
+    exact = thousand_states().true_values
+    start = np.sqrt((exact.state_distribution * exact.values**2).sum())
+    assert all(line.x[-1] == 200 and line.mean[0] == pytest.approx(start) for line in result.lines)
+    for one, other in zip(fourier, polynomials, strict=True):
+        assert one.mean[-1] < one.mean[0]
+        assert one.mean[-1] < other.mean[-1]
+    assert len(result.plot().lines) == 6
