@@ -139,9 +139,15 @@ pub(crate) fn report(
 }
 
 fn add_returns(training: &Training, done: usize, arrays: &mut Arrays) {
-    let logs = || training.runs.iter().map(|started| started.run.episodes());
-    arrays.add("returns", Array::F64(logs().flat_map(|log| log.returns[..done].iter().copied()).collect()));
-    let lengths = logs().flat_map(|log| log.lengths[..done].iter().map(|&length| length as i32)).collect();
+    let count = training.runs.len() * done;
+    let (mut returns, mut lengths) = (Vec::with_capacity(count), Vec::with_capacity(count));
+    for started in &training.runs {
+        let log = started.run.episodes();
+        // Whole slices are copied several times faster than the numbers of a flattened iterator.
+        returns.extend_from_slice(&log.returns[..done]);
+        lengths.extend(log.lengths[..done].iter().map(|&length| length as i32));
+    }
+    arrays.add("returns", Array::F64(returns));
     arrays.add("lengths", Array::I32(lengths));
 }
 
