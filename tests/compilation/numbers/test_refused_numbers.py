@@ -37,6 +37,8 @@ REFUSED = {
     "np.signbit(x)": "write math.copysign",
     "np.array([x]).view(np.int64)[0]": r"array.view\(\) shows the sign of a NaN",
     "np.sin(np.float32(x))": "write math.sin",
+    "np.allclose(n, m)": r"write abs\(a - b\) <= 1e-8",
+    "np.cos(p)": "np.cos of booleans",
     "hash(x)": "another result in compiled code",
     "p is True": "write ==",
     "max(n)": "give two numbers or more",
@@ -74,6 +76,12 @@ def test_other_numbers_are_repeated_in_python_only_where_they_are_rare(
     usual: dict[str, Any] = {"n": 1, "m": 2, "x": -0.5, "y": 1.5, "p": True, "q": False}
     assert bits(compiled(*usual.values())) == bits(python(*usual.values()))
     assert compiled(*{**usual, **rare}.values()) == FAILED
+
+
+def test_a_bound_that_is_nan_is_repeated_in_python() -> None:
+    compiled = in_functional_env("np.clip(np.array([x]), 1.0, y)[0]")
+    assert compiled(1, 2, 7.0, 3.0, True, False) == 3.0
+    assert compiled(1, 2, 7.0, math.nan, True, False) == FAILED
 
 
 @pytest.mark.parametrize("expression", ["np.array([max(0, x), y])[0]", "np.full(2, max(0, x), np.float64)[0]",

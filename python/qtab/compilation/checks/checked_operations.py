@@ -252,8 +252,9 @@ def _clip_check(with_arrays: bool) -> Any:
     counted = """        if number == 0.0:
             plus, minus = plus or math.copysign(1.0, number) > 0.0, minus or math.copysign(1.0, number) < 0.0
 """
+    nan = "        if number != number:\n            raise ValueError\n"
     loops = [
-        f"    for number in {one}:\n{counted}"
+        f"    for number in {one}:\n{nan}{counted}"
         for one in (["low.flat", "high.flat"] if with_arrays else ["(float(low), float(high))"])
     ]
     source = f"""def check(values, low, high):
@@ -271,7 +272,8 @@ def _clip_check(with_arrays: bool) -> Any:
 
 CLIP_CHECKS = {with_arrays: _clip_check(with_arrays) for with_arrays in (False, True)}
 """Functions of the arguments of ``np.clip``, whose bounds are numbers (False) or arrays (True). They raise an error
-where a zero may be replaced by one of the other sign: which of them is the result depends on the version of NumPy."""
+where a bound is NaN, or where a zero may be replaced by one of the other sign: which of them is the result depends on
+the version of NumPy."""
 
 MATH: dict[Any, Any] = {getattr(math, name): _math_function(name) for name in MATH_NAMES}
 """Functions of ``math`` whose results have the same bits, with checks."""

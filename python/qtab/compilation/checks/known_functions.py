@@ -62,6 +62,8 @@ NUMPY_OPERATORS = {
     "left_shift": "write a << b",
     "right_shift": "write a >> b",
     "sign": "compare the number with 0",
+    **dict.fromkeys(("isclose", "allclose"), "write abs(a - b) <= 1e-8 + 1e-5 * abs(b)"),
+    "broadcast_arrays": "write a loop over the elements",
     "copysign": "write math.copysign(x, y)",
     "signbit": "write math.copysign(1.0, x) < 0.0",
 }
@@ -75,6 +77,11 @@ NUMPY_EXTREMES = {
 
 NUMPY_OF_FLOATS = ("sin", "cos", "sqrt", "fabs", "isnan", "isinf", "isfinite", "full_like", "zeros", "ones", "empty")
 """Functions of NumPy whose results have the same type for integers as for floats."""
+
+NUMPY_OF_BOOLEANS = ("logical_and", "logical_or", "logical_xor", "logical_not", "bitwise_and", "bitwise_or",
+                     "bitwise_xor", "invert", "equal", "not_equal", "less", "less_equal", "greater",
+                     "greater_equal")  # fmt: skip
+"""Functions of NumPy that compute with booleans as compiled code does. Others have results of 16 bits, or none."""
 
 NUMPY_SUMS = {"sum", "mean", "std", "var", "dot", "matmul", "prod", "cumsum", "cumprod", "vdot", "inner", "average",
               "median", "percentile", "quantile", "nansum", "nanmean", "nanstd", "nanvar", "nanprod", "nancumsum",

@@ -8,6 +8,7 @@ from numba.core import types
 from qtab.compilation.checks.known_functions import (
     NUMPY_DIFFERENT,
     NUMPY_EXTREMES,
+    NUMPY_OF_BOOLEANS,
     NUMPY_OPERATORS,
     NUMPY_SORTS,
     NUMPY_SUMS,
@@ -48,6 +49,8 @@ def check_numpy_call(code: TypedCode, statement: Any, scope: Any, function: Any,
         reason, advice = f"np.{name}: equal elements may change their order", NUMPY_SORTS[name]
     elif isinstance(function, np.ufunc) and len(given) > function.nin:
         reason, advice = f"np.{name} with an array for the result", "assign the result"
+    elif isinstance(function, np.ufunc) and _has_booleans(kinds) and name not in NUMPY_OF_BOOLEANS:
+        reason, advice = f"np.{name} of booleans", "convert them with int(...) or array.astype(np.int64)"
     elif isinstance(function, np.ufunc) and (types_differ := mixed(kinds)):
         reason, advice = f"np.{name}: {types_differ}", CONVERT
     if reason:
@@ -86,3 +89,7 @@ def _adds_exactly(name: str, given: list[Any]) -> bool:
 
 def _sorts_exactly(name: str, given: list[Any]) -> bool:
     return "arg" not in name and bool(given) and of_integers(given[0])
+
+
+def _has_booleans(kinds: list[Any]) -> bool:
+    return any(isinstance(kind, types.Boolean) for kind in kinds)
