@@ -18,6 +18,7 @@ __all__ = [
     "AgentRng",
     "Blackjack",
     "ClassicControl",
+    "CompiledCodeError",
     "Discretizer",
     "ExpectedUpdates",
     "ExternalEnv",
@@ -135,6 +136,8 @@ class ExternalEnv:
     def has_action_mask(self) -> bool: ...
     def native_env(self, first: Sequence[int] = ..., spaces: Any = ...) -> NativeEnv: ...
     def try_out(self, steps: int, seed: int) -> None: ...
+
+class CompiledCodeError(RuntimeError): ...
 
 @final
 class ExternalEpisode:

@@ -108,7 +108,7 @@ def test_a_vector_environment_of_a_class_leads_to_the_one_that_takes_it() -> Non
     for given in (Walk, Walk()):
         text = message(lambda given=given: qtab.RustVectorEnv(given))
         assert "name must be an environment id, got " in text
-        assert text.endswith("step this class with gymnasium.vector.SyncVectorEnv([Walk] * num_envs)")
+        assert text.endswith("; call gymnasium.register('my/Walk-v0', Walk) and pass 'my/Walk-v0'")
     text = message(lambda: qtab.RustVectorEnv(FaultyFunctions))  # type: ignore[arg-type]
     assert "gymnasium.register('my/FaultyFunctions-v0', FaultyFunctions)" in text
 

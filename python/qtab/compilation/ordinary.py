@@ -1,5 +1,6 @@
 """The compilation of ordinary Gymnasium classes, with its proof and its file."""
 
+import hashlib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -33,13 +34,16 @@ class OrdinaryEnv:
     Args:
         env: The environment, without wrappers. It is not changed.
         name: Its name in messages; None takes its text.
+        check: Called before the compilation, when the class is rewritten, to refuse it for other reasons.
 
     Raises:
         NotCompilable: if Numba is not installed, the class cannot be compiled, or compiled code gives other numbers
             than Python.
     """
 
-    def __init__(self, env: gym.Env, name: str | None = None) -> None:
+    def __init__(
+        self, env: gym.Env, name: str | None = None, check: "Callable[[OrdinaryEnv], None] | None" = None
+    ) -> None:
         require_numba()
         self._name = str(env) if name is None else name
         observation = ObservationLayout.of(env.observation_space)
@@ -48,6 +52,8 @@ class OrdinaryEnv:
         with restored(shared):
             self.rewritten = rewrite(self.env, shared_attributes(env, shared))
         _check_episodes(env, self.rewritten)
+        if check is not None:
+            check(self)
         self.record = with_observation(self.rewritten.dtype, observation)
         first = np.zeros(1, self.record)
         for name in self.rewritten.dtype.names or ():
@@ -58,6 +64,12 @@ class OrdinaryEnv:
     def capsule(self) -> Any:
         """Returns the capsule ``qtab.env.1``."""
         return self.compiled.capsule(self.parameters)
+
+    @property
+    def code(self) -> str:
+        """A digest of the code, the attributes and the layout of the states, for states that are stored."""
+        parts = [self.rewritten.source, str(self.record.descr), self.parameters.tobytes().hex()]
+        return hashlib.sha256("\n".join(parts).encode()).hexdigest()
 
     def repeat(
         self,
@@ -91,6 +103,24 @@ class OrdinaryEnv:
             result = repetition.step(action)
         repetition.log()
         return result, repetition.step
+
+    def repeat_in_vector(
+        self,
+        state: bytes | None,
+        before: Position,
+        action: int | None,
+        seed: int,
+        played: tuple[Position, list[int]] | None,
+    ) -> None:
+        """Repeats a call of a sub-environment in Python; see :meth:`repeat`. It raises the error of Python, if any."""
+        numbers = np.int64  # as Gymnasium's vector environments pass actions
+        repetition = Repetition(self.env, self.record, self.compiled.observation, seed, self._name, numbers)
+        if state is None or action is None or played is None:
+            repetition.begin(before)
+        else:
+            repetition.play(*played, before)
+            repetition.take(action)
+        repetition.log("a vector environment of %s is stepped in Python from now on")
 
     def _compiled(self, observation: ObservationLayout) -> CompiledEnv:
         space: Any = self.env.action_space

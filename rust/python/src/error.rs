@@ -2,12 +2,19 @@
 
 use std::fmt::Display;
 
-use pyo3::PyErr;
-use pyo3::exceptions::{PyKeyboardInterrupt, PyMemoryError, PyOverflowError, PyValueError};
+use pyo3::exceptions::{PyKeyboardInterrupt, PyMemoryError, PyOverflowError, PyRuntimeError, PyValueError};
+use pyo3::{PyErr, create_exception};
 use qtab_core::TrainingError;
 use qtab_core::checkpoint::CheckpointError;
 use qtab_core::features::OutOfBounds;
 use qtab_core::memory::{AllocationError, Growing};
+
+create_exception!(
+    qtab._core,
+    CompiledCodeError,
+    PyRuntimeError,
+    "A call of a vector environment that fails in compiled code, but not in Python, which has to take over."
+);
 
 /// Why a run ended before its last episode.
 pub(crate) enum RunError {

@@ -26,6 +26,7 @@ mod _core {
     use qtab_core::settings::{AlgorithmRows, SCHEDULES};
     use qtab_core::simd::{SimdLevel, SimdLimit};
 
+    use super::error::CompiledCodeError;
     use super::spec::{DISCRETIZERS, Fields};
     use super::{Bound, PyModule, PyModuleMethods, PyResult};
 
@@ -64,6 +65,7 @@ mod _core {
             };
             SimdLevel::restrict(limit);
         }
+        module.add("CompiledCodeError", py.get_type::<CompiledCodeError>())?;
         module.add("ALGORITHMS", PyTuple::new(py, AlgorithmRows::<Fields<'_>>::ROWS.map(|(name, _)| name))?)?;
         module.add("DISCRETIZERS", PyTuple::new(py, DISCRETIZERS.iter().map(|(name, _)| name))?)?;
         module.add("SCHEDULES", PyTuple::new(py, SCHEDULES.iter().map(|(name, _)| name))?)

@@ -1,5 +1,6 @@
 """The program that a class becomes: its functions, constants and lines."""
 
+import ast
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from types import FunctionType
@@ -85,6 +86,8 @@ class Program:
         """Compiles a user's function and returns the value of a call."""
         self.infos: dict[str, list[Any]] = {}
         """The info dicts that ``reset`` and ``step`` return, with their functions."""
+        self.mask: tuple[str, ast.expr | None] = "", None
+        """The dtype of the compiled action mask, and its expression in the info dicts; None for a method."""
         self.failed: set[Any] = set()
         """The keys of functions that cannot be compiled."""
         self.problems: list[NotCompilable] = []

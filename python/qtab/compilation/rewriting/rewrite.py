@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from qtab.compilation.not_compilable import Follows, NotCompilable, combined
 from qtab.compilation.rewriting import helpers, specials
 from qtab.compilation.rewriting.attributes import Attributes, Restart
-from qtab.compilation.rewriting.masks import add_action_mask
+from qtab.compilation.rewriting.infos.masks import add_action_mask
+from qtab.compilation.rewriting.infos.shown import Shown, shown_of
 from qtab.compilation.rewriting.observations import observation_code
 from qtab.compilation.rewriting.program import Compiled, Program, as_float
 from qtab.compilation.rewriting.source.sources import Source, source_of
@@ -54,12 +55,18 @@ class Rewritten:
     kept_between_episodes: tuple[str, ...]
     """The attributes that change, and that ``reset`` does not assign before it reads them: the first state of an
     episode depends on the episodes before."""
+    changed: frozenset[str]
+    """The attributes that ``reset`` or ``step`` assigns or changes in place, and that compiled code needs."""
+    changed_in_place: frozenset[str]
+    """Those of which elements are assigned."""
     lines: dict[int, tuple[str, int]]
     """For each line of ``source`` the file and the line of the class."""
     source: str
     """The functions as a module, without imports except of NumPy and ``math``."""
     namespace: dict[str, Any] = field(repr=False)
     """The globals of the functions."""
+    shown: Shown = field(default_factory=Shown)
+    """What a vector environment shows of the class."""
 
 
 def rewrite(env: gym.Env, sharing: Mapping[str, str] | None = None) -> Rewritten:
@@ -166,9 +173,12 @@ def _rewritten(env: gym.Env, attributes: Attributes, program: Program) -> Rewrit
         dtype,
         initial,
         tuple(kept),
+        frozenset(program.stored | attributes.changed_in_place),
+        frozenset(attributes.changed_in_place),
         lines,
         source,
         namespace,
+        shown_of(program, {"reset": reset, "step": step}, mask_refusal),
     )
 
 

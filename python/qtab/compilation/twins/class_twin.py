@@ -110,10 +110,10 @@ class ClassTwin:
         observation, self.info = self.env.reset()
         return observation
 
-    def step_class(self, action: int, rng: np.random.Generator) -> Any:
-        """Takes an action, counted from 0, and returns what ``step`` does."""
+    def step_class(self, action: int, rng: np.random.Generator, number: type[int | np.int64] = int) -> Any:
+        """Takes an action, counted from 0 and passed on as a number of a type, and returns what ``step`` does."""
         self.env._np_random = rng
-        stepped = self.env.step(self._start + action)
+        stepped = self.env.step(number(self._start + action))
         self.info = stepped[4]
         return stepped
 

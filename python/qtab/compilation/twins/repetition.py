@@ -33,19 +33,30 @@ class Repetition:
         observation: The layout of its observations.
         seed: The seed of the run.
         name: The name of the environment in messages, as Python stepping gives it.
+        number: The type of the actions.
     """
 
     def __init__(
-        self, env: gym.Env, record: np.dtype[Any], observation: ObservationLayout, seed: int, name: str
+        self,
+        env: gym.Env,
+        record: np.dtype[Any],
+        observation: ObservationLayout,
+        seed: int,
+        name: str,
+        number: type[int | np.int64] = int,
     ) -> None:
         self._env, self._record, self._observation, self._seed = env, record, observation, seed
         self._twin, self._name, self._shown = ClassTwin(env, record, observation), type(env).__name__, name
-        self._rng = np.random.default_rng(0)
+        self._rng, self._number = np.random.default_rng(0), number
 
     def reset(self, before: Position) -> Result:
         """Begins an episode, with the generator at a position."""
+        return self._result(self.begin(before), 0.0, 0)
+
+    def begin(self, before: Position) -> Any:
+        """Begins an episode, with the generator at a position, and returns the observation."""
         self._rng = generator_at(self._seed, before)
-        return self._result(self._twin.reset_class(self._rng), 0.0, 0)
+        return self._twin.reset_class(self._rng)
 
     def play(self, start: Position, actions: list[int], before: Position) -> None:
         """Repeats the steps of an episode.
@@ -58,9 +69,9 @@ class Repetition:
         Raises:
             RuntimeError: if it is another in Python.
         """
-        self.reset(start)
+        self.begin(start)
         for action in actions:
-            self._twin.step_class(action, self._rng)
+            self.take(action)
         if position_of(self._rng, self._seed) != before:
             raise RuntimeError(f"{self._name} draws other random numbers in compiled code than in Python; {ADVICE}")
 
@@ -82,22 +93,26 @@ class Repetition:
             + ADVICE
         )
 
+    def take(self, action: int) -> Any:
+        """Takes an action, counted from 0, and returns what ``step`` of the class does."""
+        return self._twin.step_class(action, self._rng, self._number)
+
     def step(self, action: int) -> Result:
         """Takes an action, counted from 0."""
-        observation, reward, terminated, truncated, _ = self._twin.step_class(action, self._rng)
+        observation, reward, terminated, truncated, _ = self.take(action)
         if not _is_finite(reward):
             expected = "a finite number as the reward, as Gymnasium's API requires"
             raise ValueError(f"step of {self._shown} must return {expected}, got {_shortened(reward)}")
         return self._result(observation, float(reward), TERMINATED * bool(terminated) + TRUNCATED * bool(truncated))
 
-    def log(self) -> None:
-        """Logs once for each class that a call failed in compiled code only."""
+    def log(self, what: str = "an episode of %s goes on in Python") -> None:
+        """Logs once for each class that a call failed in compiled code only, and what follows."""
         cls = type(self._env)
         if cls not in _logged:
             _logged.add(cls)
             code = cls.step.__code__
             _logger.warning(
-                "%s:%s: an episode of %s goes on in Python, which does not fail where compiled code does: with "
+                f"%s:%s: {what}, which does not fail where compiled code does: with "
                 "integers of more than 64 bits, integers beyond 2**53 in floats, or an observation outside its space",
                 *(code.co_filename, code.co_firstlineno, cls.__name__),
             )

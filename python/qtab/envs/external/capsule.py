@@ -1,7 +1,7 @@
 """The capsule of an environment, by which Rust steps it."""
 
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import gymnasium as gym
 
@@ -9,6 +9,9 @@ from qtab import _core
 from qtab.envs.external.positions import Position, generator_at
 from qtab.envs.in_rust.matching import NotInRustError, layers, overridden, unknown_wrapper
 from qtab.envs.origin.class_code import is_of_library
+
+if TYPE_CHECKING:
+    from qtab.compilation.ordinary import OrdinaryEnv
 
 
 def has_capsule(env: gym.Env) -> bool:
@@ -41,7 +44,7 @@ def external_env(env: gym.Env, backend: str, *, needs_masks: bool = False) -> _c
     if not has_capsule(env):
         if backend != "numba":
             return None
-        return compiled_class(env, needs_masks)
+        return external_of(compiled_class(env, needs_masks))
     unwrapped = _unwrapped(env)
     cls = type(unwrapped)
     owner = next(base for base in cls.__mro__ if "__qtab_env__" in vars(base))
@@ -57,12 +60,15 @@ def external_env(env: gym.Env, backend: str, *, needs_masks: bool = False) -> _c
     return external
 
 
-def compiled_class(env: gym.Env, needs_masks: bool) -> _core.ExternalEnv:
-    """Returns an ordinary Gymnasium class as Rust steps it: compiled by Numba from its source code.
+def compiled_class(
+    env: gym.Env, needs_masks: bool, check: "Callable[[OrdinaryEnv], None] | None" = None
+) -> "OrdinaryEnv":
+    """Returns an ordinary Gymnasium class that is compiled by Numba from its source code.
 
     Args:
         env: The environment, perhaps in the wrappers of ``gymnasium.make``.
         needs_masks: Whether its action masks must be compiled too.
+        check: Called with the class before it is compiled; it may raise ``NotInRustError``, too.
 
     Raises:
         NotInRustError: if it cannot be compiled; it gives the file, the line and what to write instead.
@@ -74,13 +80,18 @@ def compiled_class(env: gym.Env, needs_masks: bool) -> _core.ExternalEnv:
         reason = "Numba compiles your own classes, derived from gymnasium.Env or qtab.FunctionalEnv"
         raise NotInRustError(reason, "leave out backend")
     try:
-        compiled = OrdinaryEnv(_unwrapped(env), str(env))
+        compiled = OrdinaryEnv(_unwrapped(env), str(env), check)
         if needs_masks and compiled.rewritten.mask_refusal is not None:
             raise compiled.rewritten.mask_refusal
     except NotCompilable as refusal:
         raise NotInRustError(refusal.place_and_reason, refusal.advice, refusal.problems) from None
-    capsule = compiled.capsule()  # kept here: it must not end while an error is raised
-    return _core.ExternalEnv(capsule, compiled.repeat, repeats_episodes=True)
+    return compiled
+
+
+def external_of(env: "OrdinaryEnv") -> _core.ExternalEnv:
+    """Returns an ordinary class as Rust steps it."""
+    capsule = env.capsule()  # kept here: it must not end while an error is raised
+    return _core.ExternalEnv(capsule, env.repeat, repeats_episodes=True)
 
 
 def _unwrapped(env: gym.Env) -> Any:

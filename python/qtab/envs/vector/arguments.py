@@ -12,10 +12,14 @@ from numpy.typing import NDArray
 from qtab import _core
 from qtab._utils import checks
 from qtab._utils.shown import shown
+from qtab.envs.external.capsule import has_capsule
 from qtab.envs.in_rust.matching import NotInRustError, entry_for_env
 from qtab.envs.in_rust.native import native_env
 from qtab.envs.origin.class_code import is_of_library
 from qtab.envs.registry import ENTRIES, PREFIX, EnvEntry, gymnasium_id
+
+MAX_RESET_BOUND = 1e6
+"""First states beyond this may overflow. Gymnasium's code then decides what happens."""
 
 
 def spec_to_step(name: Any) -> EnvSpec:
@@ -35,27 +39,28 @@ def spec_to_step(name: Any) -> EnvSpec:
 
 
 def _way_to_an_id(cls: type) -> str:
-    """Returns what to write instead of a class; Rust steps only some classes of one's own."""
-    if getattr(cls, "__qtab_env__", None) is None and is_of_library(cls):
+    """Returns what to write instead of a class of one's own."""
+    if is_of_library(cls):
         return ""
-    own = f"gymnasium.register('my/{cls.__name__}-v0', {cls.__name__}) and pass 'my/{cls.__name__}-v0'"
-    if getattr(cls, "__qtab_env__", None) is not None:
-        return f"; call {own}"
-    makers = f"gymnasium.vector.SyncVectorEnv([{cls.__name__}] * num_envs)"
-    return f"; Rust steps a qtab.FunctionalEnv, registered with an id; step this class with {makers}"
+    return f"; call gymnasium.register('my/{cls.__name__}-v0', {cls.__name__}) and pass 'my/{cls.__name__}-v0'"
 
 
-def entry_to_step(spec: EnvSpec, env: gym.Env[Any, Any]) -> EnvEntry:
-    """Returns the entry of an environment that was made from a spec.
+def entry_to_step(spec: EnvSpec, env: gym.Env[Any, Any]) -> EnvEntry | None:
+    """Returns the entry of an environment that was made from a spec; None for an environment of one's own.
 
     Raises:
-        ValueError: if Rust does not step it; the message gives the reason.
+        ValueError: if it is neither; the message gives the reason.
     """
+    if has_capsule(env):
+        return None
     if gymnasium_id(spec.id) in ENTRIES:
         return ENTRIES[gymnasium_id(spec.id)]
     try:
         return entry_for_env(env)
     except NotInRustError as error:
+        bases = type(env.unwrapped).__mro__
+        if not is_of_library(bases[0]) and not any(base.__module__.partition(".")[0] == "qtab" for base in bases):
+            return None
         env.close()
         raise ValueError(f"name must be the id of an environment that Rust steps, got {spec.id!r}: {error}") from None
 
@@ -131,3 +136,20 @@ def check_reset_mask(mask: Any, num_envs: int, not_reset: Sequence[int]) -> NDAr
     if left_out:
         raise ResetNeeded(f"{subject} not leave out sub-environment {left_out[0]}, which was never reset")
     return mask
+
+
+def reset_bounds(
+    names: Sequence[tuple[str, float]] | None, env: gym.Env[Any, Any], options: dict[str, Any] | None
+) -> tuple[float, float] | None:
+    """Returns the bounds of the first states that the options of a reset set; None for the default ones.
+
+    Args:
+        names: The names of the two options, with their defaults; None for an environment without them.
+        env: An environment like the sub-environments. It is reset, so that it raises Gymnasium's errors.
+        options: The options.
+    """
+    if names is None or not options:
+        return None
+    env.reset(options=options)
+    low, high = (float(options.get(name, default)) for name, default in names)
+    return low, high

@@ -11,6 +11,9 @@ from gymnasium.vector import AutoresetMode, SyncVectorEnv
 from gymnasium.vector.utils import iterate
 from numpy.typing import NDArray
 
+from qtab import _core
+from qtab.envs.external.positions import Position, generator_at, position_of
+
 Snapshot = tuple[dict[str, Any], int, bool, Any]
 """State of a sub-environment: its attributes, the steps of its episode, whether that is over, the last observation."""
 
@@ -83,6 +86,41 @@ class PythonVectorEnv(SyncVectorEnv[Any, Any]):
             env.unwrapped._np_random = generators[index]
             env.unwrapped._np_random_seed = seeds[index]
 
+    def play_again(
+        self,
+        snapshots: Sequence[Snapshot],
+        not_reset: Sequence[int],
+        positions: Sequence[Position],
+        seeds: Sequence[int],
+    ) -> None:
+        """Continues the episodes of other sub-environments, which are played again from their resets on.
+
+        Args:
+            snapshots: Those of each: the attribute ``played`` is the position of the generator before the reset, and
+                the actions since then, counted from 0.
+            not_reset: The indices of those that were never reset.
+            positions: The position of each generator now.
+            seeds: The seed of each generator.
+
+        Raises:
+            RuntimeError: if an episode draws other random numbers now.
+        """
+        first = int(self.single_action_space.start)  # type: ignore[attr-defined]
+        for index, (attributes, _, is_done, _) in enumerate(snapshots):
+            env, seed = self.envs[index], seeds[index]
+            start, actions = (positions[index], []) if index in not_reset else attributes["played"]
+            unwrapped: Any = env.unwrapped
+            unwrapped._np_random, unwrapped._np_random_seed = generator_at(seed, start), seed
+            if index in not_reset:
+                continue
+            self._env_obs[index], _ = env.reset()
+            for action in actions:
+                self._env_obs[index], *_ = env.step(np.int64(first + action))
+            if position_of(unwrapped._np_random, seed) != positions[index]:
+                name = type(unwrapped).__name__
+                raise RuntimeError(f"{name} draws other random numbers in compiled code than in Python")
+            self._autoreset_envs[index] = is_done
+
     def _add_info(self, vector_infos: dict[str, Any], env_info: dict[str, Any], env_num: int) -> dict[str, Any]:
         # The probability is the integer 1 after a reset. An array of integers would truncate the probabilities that
         # other sub-environments add.
@@ -91,6 +129,18 @@ class PythonVectorEnv(SyncVectorEnv[Any, Any]):
             if isinstance(value, float) and isinstance(array, np.ndarray) and array.dtype.kind == "i":
                 vector_infos[name] = array.astype(np.float64)
         return super()._add_info(vector_infos, env_info, env_num)
+
+
+def generators(envs: _core.VectorEnv, num_envs: int) -> tuple[np.random.Generator, ...]:
+    """Returns the generators of sub-environments that Rust steps, from which these draw from now on."""
+    found = []
+    for index in range(num_envs):
+        source = envs.rng(index)
+        if isinstance(source, tuple):
+            source = generator_at(envs.seed_of(index), source)
+            envs.set_rng(index, source)
+        found.append(source)
+    return tuple(found)
 
 
 def draws_its_state(env: gym.Env) -> bool:

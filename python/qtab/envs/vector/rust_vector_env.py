@@ -1,6 +1,7 @@
 """``gymnasium.make_vec("qtab/…")``: a vector environment that steps all sub-environments in one call of Rust."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from functools import partial
 from typing import Any
 
@@ -12,15 +13,17 @@ from gymnasium.vector.utils import batch_space
 
 from qtab import _core
 from qtab._utils import checks
-from qtab.envs.external.capsule import has_capsule
-from qtab.envs.external.positions import generator_at
-from qtab.envs.functional import FunctionalEnv
-from qtab.envs.vector.arguments import check_reset_mask, entry_to_step, known_env, seeds_of, spec_to_step
-from qtab.envs.vector.own_env import in_python, own_env
-from qtab.envs.vector.python_vector_env import PythonVectorEnv, Snapshot, draws_its_state, restore
-
-_MAX_RESET_BOUND = 1e6
-"""First states beyond this may overflow. Gymnasium's code then decides what happens."""
+from qtab.envs.vector.arguments import (
+    MAX_RESET_BOUND,
+    check_reset_mask,
+    entry_to_step,
+    known_env,
+    reset_bounds,
+    seeds_of,
+    spec_to_step,
+)
+from qtab.envs.vector.own_env import OwnEnv
+from qtab.envs.vector.python_vector_env import PythonVectorEnv, Snapshot, draws_its_state, generators, restore
 
 
 class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
@@ -36,16 +39,18 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
     - with a window (``render_mode="human"``), with lists of frames, and with frames of Taxi;
     - with a constructor argument that Rust does not compute with;
     - for CartPole, Acrobot and Pendulum on machines where NumPy does not take sine and cosine from the C library;
-    - for a :class:`qtab.FunctionalEnv` with a render mode, without Numba, or that cannot be compiled. The logger
-      ``qtab`` reports the reason.
+    - for a class of your own with a render mode;
+    - for a :class:`qtab.FunctionalEnv` that cannot be compiled. The logger ``qtab`` reports the reason.
 
-    An environment of your own, a :class:`qtab.FunctionalEnv` or a :class:`qtab.NativeEnv`, also switches to Python
-    stepping when ``np_random`` is accessed, and at a reset with ``options={"state": ...}``. An exception of a step or a
-    reset is raised as it is in Python.
+    An environment of your own also switches to Python stepping when ``np_random`` is accessed, and at a reset with
+    options that it reads: ``state`` for a ``FunctionalEnv``, any for an ordinary class. An ordinary class does so as
+    well at a step that fails in compiled code only, and its ``final_obs`` of a Discrete space are Python integers. An
+    exception of a step or a reset is raised as it is in Python.
 
     Args:
         name: The id of an environment that Rust steps: Gymnasium's, one with the prefix ``qtab/``, or one that you
-            registered for a :class:`qtab.TabularEnv`, a :class:`qtab.FunctionalEnv` or a :class:`qtab.NativeEnv`.
+            registered for a :class:`qtab.TabularEnv`, a :class:`qtab.FunctionalEnv`, a :class:`qtab.NativeEnv` or a
+            class that Numba compiles, whose info dicts are empty or hold only ``action_mask``.
         num_envs: The number of sub-environments.
         max_episode_steps: A time limit other than the spec's, as in ``gymnasium.make`` (-1: no limit).
         copy: Whether each step returns new arrays of observations. If False, it returns the same arrays each time.
@@ -59,7 +64,7 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
 
     Raises:
         TypeError: for an argument of the wrong type.
-        ValueError: for an argument out of range, or an environment that Rust does not implement.
+        ValueError: for an argument out of range, or an environment that Rust does not implement or Numba not compile.
     """
 
     def __init__(
@@ -79,8 +84,9 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
         self._make = partial(gym.make, spec, max_episode_steps=max_episode_steps, **kwargs)
         self.example = self._make()
         """An environment like the sub-environments, which is never stepped."""
-        self._is_own = has_capsule(self.example)
-        self._entry_name = spec.id if self._is_own else entry_to_step(spec, self.example).name
+        entry = entry_to_step(spec, self.example)
+        self._own = None if entry is not None else OwnEnv(self._make, self.example, self._autoreset_mode)
+        self._entry_name = spec.id if entry is None else entry.name
         self.metadata = {**self.example.metadata, "autoreset_mode": self.autoreset_mode}
         self.render_mode = self.example.render_mode
         self.single_observation_space = self.example.observation_space
@@ -93,8 +99,7 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
         if not self._start_in_rust():
             self._fall_back_to_python()
 
-    _is_own = False
-    """Whether it is an environment of one's own: a ``FunctionalEnv``, a ``NativeEnv`` or another with a capsule."""
+    _own: OwnEnv | None = None  # also in pickles of earlier versions
 
     def _start_in_rust(self) -> bool:
         """Creates the sub-environments in Rust; returns False if Rust does not support them."""
@@ -103,12 +108,11 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
         can_render = self.render_mode in ("rgb_array", "ansi") and draws_its_state(env)
         if self.render_mode is not None and not can_render:
             return False
-        own = self._is_own
-        native = own_env(self.example, self.num_envs, self.copy) if own else known_env(self._entry_name, env)
+        own, name = self._own, "_max_episode_steps"
+        native = known_env(self._entry_name, env) if own is None else own.in_rust(self.num_envs, self.copy)
         if native is None:
             return False
-        limited = self.example.has_wrapper_attr("_max_episode_steps")
-        limit = self.example.get_wrapper_attr("_max_episode_steps") if limited else None
+        limit = self.example.get_wrapper_attr(name) if self.example.has_wrapper_attr(name) else None
         return self.start(
             native,
             self.num_envs,
@@ -143,29 +147,21 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
         mask = None
         if options is not None and "reset_mask" in options:
             mask = check_reset_mask(options.pop("reset_mask"), self.num_envs, self.not_reset())
-        if options and "state" in options and isinstance(self.example.unwrapped, FunctionalEnv):
+        if self._own is not None and self._own.needs_python(options):
             self._fall_back_to_python()
-        bounds = self._reset_bounds(options) if self.is_native else None
-        if self._python is not None:
-            masked = options if mask is None else {**(options or {}), "reset_mask": mask}
-            return self._python.reset(seed=seeds, options=masked)
-        indices = range(self.num_envs) if mask is None else np.flatnonzero(mask).tolist()
-        return self.native_reset(list(indices), [seeds[index] for index in indices], bounds)
+        bounds = reset_bounds(self.reset_bounds(), self.example, options) if self.is_native else None
+        if bounds is not None and max(map(abs, bounds)) > MAX_RESET_BOUND:
+            self._fall_back_to_python()
+        if self._python is None:
+            indices = range(self.num_envs) if mask is None else np.flatnonzero(mask).tolist()
+            with suppress(_core.CompiledCodeError):
+                return self.native_reset(list(indices), [seeds[index] for index in indices], bounds)
+        masked = options if mask is None else {**(options or {}), "reset_mask": mask}
+        return self._fall_back_to_python().reset(seed=seeds, options=masked)
 
     def not_reset(self) -> list[int]:
         """Returns the indices of the sub-environments that were never reset."""
         return super().not_reset() if self._python is None else self._python.not_reset()
-
-    def _reset_bounds(self, options: dict[str, Any] | None) -> tuple[float, float] | None:
-        """Returns the bounds of the first states that the options set; None for the default ones."""
-        names = self.reset_bounds()
-        if names is None or not options:
-            return None
-        self.example.reset(options=options)  # raises Gymnasium's errors before anything changes
-        low, high = (float(options.get(name, default)) for name, default in names)
-        if max(abs(low), abs(high)) > _MAX_RESET_BOUND:
-            self._fall_back_to_python()
-        return low, high
 
     @property
     def autoreset_mode(self) -> AutoresetMode:
@@ -182,11 +178,9 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
     @property  # type: ignore[misc]
     def np_random(self) -> tuple[np.random.Generator, ...]:  # type: ignore[override]
         """The random generators of the sub-environments. Python steps an environment of one's own from then on."""
-        if self._is_own:
-            self._fall_back_to_python()
-        if self._python is not None:
-            return self._python.np_random
-        return self._generators()
+        if self._own is not None or self._python is not None:
+            return self._fall_back_to_python().np_random
+        return generators(self, self.num_envs)
 
     @property
     def np_random_seed(self) -> tuple[int, ...]:  # type: ignore[override]
@@ -195,21 +189,15 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
             return self._python.np_random_seed
         return tuple(self.seed_of(index) for index in range(self.num_envs))
 
-    def _generators(self) -> tuple[np.random.Generator, ...]:
-        """Returns the sub-environments' generators, which Rust uses from now on."""
-        return tuple(self._generator(index) for index in range(self.num_envs))
-
-    def _generator(self, index: int) -> np.random.Generator:
-        source = self.rng(index)
-        if isinstance(source, tuple):
-            source = generator_at(self.seed_of(index), source)
-            self.set_rng(index, source)
-        return source
-
     def snapshots(self) -> list[Snapshot]:
         """Returns the state of each sub-environment that Rust steps, as Python can continue from it."""
         snapshots = super().snapshots()
-        return in_python(self.example, snapshots, self.not_reset()) if self._is_own else snapshots
+        if self._own is None:
+            return snapshots
+        if self._own.is_ordinary:
+            played = self._in_python().envs if self.is_native else []
+            return [(vars(env.unwrapped), *rest) for env, (_, *rest) in zip(played, snapshots, strict=True)]
+        return self._own.in_python(snapshots, self.not_reset())
 
     def render(self) -> tuple[Any, ...]:
         """Returns the result of each sub-environment's ``render``.
@@ -260,11 +248,19 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
         """Returns the sub-environments in Python, which continue from the current states the first time."""
         if self._python is not None:
             return self._python
-        python = PythonVectorEnv([self._make] * self.num_envs, copy=self.copy, autoreset_mode=self.autoreset_mode)
-        if self.is_native:
-            python.resume_from(self.snapshots(), self.not_reset(), self._generators(), self.np_random_seed)
-            self.release()
+        python = self._in_python()
+        self.release()
         self._python = python
+        return python
+
+    def _in_python(self) -> PythonVectorEnv:
+        """Returns other sub-environments, in Python, with the episodes of those in Rust if there are any."""
+        python = PythonVectorEnv([self._make] * self.num_envs, copy=self.copy, autoreset_mode=self.autoreset_mode)
+        if self.is_native and self._own is not None and self._own.is_ordinary:
+            positions: list[Any] = [self.rng(index) for index in range(self.num_envs)]
+            python.play_again(super().snapshots(), self.not_reset(), positions, self.np_random_seed)
+        elif self.is_native:
+            python.resume_from(self.snapshots(), self.not_reset(), generators(self, self.num_envs), self.np_random_seed)
         return python
 
     def close_extras(self, **kwargs: Any) -> None:
@@ -291,9 +287,12 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state["attributes"])
+        if self.__dict__.pop("_is_own", False):  # of an earlier version
+            self._own = OwnEnv(self._make, self.example, self._autoreset_mode)
         if "checkpoint" not in state:
             return
-        if not self._start_in_rust():
+        code = None if self._own is None else self._own.code
+        if not self._start_in_rust() or (self._own is not None and self._own.code != code):
             raise ValueError(f"Rust cannot continue the episodes of {self._entry_name} on this machine")
         self.restore(state["checkpoint"], state["seeds"])
         for index, generator in state["generators"].items():

@@ -16,11 +16,20 @@ class VectorSpaces:
         action_space: The actions.
         num_envs: The number of sub-environments.
         copy: Whether each batch is new arrays. If False, it is the same arrays each time.
+        mask_dtype: The dtype of the action masks in the infos; None if the infos have none.
     """
 
-    def __init__(self, observation_space: Any, action_space: spaces.Discrete, num_envs: int, copy: bool) -> None:
+    def __init__(
+        self,
+        observation_space: Any,
+        action_space: spaces.Discrete,
+        num_envs: int,
+        copy: bool,
+        mask_dtype: str | None = "int8",
+    ) -> None:
         self.first_action = int(action_space.start)
         """The action that is number 0."""
+        self.mask_dtype = mask_dtype
         self._space = observation_space
         self._arrays = None if copy else create_empty_array(observation_space, num_envs)
 

@@ -93,6 +93,30 @@ impl<E: Deref<Target = Environment>> Episode<E> {
     /// If there is no such action.
     #[inline]
     pub fn step(&mut self, action: usize, random: &mut RandomBits<'_>) -> Result<(f64, Ending), CallError> {
+        let (reward, code) = self.call_step(action, random)?;
+        let ending = match code {
+            CONTINUES => Ending::Continues,
+            TRUNCATED => Ending::Truncated,
+            _ => Ending::Terminated,
+        };
+        Ok((reward, ending))
+    }
+
+    /// Takes a step, as [`step`](Self::step) does. Returns the reward, whether the next state is terminal, and whether
+    /// the episode was cut off; the function may return both.
+    ///
+    /// # Errors
+    /// As for [`step`](Self::step).
+    ///
+    /// # Panics
+    /// As for [`step`](Self::step).
+    pub fn step_flags(&mut self, action: usize, random: &mut RandomBits<'_>) -> Result<(f64, bool, bool), CallError> {
+        let (reward, code) = self.call_step(action, random)?;
+        Ok((reward, code & TERMINATED != 0, code & TRUNCATED != 0))
+    }
+
+    #[inline]
+    fn call_step(&mut self, action: usize, random: &mut RandomBits<'_>) -> Result<(f64, i32), CallError> {
         let environment = &*self.environment;
         assert!(action < environment.num_actions(), "an action must be less than num_actions");
         let mut reward = f64::NAN;
@@ -109,17 +133,14 @@ impl<E: Deref<Target = Environment>> Episode<E> {
                 self.action_mask.address().cast(),
             )
         };
-        let ending = match code {
-            CONTINUES => Ending::Continues,
-            TERMINATED | BOTH => Ending::Terminated,
-            TRUNCATED => Ending::Truncated,
-            _ => return Err(failure("step", code)),
-        };
+        if !matches!(code, CONTINUES | TERMINATED | TRUNCATED | BOTH) {
+            return Err(failure("step", code));
+        }
         if !reward.is_finite() {
             return Err(CallError::Reward(reward));
         }
         swap(&mut self.state, &mut self.next_state);
-        Ok((reward, ending))
+        Ok((reward, code))
     }
 
     /// Writes the observation and the action mask of the state again.

@@ -14,7 +14,7 @@ use qtab_core::vector::Autoreset;
 use super::PyNativeEnv;
 use super::gymnasium::reset_needed;
 use crate::convert::Seed;
-use crate::error::{allocation, invalid, unusable_checkpoint};
+use crate::error::{CompiledCodeError, allocation, invalid, unusable_checkpoint};
 use crate::vector::{DynVectorEnv, SubEnvRng, VectorOptions};
 
 const ENTROPY_BYTES: usize = 16;
@@ -74,7 +74,8 @@ impl PyVectorEnv {
         Ok(borrow(slf)?.envs.is_some())
     }
 
-    /// One step of all sub-environments, with Gymnasium's return types.
+    /// One step of all sub-environments, with Gymnasium's return types. Python takes it, and all later ones, if it fails
+    /// in compiled code only.
     fn step<'py>(slf: &Bound<'py, Self>, actions: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let py = slf.py();
         let mut this = borrow_mut(slf)?;
@@ -86,11 +87,18 @@ impl PyVectorEnv {
             let message = format!("Cannot call env.step() before calling env.reset(): sub-environment {index}");
             return Err(reset_needed(py, message));
         }
-        Ok(envs.step(actions, rngs, seeds)?.into_pyobject(py)?.into_any())
+        match envs.step(actions, rngs, seeds) {
+            Err(error) if error.is_instance_of::<CompiledCodeError>(py) => {
+                drop(this);
+                slf.call_method1(intern!(py, "step_in_python"), (actions,))
+            }
+            stepped => Ok(stepped?.into_pyobject(py)?.into_any()),
+        }
     }
 
     /// Starts an episode in each sub-environment of `indices`, with a seed for each; None leaves its generator
-    /// unchanged. Returns all observations, and the infos of the sub-environments that were reset.
+    /// unchanged. Returns all observations, and the infos of the sub-environments that were reset. Raises
+    /// `CompiledCodeError` if a reset does not fail in Python.
     fn native_reset<'py>(
         slf: &Bound<'py, Self>,
         indices: Vec<usize>,

@@ -19,7 +19,7 @@ use super::external_task::{ExternalTask, TaskOptions};
 use super::external_vector_env::{ExternalVectorEnv, PySpaces};
 use super::observations::{ConvertTo, Converted};
 use crate::convert::Seed;
-use crate::error::invalid;
+use crate::error::{CompiledCodeError, invalid};
 use crate::runs::{AnyRecordings, BoxedFactory, RunFactory, boxed_run, check_actions, observed_run, one_step_runs};
 
 use crate::spec::{ActionMasksSpec, BoxFeatures, DiscretizerSpec, FloatType, PredictionSpec, ReadRows, RunSpec};
@@ -96,28 +96,32 @@ impl ExternalEnv {
         error: CallError,
         failed: &FailedCall<'_>,
     ) -> PyResult<(Repeated, Py<PyAny>)> {
+        match self.repeated(py, error, failed)? {
+            Some(repeated) => repeated.extract(py),
+            None => Err(returned_failed(failed.action)),
+        }
+    }
+
+    /// The error of a call in a vector environment: that of Python, or `CompiledCodeError` if it does not fail there.
+    pub(super) fn error(&self, py: Python<'_>, error: CallError, failed: &FailedCall<'_>) -> PyErr {
+        match self.repeated(py, error, failed) {
+            Err(raised) => raised,
+            Ok(_) if self.repeats_episodes => CompiledCodeError::new_err("a call failed in compiled code only"),
+            Ok(_) => returned_failed(failed.action),
+        }
+    }
+
+    /// What `on_failure` returns for a call that failed; `None` if it returns None, or there is no such function.
+    fn repeated(&self, py: Python<'_>, error: CallError, failed: &FailedCall<'_>) -> PyResult<Option<Py<PyAny>>> {
         let FailedCall { state, before, action, seed, played } = failed;
         let is_repeated = self.repeats_episodes && matches!(error, CallError::Reward(_));
         if error != CallError::Failed && !is_repeated {
             return Err(PyValueError::new_err(error.to_string()));
         }
-        if let Some(on_failure) = &self.on_failure {
-            let state = state.map(|bytes| PyBytes::new(py, bytes));
-            let repeated = on_failure.call1(py, (state, *before, *action, seed.to_python(py)?, *played))?;
-            if !repeated.is_none(py) {
-                return repeated.extract(py);
-            }
-        }
-        Err(PyRuntimeError::new_err(match action {
-            Some(action) => format!("step of the environment failed: it returned QTAB_FAILED for action {action}"),
-            None => "reset of the environment failed: it returned QTAB_FAILED".into(),
-        }))
-    }
-
-    /// The error of a call, for an environment whose failed calls are not continued in Python.
-    pub(super) fn error(&self, py: Python<'_>, error: CallError, failed: &FailedCall<'_>) -> PyErr {
-        let repeated = self.repeat(py, error, failed);
-        repeated.err().unwrap_or_else(|| PyRuntimeError::new_err("the environment failed in compiled code only"))
+        let Some(on_failure) = &self.on_failure else { return Ok(None) };
+        let state = state.map(|bytes| PyBytes::new(py, bytes));
+        let repeated = on_failure.call1(py, (state, *before, *action, seed.to_python(py)?, *played))?;
+        Ok((!repeated.is_none(py)).then_some(repeated))
     }
 
     /// Runs with the features of the spec's discretizer, for observations of type `T`.
@@ -251,6 +255,13 @@ impl ExternalEnv {
             (_, FloatType::F64) => self.box_runs::<i64, f64>(|bound| bound, spec),
         }
     }
+}
+
+fn returned_failed(action: Option<usize>) -> PyErr {
+    PyRuntimeError::new_err(match action {
+        Some(action) => format!("step of the environment failed: it returned QTAB_FAILED for action {action}"),
+        None => "reset of the environment failed: it returned QTAB_FAILED".into(),
+    })
 }
 
 /// An environment of another library, as training takes it, with the numbers to subtract from those of an observation.

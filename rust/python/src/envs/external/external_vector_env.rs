@@ -17,7 +17,7 @@ use super::external_env::SharedEnv;
 use super::observations::observation_array;
 use super::sub_env::SubEnv;
 use crate::convert::{Seed, array_of};
-use crate::error::allocation;
+use crate::error::{CompiledCodeError, allocation};
 use crate::interrupt::on_threads;
 use crate::vector::{
     DynVectorEnv, EnvSnapshot, Infos, SubEnvRng, VectorOptions, VectorStep, check_not_over, read_numbered, repeated,
@@ -31,17 +31,21 @@ pub(super) struct PySpaces {
     object: Py<PyAny>,
     /// The action that is number 0.
     first_action: i64,
+    /// The dtype of the action masks in the infos; `None` if the infos have none.
+    mask_dtype: Option<String>,
 }
 
 impl PySpaces {
-    /// `object` has the attribute `first_action` and the methods `batch(rows)` and `single(row)`.
+    /// `object` has the attributes `first_action` and `mask_dtype`, and the methods `batch(rows)` and `single(row)`.
     pub(super) fn new(object: &Bound<'_, PyAny>) -> PyResult<Self> {
         let first_action = object.getattr("first_action")?.extract()?;
-        Ok(Self { object: object.clone().unbind(), first_action })
+        let mask_dtype = object.getattr("mask_dtype")?.extract()?;
+        Ok(Self { object: object.clone().unbind(), first_action, mask_dtype })
     }
 
     fn clone_ref(&self, py: Python<'_>) -> Self {
-        Self { object: self.object.clone_ref(py), first_action: self.first_action }
+        let Self { object, first_action, mask_dtype } = self;
+        Self { object: object.clone_ref(py), first_action: *first_action, mask_dtype: mask_dtype.clone() }
     }
 }
 
@@ -109,8 +113,16 @@ impl ExternalVectorEnv {
             }
         };
         py.detach(|| on_threads(self.threads, work));
-        let mut failed = self.sub_envs.iter().zip(seeds).filter_map(|(sub_env, seed)| sub_env.error(py, seed));
-        let Some(error) = failed.next() else { return Ok(()) };
+        // An error of Python comes before one of compiled code only, after which Python would take the call.
+        let mut failed = None;
+        for error in self.sub_envs.iter().zip(seeds).filter_map(|(sub_env, seed)| sub_env.error(py, seed)) {
+            let is_of_python = !error.is_instance_of::<CompiledCodeError>(py);
+            failed = if is_of_python { Some(error) } else { failed.or(Some(error)) };
+            if is_of_python {
+                break;
+            }
+        }
+        let Some(error) = failed else { return Ok(()) };
         for (index, sub_env) in self.sub_envs.iter_mut().enumerate() {
             sub_env.undo(generators[index]);
         }
@@ -143,16 +155,20 @@ impl ExternalVectorEnv {
 
     /// Adds the action masks of these sub-environments to a dict, if the environment has masks.
     fn add_masks<'py>(&self, infos: &Infos<'py>, dict: &Bound<'py, PyDict>, indices: &[usize]) -> PyResult<()> {
-        if !self.env.has_action_mask() {
+        let Some(dtype) = self.spaces.mask_dtype.as_ref().filter(|_| self.env.has_action_mask()) else {
             return Ok(());
-        }
+        };
         let (py, count, width) = (dict.py(), self.sub_envs.len(), self.env.num_actions());
         let mut masks = repeated(0_i8, count.saturating_mul(width))?;
         for &index in indices {
             let row = masks[index * width..].iter_mut();
             row.zip(self.sub_envs[index].episode.action_mask()).for_each(|(to, &byte)| *to = byte.cast_signed());
         }
-        dict.set_item(intern!(py, "action_mask"), PyArray1::from_vec(py, masks).reshape([count, width])?)?;
+        let mut masks = PyArray1::from_vec(py, masks).reshape([count, width])?.into_any();
+        if dtype != "int8" {
+            masks = masks.call_method1(intern!(py, "astype"), (dtype,))?;
+        }
+        dict.set_item(intern!(py, "action_mask"), masks)?;
         dict.set_item(intern!(py, "_action_mask"), infos.mask(indices.iter().copied())?)
     }
 
@@ -179,6 +195,7 @@ impl DynVectorEnv for ExternalVectorEnv {
         let num_actions = self.env.num_actions();
         read_numbered(actions, self.spaces.first_action, num_actions, &inactive, &mut self.actions)?;
 
+        self.sub_envs.iter_mut().try_for_each(SubEnv::reserve_action).map_err(allocation)?;
         let numbers = std::mem::take(&mut self.actions);
         let all = self.indices(|_| true)?;
         let stepped = self.for_each(py, &all, rngs, seeds, |index, sub_env, rng| {
@@ -241,11 +258,15 @@ impl DynVectorEnv for ExternalVectorEnv {
         None
     }
 
-    /// The attribute `state` are the bytes of the state.
+    /// The attribute `state` are the bytes of the state; `played`, of an environment that repeats episodes, the position
+    /// before the reset and the actions since then.
     fn snapshot<'py>(&self, py: Python<'py>, index: usize) -> PyResult<EnvSnapshot<'py>> {
-        let SubEnv { episode, progress, .. } = &self.sub_envs[index];
+        let SubEnv { episode, progress, played, .. } = &self.sub_envs[index];
         let attributes = PyDict::new(py);
         attributes.set_item(intern!(py, "state"), PyBytes::new(py, episode.state()))?;
+        if let Some(played) = played {
+            attributes.set_item(intern!(py, "played"), (played.now.start, &played.now.actions))?;
+        }
         Ok((attributes, progress.elapsed, progress.done, self.observation(py, index)?))
     }
 

@@ -51,8 +51,9 @@ impl PyExternalEnv {
     }
 
     /// The environment as training takes it. `first` are the numbers to subtract from those of an observation, so that
-    /// indices begin at 0; empty for zeros. A vector environment needs `spaces`, an object with the attribute
-    /// `first_action`, the action that is number 0, and two methods: `batch(rows)` makes the observations of a vector
+    /// indices begin at 0; empty for zeros. A vector environment needs `spaces`, an object with the attributes
+    /// `first_action`, the action that is number 0, and `mask_dtype`, the dtype of the action masks in the infos or None,
+    /// and two methods: `batch(rows)` makes the observations of a vector
     /// environment, and `single(row)` one observation, from the numbers that the functions of the library write.
     #[pyo3(signature = (first = Vec::new(), spaces = None))]
     pub(crate) fn native_env(&self, first: Vec<i64>, spaces: Option<&Bound<'_, PyAny>>) -> PyResult<PyNativeEnv> {

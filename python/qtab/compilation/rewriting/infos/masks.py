@@ -8,13 +8,12 @@ import numpy as np
 
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting import specials
+from qtab.compilation.rewriting.infos.dicts import KEY
 from qtab.compilation.rewriting.program import Compiled, Program
 from qtab.compilation.rewriting.source.sources import source_of
 from qtab.compilation.rewriting.statements.statements import Statements
 from qtab.compilation.rewriting.user_functions import compiled_function
 from qtab.compilation.rewriting.values import Array, Value, constant, in_words
-
-KEY = "action_mask"
 
 
 def add_action_mask(program: Program) -> bool:
@@ -50,6 +49,7 @@ def add_action_mask(program: Program) -> bool:
     code = value.code if value.fresh or value.raw else f"{value.code}.copy()"
     compiled.lines = [(f"def {compiled.name}(record):", node.lineno), (f"    return {code}", node.lineno)]
     _add(program, f"{compiled.name}(record)", value, {compiled.name}, compiled)
+    program.mask = program.mask[0], node
     return True
 
 
@@ -67,6 +67,7 @@ def _add(program: Program, code: str, result: Value, uses: set[str], compiled: C
     if compiled.changes:
         advice = "compute the mask without changing attributes"
         raise NotCompilable("the action mask changes the state", compiled.file, compiled.lines[0][1], advice)
+    program.mask = kind.dtype, None
     program.named["action_mask"] = Compiled(
         "action_mask", Value(), [("def action_mask(record):", 0), (f"    return {code}", 0)], uses=uses
     )

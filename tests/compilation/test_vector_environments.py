@@ -1,0 +1,291 @@
+"""Ordinary classes in vector environments: compiled, and equal to SyncVectorEnv over the same classes."""
+
+import copy
+import logging
+import pickle
+from collections.abc import Iterator
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import pytest
+from gymnasium.vector import AutoresetMode, SyncVectorEnv
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import qtab
+from support.environments.gym_classes import control, refused_vectors, vectors
+from support.lockstep.own_vectors import in_lockstep, make, same_streams
+from support.lockstep.vector import MODES, assert_equal
+
+pytest.importorskip("numba")
+
+CLASSES: dict[str, Any] = {
+    "Thermostat": control.ThermostatEnv,
+    "Drift": vectors.DriftEnv,
+    "Lock": vectors.LockEnv,
+    "MaskedRow": vectors.MaskedRowEnv,
+    "Rooms": vectors.RoomsEnv,
+}
+
+
+@pytest.fixture(scope="module", autouse=True)
+def registered() -> Iterator[None]:
+    for name, cls in {**CLASSES, "Fragile": vectors.FragileEnv, "Growing": vectors.GrowingEnv}.items():
+        gym.register(f"QtabVec/{name}-v0", cls, vector_entry_point=f"qtab.envs.make_vector:QtabVec/{name}-v0")
+    yield
+    for name in [one for one in gym.registry if one.startswith("QtabVec/")]:
+        del gym.registry[name]
+
+
+@pytest.mark.parametrize("name", CLASSES)
+@settings(max_examples=12, deadline=None)
+@given(
+    num_envs=st.integers(1, 9),
+    mode=st.sampled_from(MODES),
+    limit=st.integers(1, 12) | st.none(),
+    threads=st.none() | st.integers(1, 3),
+    copied=st.booleans(),
+    seed=st.integers(0, 2**40),
+)
+def test_compiled_classes_equal_sync_vector_env(
+    name: str, num_envs: int, mode: AutoresetMode, limit: int | None, threads: int | None, copied: bool, seed: int
+) -> None:
+    own = {"threads": threads, "copy": copied, "max_episode_steps": limit}
+    ours, theirs = make(f"QtabVec/{name}-v0", num_envs, mode, **own)
+    assert ours.is_native
+    in_lockstep(ours, theirs, 25, seed)
+    assert ours.is_native or name == "Lock"
+    same_streams(ours, theirs)
+    in_lockstep(ours, theirs, 5, seed + 1)
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_python_continues_the_episodes(mode: AutoresetMode) -> None:
+    ours, theirs = make("QtabVec/Drift-v0", 5, mode, max_episode_steps=6)
+    actions = np.random.default_rng(0).integers(0, 3, (40, 5))
+    assert_equal(ours.reset(seed=1), theirs.reset(seed=1))
+    for index, row in enumerate(actions):
+        assert_equal(ours.step(row), result := theirs.step(row))
+        if index == 17:
+            assert ours.is_native
+            same = zip(ours.envs, theirs.envs, strict=True)
+            assert all(one.unwrapped.position.tolist() == other.unwrapped.position.tolist() for one, other in same)
+            assert not ours.is_native
+        over = result[2] | result[3]
+        if mode is AutoresetMode.DISABLED and over.any():
+            options = {"reset_mask": over.copy()}
+            assert_equal(ours.reset(options=dict(options)), theirs.reset(options=dict(options)))
+    same_streams(ours, theirs)
+
+
+def test_envs_of_which_some_were_never_reset_and_attributes_that_are_set() -> None:
+    ours, theirs = make("QtabVec/Drift-v0", 3)
+    with pytest.raises(gym.error.ResetNeeded):
+        ours.step([0, 1, 2])
+    assert ours.envs[2].unwrapped.position.tolist() == [0.0, 0.0, 0.0]
+    assert_equal(ours.reset(seed=3), theirs.reset(seed=3))
+    ours, theirs = make("QtabVec/Drift-v0", 2)
+    assert_equal(ours.reset(seed=5), theirs.reset(seed=5))
+    for env in (ours, theirs):
+        env.step([0, 1])
+        env.set_attr("noise", [0.1, 2.0])
+    assert_equal(ours.step([1, 2]), theirs.step([1, 2]))
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("copied", [copy.deepcopy, lambda env: pickle.loads(pickle.dumps(env))])  # noqa: S301
+def test_copies_continue_with_the_same_numbers(mode: AutoresetMode, copied: Any) -> None:
+    ours, theirs = make("QtabVec/Lock-v0", 4, mode, max_episode_steps=9)
+    assert_equal(ours.reset(seed=3), theirs.reset(seed=3))
+    for row in ([1, 1, -1, 0], [0, 0, 0, 0]):
+        assert_equal(ours.step(np.array(row)), theirs.step(np.array(row)))
+    again = copied(ours)
+    assert again.is_native
+    assert again.np_random_seed == ours.np_random_seed
+    last = np.array([0, 1, 0, -1])
+    assert_equal(again.step(last), ours.step(last))
+    assert_equal(again.call("action_masks"), ours.call("action_masks"))  # Python plays both episodes again
+    theirs.step(last)
+    for _ in range(12):
+        assert_equal(again.step(last), result := theirs.step(last))
+        over = result[2] | result[3]
+        if mode is AutoresetMode.DISABLED and over.any():
+            assert_equal(
+                again.reset(options={"reset_mask": over.copy()}), theirs.reset(options={"reset_mask": over.copy()})
+            )
+
+
+def test_a_copy_of_other_code_is_refused() -> None:
+    ours, _ = make("QtabVec/Drift-v0", 2)
+    ours.reset(seed=0)
+    ours._own.code = "of another class"
+    with pytest.raises(ValueError, match="Rust cannot continue the episodes of QtabVec/Drift-v0"):
+        copy.copy(ours)
+
+
+@pytest.mark.parametrize("threads", [1, 3])
+def test_the_error_of_a_step_is_that_of_python_and_changes_nothing(threads: int) -> None:
+    ours, theirs = make("QtabVec/Fragile-v0", 6, threads=threads)
+    ours.reset(seed=4)
+    for row in ([0, 1, 0, 1, 0, 1], [1, 0, 0, 0, 1, 0]):
+        ours.step(row)
+    untouched = copy.deepcopy(ours)
+    for _ in range(2):
+        with pytest.raises(KeyError, match="the second action") as raised:
+            ours.step([0, 1, 1, 2, 3, 2])  # compiled code fails in sub-environment 4 as well, where Python does not
+    assert any(entry.name == "step" and "vectors.py" in str(entry.path) for entry in raised.traceback)
+    assert ours.is_native
+    for _ in range(5):
+        assert_equal(ours.step([1, 0, 1, 1, 0, 1]), untouched.step([1, 0, 1, 1, 0, 1]))
+    theirs.reset(seed=4)
+    with pytest.raises(KeyError, match="the second action"):
+        [theirs.step(np.array(row)) for row in ([0] * 6, [0] * 6, [2] * 6)]
+
+
+@pytest.mark.parametrize("mode", [AutoresetMode.SAME_STEP, AutoresetMode.NEXT_STEP])
+def test_the_error_of_a_reset_is_that_of_python_and_changes_nothing(mode: AutoresetMode) -> None:
+    first, _, third = np.random.default_rng(8).random(3)
+    ours, _ = make("QtabVec/Fragile-v0", 3, mode, unlucky=float(first))
+    ours.reset(seed=0)
+    ours.step([1, 0, 1])
+    before = ours.checkpoint()
+    with pytest.raises(ValueError, match="no first state"):
+        ours.reset(seed=[5, None, 8])
+    assert (ours.np_random_seed, ours.checkpoint()) == ((0, 1, 2), before)
+    assert ours.is_native
+
+    # The reset after an episode, which draws the third number of the generator.
+    ours, theirs = make("QtabVec/Fragile-v0", 3, mode, unlucky=float(third), max_episode_steps=1)
+    assert_equal(ours.reset(seed=[0, 8, 1]), theirs.reset(seed=[0, 8, 1]))
+    if mode is AutoresetMode.NEXT_STEP:
+        assert_equal(ours.step([1, 1, 1]), theirs.step([1, 1, 1]))
+    before = ours.checkpoint()
+    for _ in range(2):
+        with pytest.raises(ValueError, match="no first state"):
+            ours.step([1, 1, 1])
+        assert ours.checkpoint() == before
+    assert ours.is_native
+
+
+@pytest.mark.parametrize("name", ["Growing", "Fragile"])
+@pytest.mark.parametrize("mode", MODES)
+def test_a_step_that_fails_in_compiled_code_only_is_taken_in_python(
+    name: str, mode: AutoresetMode, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("qtab.compilation.twins.repetition._logged", set())
+    ours, theirs = make(f"QtabVec/{name}-v0", 4, mode)
+    assert_equal(ours.reset(seed=2), theirs.reset(seed=2))
+    rows = [[0, 0, 1, 0], [1, 1, 0, 1], [1, 0, 1, 1], [1, 1, 1, 1], [1, 1, 1, 1], [1, 0, 0, 0], [1, 1, 1, 0]]
+    if name == "Fragile":
+        rows = [[0, 1, 0, 0], [0, 0, 0, 3], [0, 0, 0, 0]]
+    with np.errstate(all="ignore"):
+        for row in rows:
+            assert_equal(ours.step(np.array(row)), result := theirs.step(np.array(row)))
+            over = result[2] | result[3]
+            if mode is AutoresetMode.DISABLED and over.any():
+                options = {"reset_mask": over}
+                assert_equal(ours.reset(options=dict(options)), theirs.reset(options=dict(options)))
+    assert not ours.is_native
+    assert f"a vector environment of {name}Env is stepped in Python from now on" in caplog.text
+    same_streams(ours, theirs)
+
+
+def test_options_that_reset_reads_are_given_to_it_in_python() -> None:
+    ours, theirs = make("QtabVec/Drift-v0", 2, AutoresetMode.DISABLED)
+    assert_equal(ours.reset(seed=0, options={"other": 1}), theirs.reset(seed=0, options={"other": 1}))
+    mask = np.array([True, False])
+    assert_equal(ours.reset(options={"reset_mask": mask}), theirs.reset(options={"reset_mask": mask}))
+    assert ours.is_native  # its reset only passes them on
+    ours, theirs = make("QtabVec/Lock-v0", 2)
+    assert_equal(ours.reset(seed=0), theirs.reset(seed=0))
+    assert ours.is_native
+    assert_equal(ours.reset(options={"start": 2}), theirs.reset(options={"start": 2}))
+    assert not ours.is_native
+
+
+def test_stable_baselines3_gets_what_its_own_vector_environment_gives() -> None:
+    vec_env = pytest.importorskip("stable_baselines3.common.vec_env")
+    name = "QtabVec/Drift-v0"
+    ours = qtab.sb3.VecEnv(name, 3, seed=1, max_episode_steps=4)
+    theirs = vec_env.DummyVecEnv([lambda: gym.make(name, max_episode_steps=4)] * 3)
+    theirs.seed(1)
+    assert np.array_equal(ours.reset(), theirs.reset())
+    for row in np.random.default_rng(0).integers(0, 3, (40, 3)):
+        one, other = ours.step(row), theirs.step(row)
+        assert [part.tobytes() for part in one[:3]] == [part.tobytes() for part in other[:3]]
+        assert repr(one[3]) == repr(other[3])
+    assert ours.venv.is_native
+    with pytest.raises(AttributeError, match="has no attribute 'none'"):
+        ours.get_attr("none")
+    assert ours.venv.is_native
+    assert np.array_equal(ours.get_attr("position"), theirs.get_attr("position"))
+
+
+def test_make_vec_compiles() -> None:
+    made: Any = gym.make_vec("QtabVec/Drift-v0", 3, autoreset_mode="SameStep")
+    assert isinstance(made, qtab.RustVectorEnv)
+    assert made.is_native
+
+
+@pytest.mark.parametrize(
+    ("made", "mode", "reason"),
+    [
+        (refused_vectors.SharesMemory, "NextStep", "self.position is changed in place, and "),
+        (refused_vectors.ClassArray, "NextStep", "a ndarray outside of the environment is changed"),
+        (refused_vectors.Random, "NextStep", "two environments that are made differ in self.noise"),
+        (refused_vectors.ShowsView, "SameStep", "the observation shares memory with self.position"),
+        (refused_vectors.OtherDtype, "NextStep", "reset returns an array of int64 for a space of uint8"),
+        (refused_vectors.Doubles, "SameStep", "reset returns an array of int64 for a space of float32"),
+        (refused_vectors.Informs, "NextStep", "the info dict has 'speed', which compiled code leaves out"),
+        (refused_vectors.ChangesInfo, "NextStep", "the info dict info is changed or used here"),
+        (refused_vectors.PassesInfoOn, "NextStep", "the info dict info is changed or used here"),
+        (refused_vectors.OneMask, "NextStep", "this info dict has another action mask than others"),
+        (refused_vectors.OtherMask, "NextStep", "is not what action_masks() returns"),
+        (refused_vectors.NoOptions, "NextStep", "reset does not take seed and options"),
+        (refused_vectors.DefaultOptions, "NextStep", "options of reset have no default None"),
+        (refused_vectors.Prints, "NextStep", "print"),
+    ],
+)
+def test_classes_that_would_differ_are_refused_by_name(made: Any, mode: str, reason: str) -> None:
+    gym.register(f"QtabVec/{made.__name__}-v0", made)
+    with pytest.raises(ValueError, match=f"Rust steps, got 'QtabVec/{made.__name__}-v0': Rust does not") as raised:
+        qtab.RustVectorEnv(f"QtabVec/{made.__name__}-v0", 2, autoreset_mode=mode)
+    assert reason in str(raised.value)
+    assert str(raised.value).endswith("or step it with gymnasium.vector.SyncVectorEnv")
+
+
+@pytest.mark.filterwarnings("ignore:.*share an object", "ignore:.*precision lowered")
+def test_views_and_other_dtypes_are_shown_where_no_last_observation_is() -> None:
+    made: Any
+    for made in (refused_vectors.ShowsView, refused_vectors.Doubles):
+        gym.register(f"QtabVec/{made.__name__}Next-v0", made)
+        ours, theirs = make(f"QtabVec/{made.__name__}Next-v0", 3, max_episode_steps=5)
+        assert ours.is_native
+        in_lockstep(ours, theirs, 12, 0)
+
+
+def test_without_numba_and_with_a_render_mode(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("NUMBA_DISABLE_JIT", "1")
+    with pytest.raises(ValueError, match="and it cannot be compiled: NUMBA_DISABLE_JIT is set"):
+        qtab.RustVectorEnv("QtabVec/Drift-v0", 2)
+
+
+def test_frames_are_drawn_in_python(caplog: pytest.LogCaptureFixture) -> None:
+    class Drawn(vectors.DriftEnv):
+        metadata = {"render_modes": ["ansi"], "render_fps": 4}  # noqa: RUF012 - Gymnasium's attribute
+
+        def __init__(self, render_mode: str | None = None) -> None:
+            super().__init__()
+            self.render_mode = render_mode
+
+        def render(self) -> Any:
+            return f"at {self.position}"
+
+    gym.register("QtabVec/Drawn-v0", lambda **given: Drawn(**given))
+    with caplog.at_level(logging.WARNING, "qtab"):
+        ours = qtab.RustVectorEnv("QtabVec/Drawn-v0", 2, render_mode="ansi")
+    theirs = SyncVectorEnv([lambda: gym.make("QtabVec/Drawn-v0", render_mode="ansi")] * 2)
+    assert_equal(ours.reset(seed=0), theirs.reset(seed=0))
+    assert not ours.is_native
+    assert ours.render() == theirs.render()
