@@ -13,8 +13,8 @@ if TYPE_CHECKING:
 
 MAX_LABELS = 8
 """The largest number of labels; more lines get a legend."""
-SIZE = 9.0
-"""The font size, in points."""
+RELATIVE_SIZE = 0.9
+"""The font size, in sizes of Matplotlib's default font."""
 LINE_HEIGHT = 1.25
 """The smallest distance between two labels, in font sizes."""
 BRIGHTEST = 0.45
@@ -28,12 +28,15 @@ def label_ends(ax: "Axes", lines: Sequence[Line], colors: Sequence[Any]) -> bool
 
     Returns False and writes nothing if the labels do not fit, so that a legend is needed.
     """
+    from matplotlib import rcParams
+
     ends = [end for line in lines if (end := _last_point(ax, line)) is not None]
     if not 0 < len(ends) == len(lines) <= MAX_LABELS:
         return False
     if len({x for x, _ in ends}) > 1:
         return False  # a line leaves the axes before the right edge
-    pixels = SIZE * ax.figure.dpi / 72
+    size = RELATIVE_SIZE * rcParams["font.size"]
+    pixels = size * ax.figure.dpi / 72
     wanted = np.array([ax.transData.transform(end)[1] for end in ends])
     box = ax.get_window_extent()
     shifted = _spread(wanted, LINE_HEIGHT * pixels, (box.y0, box.y1))
@@ -46,7 +49,7 @@ def label_ends(ax: "Axes", lines: Sequence[Line], colors: Sequence[Any]) -> bool
             (6, shift),
             textcoords="offset points",
             color=text_shade(hue, ax),
-            fontsize=SIZE,
+            fontsize=size,
             va="center",
             annotation_clip=False,
         )

@@ -12,8 +12,6 @@ from qtab.plots.parts.labels import CHARACTER
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-SIZE = 10.0
-"""The font size, in points."""
 LEAST_LINES = 4
 """With fewer lines, a legend is as easy to read."""
 GAP = 0.9
@@ -30,11 +28,13 @@ def label_minima(ax: "Axes", lines: Sequence[Line], colors: Sequence[Any]) -> bo
     Returns False and writes nothing if several lines have their minimum at an end, if one has it outside the axes, or
     if the labels do not fit, so that a legend is needed.
     """
+    from matplotlib import rcParams
+
     points = [point for line in lines if (point := _minimum(ax, line)) is not None]
     at_ends = sum(x in (line.x[0], line.x[-1]) for line, (x, _) in zip(lines, points, strict=False))
     if len(lines) < LEAST_LINES or len(points) < len(lines) or at_ends > 1:
         return False
-    pixels = SIZE * ax.figure.dpi / 72
+    pixels = rcParams["font.size"] * ax.figure.dpi / 72
     bottom = ax.get_window_extent().y0 + LINE_HEIGHT * pixels / 2
     labels: list[tuple[Any, list[str], Any]] = []  # the place in pixels, the names, and the color
     for line, point, hue in zip(lines, points, colors, strict=True):
@@ -59,7 +59,7 @@ def label_minima(ax: "Axes", lines: Sequence[Line], colors: Sequence[Any]) -> bo
     halo = [withStroke(linewidth=3, foreground=ax.get_facecolor())]
     for x, y, text, hue in placed:
         at = ax.transData.inverted().transform((x, y)).tolist()
-        style: dict[str, Any] = {"color": text_shade(hue, ax), "fontsize": SIZE, "path_effects": halo}
+        style: dict[str, Any] = {"color": text_shade(hue, ax), "fontsize": rcParams["font.size"], "path_effects": halo}
         ax.text(at[0], at[1], text, ha="center", va="center", **style)
     return True
 
