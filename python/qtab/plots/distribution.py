@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 MAX_BINS = 1000
 """The largest number of bins; more would be narrower than a pixel."""
-MAX_FILLED = 3
+MAX_FILLED = 2
 """The largest number of filled histograms; more are drawn as outlines."""
 
 
@@ -69,7 +69,7 @@ def distribution(
         label = f"{entry.label}: {runs}" if entry.label else runs
         ax.hist(entry.values, edges, color=hue, alpha=fill, label=label)
         style: Any = line_style(index)
-        ax.hist(entry.values, edges, color=hue, histtype="step", linewidth=1.4, linestyle=style)
+        ax.hist(entry.values, edges, color=hue, histtype="step", linewidth=1.8, linestyle=style)
         ax.axvline(middle, color=hue, linewidth=2, linestyle=style)
     mark_threshold(ax, threshold, only_threshold(drawn), "x")
     ax.locator_params(axis="y", integer=True)
