@@ -9,7 +9,7 @@ import pytest
 import qtab
 from qtab.exercises import EXERCISES, check, definitions, find
 from qtab.exercises.mistakes import MISTAKES
-from qtab.exercises.record import Misuse, Record, first_difference
+from qtab.exercises.record import Event, Misuse, Record, first_difference
 
 SARSA = find("sarsa").model
 NAMES = sorted(EXERCISES)
@@ -114,7 +114,8 @@ def test_the_difference_of_a_solution_that_stops_early_has_a_field() -> None:
     assert shorter is not None
     assert longer is not None
     assert (shorter.stopped_early, longer.stopped_early) == (True, False)
-    assert "only the reference goes that far" in str(shorter)
+    assert "your function has ended, the reference continues" in str(shorter)
+    assert "the reference has ended, your function continues" in str(longer)
 
 
 def test_rounding_counts_unless_it_is_allowed() -> None:
@@ -125,6 +126,7 @@ def test_rounding_counts_unless_it_is_allowed() -> None:
     report = check("sample_average", average)
     assert not report.passed
     assert "except for rounding" in str(report)
+    assert str(report).endswith("qtab.exercises.check('sample_average', ...,\n  exact=False) accepts this")
     assert report.mistakes == ()
     assert check("sample_average", average, exact=False).passed
     assert not check("sample_average", lambda *_: None, exact=False).passed
@@ -199,12 +201,30 @@ def test_a_report_is_an_assertion_and_a_table() -> None:
     assert repr(report) == "<Report on exercise 7, sarsa: 0 of 3 checks passed>"
 
 
+def test_arrays_in_a_report_are_not_broken_within_a_row() -> None:
+    report = check("policy_evaluation", lambda P, policy, values, discount: values + 1.0)  # noqa: N803
+    lines = str(report).splitlines()
+    assert max(map(len, lines)) <= 86
+    start = next(index for index, line in enumerate(lines) if line.strip().startswith("values = ["))
+    end = next(index for index, line in enumerate(lines) if line.strip().startswith("discount = "))
+    width = lines[start].index("[") + 1
+    assert end - start > 1
+    assert all(line[:width].isspace() and line[width] in " -0123456789." for line in lines[start + 1 : end])
+    assert "and 1 more entry" in str(first_difference(recorded(np.arange(4.0)), recorded(np.arange(4.0) + 1)))
+
+
+def recorded(value: np.ndarray) -> Record:
+    return Record([Event("call 0", "values", value)])
+
+
 def test_exercises_are_found_by_name_and_number() -> None:
     assert [exercise.number for exercise in EXERCISES.values()] == list(range(1, 13))
     assert find("Q-learning") is find(8) is find("8") is EXERCISES["q_learning"]
     assert repr(find(8)) == "<Exercise 8, q_learning: Q-learning, section 6.5>"
     with pytest.raises(ValueError, match=r"there is no exercise 'sarsaa' \(did you mean 'sarsa'\?\)"):
         find("sarsaa")
+    with pytest.raises(ValueError, match="there is no exercise 13: they are numbered from 1 to 12; "):
+        find(13)
     with pytest.raises(TypeError, match="exercise must be a name or a number, got None"):
         find(None)  # type: ignore[arg-type]
     with pytest.raises(TypeError, match="solution must be a function, such as sarsa, got 3"):

@@ -1,6 +1,7 @@
 """The grader reports what a solution must not do, and continues with the next check."""
 
 import random
+import re
 import sys
 import threading
 from collections.abc import Callable
@@ -9,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from qtab.exercises import EXERCISES, check, find, time_limit
+from qtab.exercises import EXERCISES, check, find, grader, time_limit
 
 SARSA = find("sarsa").model
 
@@ -31,6 +32,15 @@ def raises(env, q, *others):
     q[0, 99] = 1.0
 
 
+def old_step(env, *_):
+    env.reset()
+    _, _, _, _ = env.step(0)
+
+
+def one_episode(env, q, episodes, *others):
+    SARSA(env, q, 1, *others)
+
+
 def returns_late(env, *others):
     while True:
         try:
@@ -44,7 +54,15 @@ def returns_late(env, *others):
     [
         (raises, "it raised IndexError: index 99 is out of bounds for axis 1 with size 4, in line"),
         (lambda *_: exit(), "it raised SystemExit"),
-        (lambda env, q: None, "it must take 7 arguments in the order of the exercise, but takes (env, q)"),
+        (
+            lambda env, q: None,
+            "7 arguments in this order: (env, q, episodes, learning_rate, discount, epsilon, rng), but",
+        ),
+        (lambda q, env, episodes, learning_rate, discount, epsilon, rng: None, "but takes (q, env, episodes,"),
+        (lambda env, q, *_: q[env.reset()], "Is the state a number? env.reset() returns two values: state, info = "),
+        (old_step, "(expected 4), in line"),
+        (old_step, ". env.step returns five values: next_state, reward, terminated, truncated, info"),
+        (one_episode, "it returns after 1 episode, but episodes is"),
         (lambda *_: None, "it never calls env.reset(), which starts an episode"),
         (lambda env, *_: env.reset(seed=1), "it calls env.reset with a seed"),
         (lambda env, *_: env.step(0), "it calls env.step before env.reset()"),
@@ -94,7 +112,7 @@ def test_without_signals_a_second_thread_stops_a_loop() -> None:
     ("function", "message"),
     [
         (lambda values, epsilon, rng: 1.5, "call 0: action must be an integer, got 1.5 (float)"),
-        (lambda values, epsilon, rng: None, "call 0: action must be an integer, got None"),
+        (lambda values, epsilon, rng: None, "call 0: action must be an integer, got None (is a return missing?)"),
         (lambda values, epsilon, rng: int(values.sort() is None), "call 0: it changes its argument values"),
     ],
 )
@@ -123,7 +141,32 @@ def test_global_generators_are_reported_and_left_as_they_were() -> None:
     assert np.array_equal(np.random.get_state()[1], numpy_before)  # type: ignore[index]  # noqa: NPY002
     assert random.getstate() == python_before
     report = check("epsilon_greedy", lambda values, epsilon, rng: np.random.randint(5))  # noqa: NPY002
-    assert str(report).count("NumPy's global generator") == len(report.results)  # once in each check
+    assert all(str(result.faults).count("NumPy's global generator") == 1 for result in report.results)
+    assert str(report).count("NumPy's global generator") == 1
+    assert str(report).count("the same as in the check above") == len(report.results) - 1
+
+
+def test_the_generator_of_the_action_space_is_reported() -> None:
+    def samples(env, q, episodes, learning_rate, discount, epsilon, rng):
+        env.action_space.sample()
+        SARSA(env, q, episodes, learning_rate, discount, epsilon, rng)
+
+    broken(samples, "it calls env.action_space.sample(), which has a generator of its own")
+    assert check("sarsa", samples).advice == ()
+
+
+def test_a_report_on_a_loop_names_its_line_and_does_not_wait_in_every_check(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(grader, "AFTER_A_STOP", 0.1)
+
+    def loops(*_):
+        while True:
+            pass
+
+    line = loops.__code__.co_firstlineno + 1
+    faults = [result.faults[0] for result in check("td_prediction", loops, seconds=0.3).results]
+    after = [re.sub(r" \(.*?\), in line .*", "", fault) for fault in faults]
+    assert after == [f"it was stopped after {seconds} seconds" for seconds in (0.3, 0.1, 0.1)]
+    assert all(re.search(f", in line ({line}: while True:|{line + 1}: pass)$", fault) for fault in faults)
 
 
 def test_the_error_handling_of_numpy_is_left_as_it_was() -> None:

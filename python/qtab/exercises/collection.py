@@ -62,7 +62,8 @@ def find(exercise: str | int | Exercise) -> Exercise:
     for found in EXERCISES.values():
         if name in (found.name, str(found.number)):
             return found
-    raise ValueError(f"there is no exercise {exercise!r}{did_you_mean(name, EXERCISES)}: see qtab.exercises.EXERCISES")
+    suggestion = did_you_mean(name, EXERCISES) or f": they are numbered from 1 to {len(EXERCISES)}"
+    raise ValueError(f"there is no exercise {exercise!r}{suggestion}; qtab.exercises.EXERCISES lists them")
 
 
 def _own(exercise: str) -> Exercise:

@@ -15,6 +15,8 @@ from qtab.exercises.record import Event, Misuse, Record, equal
 from qtab.exercises.recording_env import RANDOM_NUMBERS
 
 Arguments = Mapping[str, Any]
+LINE = 72
+"""The maximum number of characters in a line of an array, so that a report need not break it."""
 
 
 @with_fields
@@ -39,7 +41,7 @@ class FunctionCheck:
         for number, given in enumerate(self.calls()):
             place, about = f"call {number}", _in_words(given)
             kept = {name: deepcopy(given[name]) for name in names if name not in (*self.changes, "rng")}
-            result = guarded(function, [given[name] for name in names], record, seconds)
+            result = guarded(function, {name: given[name] for name in names}, record, seconds)
             for name, before in kept.items():
                 if not _unchanged(before, given[name]):
                     raise Misuse(f"{place}: it changes its argument {name}: work on a copy, {name}.copy()")
@@ -82,7 +84,7 @@ class FunctionCheck:
 def _kind(value: Any) -> str:
     if isinstance(value, np.ndarray):
         return f"an array of shape {value.shape} and dtype {value.dtype}"
-    return "None" if value is None else f"{value!r:.60} ({type(value).__name__})"
+    return "None (is a return missing?)" if value is None else f"{value!r:.60} ({type(value).__name__})"
 
 
 def _unchanged(before: Any, after: Any) -> bool:
@@ -96,6 +98,7 @@ def _in_words(given: Arguments) -> str:
     lines = []
     for name, value in given.items():
         if name not in ("P", "rng"):
-            text = np.array2string(value, precision=6, threshold=20) if isinstance(value, np.ndarray) else repr(value)
-            lines.append(f"{name} = " + text.replace("\n", "\n" + " " * (len(name) + 3)))
+            start = f"{name} = "
+            options: dict[str, Any] = {"precision": 6, "threshold": 20, "max_line_width": LINE, "prefix": start}
+            lines.append(start + (np.array2string(value, **options) if isinstance(value, np.ndarray) else repr(value)))
     return "\n".join(lines)

@@ -9,6 +9,7 @@ from qtab._utils.shown import shown
 from qtab.exercises.collection import find
 from qtab.exercises.exercise import Check, Exercise
 from qtab.exercises.guard import GLOBAL_NUMPY, GLOBAL_PYTHON
+from qtab.exercises.learner_check import SAMPLES
 from qtab.exercises.recognition import MODEL_SECONDS, recognised
 from qtab.exercises.record import Misuse, Record, equal, first_difference
 from qtab.exercises.recording_env import RANDOM_NUMBERS
@@ -18,6 +19,9 @@ NEVER_CHANGED = (
     "{table} never changes: change the array that you are given, as in {table}[...] += ..., and not a copy of it. "
     "Nothing needs to be returned"
 )
+
+AFTER_A_STOP = 2.0
+"""The most seconds of a call after one that was stopped, so that a report on an endless loop does not take long."""
 
 
 def check(
@@ -40,7 +44,7 @@ def check(
         solution: The function.
         exact: Whether the numbers must be equal to the last bit. With False a check passes if all numbers of it are
             equal except for rounding (a relative difference of 1e-9).
-        seconds: The time limit of each call.
+        seconds: The time limit of each call. After a call that was stopped it is at most 2 seconds.
 
     Returns:
         The report. In a notebook it shows itself; ``report.passed`` is True if all checks passed, and
@@ -56,7 +60,10 @@ def check(
     checks.boolean("exact", exact)
     if checks.finite("seconds", seconds) <= 0.0:
         raise ValueError(f"seconds must be positive, got {seconds!r}")
-    records = [_record(one, solution, seconds) for one in found.checks]
+    records: list[Record] = []
+    for one in found.checks:
+        was_stopped = any(record.was_stopped for record in records)
+        records.append(_record(one, solution, min(seconds, AFTER_A_STOP) if was_stopped else seconds))
     references = [_record(one, found.model, MODEL_SECONDS) for one in found.checks]
     results = []
     for one, mine, reference in zip(found.checks, records, references, strict=True):
@@ -83,7 +90,7 @@ def _record(one: Check, function: Callable[..., Any], seconds: float) -> Record:
 def _advice(exercise: Exercise, records: Sequence[Record], references: Sequence[Record]) -> Iterator[str]:
     """Yields remarks on arrays that never change and generators that are never used, if all calls returned."""
     tables = {name for one in exercise.checks for name in one.changes}
-    if any(fault not in (GLOBAL_NUMPY, GLOBAL_PYTHON) for record in records for fault in record.faults):
+    if any(fault not in (GLOBAL_NUMPY, GLOBAL_PYTHON, SAMPLES) for record in records for fault in record.faults):
         return
     for quantity in {event.quantity: None for reference in references for event in reference.events}:
         if not (_constant(records, quantity) and not _constant(references, quantity)):

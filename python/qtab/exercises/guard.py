@@ -3,7 +3,7 @@
 import inspect
 import random
 import traceback
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -17,28 +17,37 @@ GLOBAL_NUMPY = (
 GLOBAL_PYTHON = "it uses Python's global generator (the module random): draw all random numbers from rng"
 
 
-def guarded(function: Callable[..., Any], arguments: Sequence[Any], record: Record, seconds: float) -> Any:
+def guarded(function: Callable[..., Any], arguments: Mapping[str, Any], record: Record, seconds: float) -> Any:
     """Calls a function; returns its result.
 
     The states of the global generators and NumPy's error handling are the same afterwards.
 
+    Args:
+        function: The function.
+        arguments: Its arguments in order, with their names in the exercise. They are passed by position.
+        record: Receives the faults of a call that returned, and whether it was stopped.
+        seconds: The time limit.
+
     Raises:
         Misuse: if the function raises an exception, does not return in time, or is a generator function.
     """
-    check_parameters(function, len(arguments))
+    check_parameters(function, list(arguments))
     if inspect.isgeneratorfunction(function):
         raise Misuse("it contains yield, so that a call only makes a generator and runs nothing: remove the yield")
     numpy_before, python_before = np.random.get_state(legacy=False), random.getstate()  # noqa: NPY002
     try:
         with np.errstate():
-            return call_within(seconds, function, arguments)
+            return call_within(seconds, function, list(arguments.values()))
     except Misuse:
         raise
     except TimeIsUp as error:
-        where = f"{seconds:g} second{'' if seconds == 1 else 's'}{_line(function, error)}"
-        raise Misuse(f"it was stopped after {where}. Is there a loop that never ends?") from None
+        record.was_stopped = True
+        limit = f"{seconds:g} second{'' if seconds == 1 else 's'}"
+        where = _line(function, error)
+        raise Misuse(f"it was stopped after {limit} (is there a loop that never ends?){where}") from None
     except (Exception, SystemExit) as error:
-        raise Misuse(f"it raised {_named(error)}{_line(function, error)}") from None
+        hint = _hint(error) if "env" in arguments else ""
+        raise Misuse(f"it raised {_named(error)}{_line(function, error)}{hint}") from None
     finally:
         if not _same_state(numpy_before, np.random.get_state(legacy=False)):  # noqa: NPY002
             _add(record, GLOBAL_NUMPY)
@@ -54,20 +63,24 @@ def _add(record: Record, fault: str) -> None:
         record.faults.append(fault)
 
 
-def check_parameters(function: Callable[..., Any], count: int) -> None:
-    """Checks that a function takes so many arguments.
+def check_parameters(function: Callable[..., Any], names: Sequence[str]) -> None:
+    """Checks that a function takes so many arguments, and that those with the names of the exercise are in its order.
 
     Raises:
         Misuse: if it does not.
     """
+    wanted = f"{len(names)} arguments in this order: ({', '.join(names)})"
     try:
         signature = inspect.signature(function)
     except (TypeError, ValueError):  # a function in C
         return
     try:
-        signature.bind(*range(count))
+        signature.bind(*names)
     except TypeError:
-        raise Misuse(f"it must take {count} arguments in the order of the exercise, but takes {signature}") from None
+        raise Misuse(f"it must take {wanted}, but takes {signature}") from None
+    taken = list(signature.parameters)
+    if sorted(taken) == sorted(names) and taken != list(names):
+        raise Misuse(f"it must take {wanted}, but takes {signature}")
 
 
 def _same_state(one: Any, other: Any) -> bool:
@@ -79,6 +92,16 @@ def _same_state(one: Any, other: Any) -> bool:
 def _named(error: BaseException) -> str:
     message = str(error)
     return f"{type(error).__name__}: {message}" if message else type(error).__name__
+
+
+def _hint(error: BaseException) -> str:
+    """Returns a remark on Gymnasium's functions, if an error is typical of a wrong use of their results."""
+    message = str(error)
+    if isinstance(error, ValueError) and message.startswith("too many values to unpack (expected"):
+        return ". env.step returns five values: next_state, reward, terminated, truncated, info"
+    if isinstance(error, IndexError) and message.startswith("only integers, slices"):
+        return ". Is the state a number? env.reset() returns two values: state, info = env.reset()"
+    return ""
 
 
 def _line(function: Callable[..., Any], error: BaseException) -> str:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from contextlib import closing
+from copy import deepcopy
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -18,6 +19,8 @@ from qtab.exercises.record import Misuse, Record
 from qtab.exercises.recording_env import RecordingEnv
 from qtab.reference.parts.discretizers import TileCoding
 from qtab.reference.parts.streams import agent_stream
+
+SAMPLES = "it calls env.action_space.sample(), which has a generator of its own: draw all random numbers from rng"
 
 
 @with_fields
@@ -72,8 +75,15 @@ class LearnerCheck:
                 for name, value in given.items()
                 if isinstance(value, np.ndarray) and name != self.table
             }
-            guarded(function, [given[name] for name in names], record, seconds)
-            recording.finish()
+            space: Any = env.action_space
+            space.seed(self.seed)
+            before_sampling = deepcopy(space.np_random.bit_generator.state)
+            try:
+                guarded(function, {name: given[name] for name in names}, record, seconds)
+                recording.finish()
+            finally:
+                if space.np_random.bit_generator.state != before_sampling:
+                    record.faults.append(SAMPLES)
             for name, before in fixed.items():
                 if not np.array_equal(before, given[name]):
                     raise Misuse(f"it changes its argument {name}: work on a copy, {name}.copy()")

@@ -41,6 +41,8 @@ class Record:
     events: list[Event] = field(default_factory=list)
     faults: list[str] = field(default_factory=list)
     """What the function did wrong besides its numbers; empty if nothing."""
+    was_stopped: bool = False
+    """Whether the function did not return in time."""
 
 
 @dataclass(frozen=True)
@@ -86,9 +88,13 @@ def first_difference(yours: Record, reference: Record, exact: bool = True) -> Di
     if len(yours.events) != len(reference.events):
         count = min(len(yours.events), len(reference.events))
         longer = yours if len(yours.events) > count else reference
-        whose = "your function" if longer is yours else "the reference"
+        ended, continues = "your function", "the reference"
+        if longer is yours:
+            ended, continues = continues, ended
         event = longer.events[count]
-        return _difference(event, event, (f"only {whose} goes that far",), stopped_early=longer is reference)
+        return _difference(
+            event, event, (f"{ended} has ended, {continues} continues",), stopped_early=longer is reference
+        )
     return None
 
 
@@ -133,7 +139,8 @@ def _entries(quantity: str, mine: Any, other: Any, before: Any) -> Iterator[str]
         entry = f"{quantity}[{', '.join(map(str, index))}]" if index else quantity
         yield f"{entry}: {old}yours {one}, reference {two}"
     if len(places) > MAX_ENTRIES:
-        yield f"and {len(places) - MAX_ENTRIES} more entries"
+        more = len(places) - MAX_ENTRIES
+        yield f"and {more} more {'entry' if more == 1 else 'entries'}"
 
 
 def shown_apart(mine: NDArray[Any], other: NDArray[Any], index: tuple[int, ...]) -> tuple[str, str]:

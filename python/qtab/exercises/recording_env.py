@@ -9,6 +9,7 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
+from qtab._utils.shown import counted
 from qtab.envs.metadata.quantities import Quantities
 from qtab.exercises.record import Event, Misuse, Record
 from qtab.results.words import map_columns, state_in_words
@@ -122,11 +123,13 @@ class RecordingEnv(gym.Wrapper[Any, Any, Any, Any]):
         """Records the tables after the last step.
 
         Raises:
-            Misuse: if no episode was started, as by the starter code.
+            Misuse: if no episode was started, as by the starter code, or fewer than there should be.
         """
         if self._episode < 0:
             raise Misuse("it never calls env.reset(), which starts an episode")
         self._see()
+        if self._episode + 1 < self._episodes:
+            raise Misuse(f"it returns after {counted(self._episode + 1, 'episode')}, but episodes is {self._episodes}")
 
     def in_words(self, observation: Any) -> str:
         """Returns an observation in words, after its number if it is an integer."""

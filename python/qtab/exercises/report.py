@@ -13,6 +13,10 @@ from qtab.exercises.record import Difference
 WIDTH = 86
 """The maximum number of characters in a line of a report as text."""
 
+AS_BEFORE = "the same as in the check above"
+"""Stands for a fault that the check before has as well."""
+ALLOWED = "Nothing differs by more than rounding: qtab.exercises.check({name!r}, ..., exact=False) accepts this"
+
 
 @with_fields
 @dataclass(frozen=True)
@@ -85,14 +89,15 @@ class Report:
     def __str__(self) -> str:
         """Returns the report as text."""
         lines = [self._heading]
-        for result in self.results:
+        for result, shown in zip(self.results, self._lines(), strict=True):
             lines.append(f"  {_word(result)}  {result.title}")
-            lines += [wrapped for line in result.lines for wrapped in _wrapped(line, " " * 10)]
+            lines += [wrapped for line in shown for wrapped in _wrapped(line, " " * 10)]
         return "\n".join([*lines, *(wrapped for note in self._notes() for wrapped in _wrapped(note))])
 
     def _repr_html_(self) -> str:
         """Returns the report as a table, for notebooks."""
-        rows = [(_word(result), "\n".join([result.title, *result.lines])) for result in self.results]
+        shown = zip(self.results, self._lines(), strict=True)
+        rows = [(_word(result), "\n".join([result.title, *lines])) for result, lines in shown]
         return html.sentences(self._heading, (), rows, self._notes())
 
     @property
@@ -103,8 +108,24 @@ class Report:
             found = f"its check {'passed' if self.passed else 'failed'}"
         return f"exercise {self.exercise.number}, {self.exercise.name}: {found}"
 
+    def _lines(self) -> list[list[str]]:
+        """The lines of each result. A fault that the result before it has as well is not repeated."""
+        shown: list[list[str]] = []
+        before: tuple[str, ...] = ()
+        for result in self.results:
+            count = len(result.faults)
+            faults = [AS_BEFORE if fault in before else fault for fault in result.faults]
+            shown.append(list(dict.fromkeys(faults)) + result.lines[count:])
+            before = result.faults
+        return shown
+
     def _notes(self) -> list[str]:
-        return [*self.recognition.lines, *self.advice]
+        failed = [result for result in self.results if not result.passed]
+        only_rounding = all(
+            not result.faults and result.difference is not None and result.difference.only_rounding for result in failed
+        )
+        allowed = [ALLOWED.format(name=self.exercise.name)] if failed and only_rounding else []
+        return [*self.recognition.lines, *self.advice, *allowed]
 
 
 def _wrapped(line: str, indent: str = "") -> list[str]:
