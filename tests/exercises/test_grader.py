@@ -65,6 +65,48 @@ def test_two_mistakes_at_once_are_recognised() -> None:
     assert "these 2 mistakes" in str(report)
 
 
+def test_q_learning_handed_in_as_sarsa_is_recognised() -> None:
+    report = check("sarsa", find("q_learning").model)
+    assert report.mistakes == (MISTAKES["q_learning"],)
+
+
+def test_a_state_that_never_changes_is_recognised() -> None:
+    def forgetful(env, q, episodes, learning_rate, discount, epsilon, rng):
+        for _ in range(episodes):
+            state, _ = env.reset()
+            over = False
+            while not over:
+                action = epsilon_greedy(q[state], epsilon, rng)
+                next_state, reward, terminated, truncated, _ = env.step(action)
+                target = reward if terminated else reward + discount * q[next_state].max()
+                q[state, action] += learning_rate * (target - q[state, action])
+                over = terminated or truncated
+
+    assert check("q_learning", forgetful).mistakes == (MISTAKES["state_kept"],)
+
+
+def test_a_first_visit_counted_from_the_end_is_recognised() -> None:
+    def backwards(env, q, episodes, discount, epsilon, rng):
+        counts = np.zeros(q.shape)
+        for _ in range(episodes):
+            state, _ = env.reset()
+            steps, over = [], False
+            while not over:
+                action = int(epsilon_greedy(q[state], epsilon, rng))
+                next_state, reward, terminated, truncated, _ = env.step(action)
+                steps.append((state, action, reward))
+                state, over = next_state, terminated or truncated
+            following, seen = 0.0, set()
+            for at, chosen, reward in reversed(steps):
+                following = reward + discount * following
+                if (at, chosen) not in seen:
+                    seen.add((at, chosen))
+                    counts[at, chosen] += 1
+                    q[at, chosen] += 1 / counts[at, chosen] * (following - q[at, chosen])
+
+    assert check("monte_carlo", backwards).mistakes == (MISTAKES["last_visit"],)
+
+
 def test_an_unknown_mistake_is_not_explained() -> None:
     def odd(env, q, *others):
         SARSA(env, q, *others)

@@ -26,6 +26,15 @@ MISTAKES: Mapping[str, str] = {
     ),
     "random_ties": "ties are broken at random. Take the first of the actions with the largest value, as np.argmax does",
     "last_tie": "of several actions with the largest value the last is taken. Take the first, as np.argmax does",
+    # the steps
+    "state_kept": (
+        "the state never changes within an episode: after each step, the next state becomes the state "
+        "(state = next_state)"
+    ),
+    "no_last_update": (
+        "the last step of an episode is not updated: the loop ends before the update. Update first, and then leave the "
+        "loop if terminated or truncated"
+    ),
     # the update
     "truncation": (
         "truncation is treated as termination: the value of the next state is left out when the time limit ends an "
@@ -50,6 +59,10 @@ MISTAKES: Mapping[str, str] = {
         "q[next_state, next_action]"
     ),
     "max_in_sarsa": "the target uses the largest value of the next state, which is Q-learning. Sarsa uses that of A'",
+    "q_learning": (
+        "this is Q-learning: the target uses the largest value of the next state, and the next action is chosen after "
+        "the update. Sarsa chooses the next action first, uses its value in the target, and then takes it"
+    ),
     "value_of_old_state": "the target uses a value of the old state, q[state, ...]. It needs one of the next state",
     "draws_again": (
         "the next action is drawn twice: once for the target and once more to act. Sarsa takes the action that is in "
@@ -62,6 +75,7 @@ MISTAKES: Mapping[str, str] = {
     "max_of_old_state": (
         "the target uses the largest value of the old state, q[state].max(). It needs q[next_state].max()"
     ),
+    "max_of_table": "the target uses the largest value of the whole table, q.max(). It needs q[next_state].max()",
     "argmax": "the target uses np.argmax, which is the number of an action. It needs the largest value itself, np.max",
     "sampled_action": (
         "the target uses the value of a sampled next action, as Sarsa does. Q-learning uses the largest value"
@@ -85,6 +99,10 @@ MISTAKES: Mapping[str, str] = {
     "every_visit": (
         "every visit is updated. First-visit Monte Carlo updates a state and action only for its first visit in an "
         "episode"
+    ),
+    "last_visit": (
+        "the last visit of a state and action in an episode is updated instead of the first. Going backwards, the "
+        "visit that you meet first is the last one: look for the pair among the earlier steps, pairs[:t]"
     ),
     "late_reward": "the return leaves out the reward of its own step: G = R + discount * G comes before the update",
     # Dyna-Q

@@ -20,7 +20,9 @@ POLICY = (
 )
 """The mistakes of :func:`epsilon_greedy`."""
 UPDATE = ("truncation", "terminal_value", "swapped_rates", "no_discount", "no_old_value", "rounding")
-"""The mistakes of the functions below."""
+"""The mistakes of :func:`rates`, :func:`nothing_follows` and :func:`move`."""
+STEPS = ("state_kept", "no_last_update")
+"""The mistakes of :func:`state_after` and :func:`stops_before_update`."""
 
 
 def epsilon_greedy(values: NDArray[np.float64], epsilon: float, rng: np.random.Generator, wrong: Mistakes) -> int:
@@ -65,6 +67,16 @@ def nothing_follows(terminated: bool, truncated: bool, wrong: Mistakes) -> bool:
     if "terminal_value" in wrong:
         return False
     return terminated or (truncated and "truncation" in wrong)
+
+
+def stops_before_update(over: bool, wrong: Mistakes) -> bool:
+    """Returns whether the loop over the steps of an episode is left before the update of this step."""
+    return over and "no_last_update" in wrong
+
+
+def state_after(state: int, next_state: int, wrong: Mistakes) -> int:
+    """Returns the state of the next step."""
+    return state if "state_kept" in wrong else next_state
 
 
 def move(table: NDArray[np.float64], index: Any, rate: float, target: float, wrong: Mistakes) -> None:

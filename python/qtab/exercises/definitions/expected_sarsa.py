@@ -7,7 +7,19 @@ from numpy.typing import NDArray
 
 from qtab.exercises.definitions.control_checks import control_checks
 from qtab.exercises.exercise import Exercise
-from qtab.exercises.parts import NONE, POLICY, UPDATE, Mistakes, epsilon_greedy, move, nothing_follows, rates
+from qtab.exercises.parts import (
+    NONE,
+    POLICY,
+    STEPS,
+    UPDATE,
+    Mistakes,
+    epsilon_greedy,
+    move,
+    nothing_follows,
+    rates,
+    state_after,
+    stops_before_update,
+)
 
 STARTER = '''\
 import numpy as np
@@ -49,6 +61,8 @@ def expected_sarsa(
             action = epsilon_greedy(q[state], epsilon, rng, wrong)
             next_state, reward, terminated, truncated, _ = env.step(action)
             over = terminated or truncated
+            if stops_before_update(over, wrong):
+                break
             target = reward
             if not nothing_follows(terminated, truncated, wrong):
                 p = _probabilities(q[state if "old_policy" in wrong else next_state], epsilon, wrong)
@@ -56,7 +70,7 @@ def expected_sarsa(
                 following = values.max() if "greedy_policy" in wrong else np.sum(p * values)
                 target = reward + discount * following
             move(q, (state, action), learning_rate, target, wrong)
-            state = next_state
+            state = state_after(state, next_state, wrong)
 
 
 def _probabilities(values: NDArray[np.float64], epsilon: float, wrong: Mistakes) -> NDArray[np.float64]:
@@ -79,6 +93,9 @@ EXERCISE = Exercise(
     section="6.6",
     starter=STARTER,
     model=expected_sarsa,
-    mistakes=("greedy_share", "uniform_policy", "greedy_policy", "old_policy", "value_of_old_state", *UPDATE, *POLICY),
+    mistakes=(
+        *("greedy_share", "uniform_policy", "greedy_policy", "old_policy", "value_of_old_state"),
+        *(*STEPS, *UPDATE, *POLICY),
+    ),
     checks=control_checks(expected_sarsa),
 )

@@ -56,7 +56,7 @@ def monte_carlo(
         for t in reversed(range(len(pairs))):
             late = G
             G = rewards[t] + (1.0 if "no_discount" in wrong else discount) * G  # noqa: N806
-            if "every_visit" in wrong or pairs[t] not in pairs[:t]:
+            if "every_visit" in wrong or pairs[t] not in (pairs[t + 1 :] if "last_visit" in wrong else pairs[:t]):
                 target = late if "late_reward" in wrong else G
                 counts[pairs[t]] += 1
                 if "rounding" in wrong:
@@ -77,7 +77,7 @@ EXERCISE = Exercise(
     section="5.4",
     starter=STARTER,
     model=monte_carlo,
-    mistakes=("every_visit", "late_reward", "no_discount", "rounding", *POLICY),
+    mistakes=("every_visit", "last_visit", "late_reward", "no_discount", "rounding", *POLICY),
     checks=[
         _check("FrozenLake-v1, 1 episode", 1, 0.9, 0.5, 1.0, 6),
         _check("FrozenLake-v1, 100 episodes from zeros", 100, 0.9, 0.9, 0.0, 4),

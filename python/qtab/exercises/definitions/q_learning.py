@@ -7,7 +7,19 @@ from numpy.typing import NDArray
 
 from qtab.exercises.definitions.control_checks import control_checks
 from qtab.exercises.exercise import Exercise
-from qtab.exercises.parts import NONE, POLICY, UPDATE, Mistakes, epsilon_greedy, move, nothing_follows, rates
+from qtab.exercises.parts import (
+    NONE,
+    POLICY,
+    STEPS,
+    UPDATE,
+    Mistakes,
+    epsilon_greedy,
+    move,
+    nothing_follows,
+    rates,
+    state_after,
+    stops_before_update,
+)
 
 STARTER = '''\
 import numpy as np
@@ -51,6 +63,8 @@ def q_learning(
                 action = epsilon_greedy(q[state], epsilon, rng, wrong)
             next_state, reward, terminated, truncated, _ = env.step(action)
             over = terminated or truncated
+            if stops_before_update(over, wrong):
+                break
             ended = nothing_follows(terminated, truncated, wrong)
             target, next_action = reward, -1
             if "early_choice" in wrong and not ended:
@@ -58,7 +72,7 @@ def q_learning(
             if not ended:
                 target = reward + discount * _following(q, state, next_state, epsilon, rng, wrong)
             move(q, (state, action), learning_rate, target, wrong)
-            state, action = next_state, next_action
+            state, action = state_after(state, next_state, wrong), next_action
 
 
 def _following(
@@ -66,6 +80,8 @@ def _following(
 ) -> float:
     if "max_of_old_state" in wrong:
         return float(q[state].max())
+    if "max_of_table" in wrong:
+        return float(q.max())
     if "argmax" in wrong:
         return float(np.argmax(q[next_state]))
     if "sampled_action" in wrong:
@@ -80,6 +96,6 @@ EXERCISE = Exercise(
     section="6.5",
     starter=STARTER,
     model=q_learning,
-    mistakes=("max_of_old_state", "argmax", "sampled_action", "early_choice", *UPDATE, *POLICY),
+    mistakes=("max_of_old_state", "max_of_table", "argmax", "sampled_action", "early_choice", *STEPS, *UPDATE, *POLICY),
     checks=control_checks(q_learning),
 )

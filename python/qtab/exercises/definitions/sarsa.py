@@ -7,7 +7,19 @@ from numpy.typing import NDArray
 
 from qtab.exercises.definitions.control_checks import control_checks
 from qtab.exercises.exercise import Exercise
-from qtab.exercises.parts import NONE, POLICY, UPDATE, Mistakes, epsilon_greedy, move, nothing_follows, rates
+from qtab.exercises.parts import (
+    NONE,
+    POLICY,
+    STEPS,
+    UPDATE,
+    Mistakes,
+    epsilon_greedy,
+    move,
+    nothing_follows,
+    rates,
+    state_after,
+    stops_before_update,
+)
 
 STARTER = '''\
 import numpy as np
@@ -50,23 +62,25 @@ def sarsa(
         while not over:
             next_state, reward, terminated, truncated, _ = env.step(action)
             over = terminated or truncated
+            if stops_before_update(over, wrong):
+                break
             next_action, target = action, reward
             ended = nothing_follows(terminated, truncated, wrong)
-            if not ended or "draws_at_end" in wrong:
+            if (not ended or "draws_at_end" in wrong) and "q_learning" not in wrong:
                 next_action = epsilon_greedy(q[next_state], epsilon, rng, wrong)
             if not ended:
                 following = q[next_state, next_action]
                 if "old_action" in wrong:
                     following = q[next_state, action]
-                elif "max_in_sarsa" in wrong:
+                elif "max_in_sarsa" in wrong or "q_learning" in wrong:
                     following = q[next_state].max()
                 elif "value_of_old_state" in wrong:
                     following = q[state, next_action]
                 target = reward + discount * following
             move(q, (state, action), learning_rate, target, wrong)
-            if "draws_again" in wrong and not over:
+            if ("draws_again" in wrong or "q_learning" in wrong) and not over:
                 next_action = epsilon_greedy(q[next_state], epsilon, rng, wrong)
-            state, action = next_state, next_action
+            state, action = state_after(state, next_state, wrong), next_action
 
 
 EXERCISE = Exercise(
@@ -76,6 +90,9 @@ EXERCISE = Exercise(
     section="6.4",
     starter=STARTER,
     model=sarsa,
-    mistakes=("old_action", "max_in_sarsa", "value_of_old_state", "draws_again", "draws_at_end", *UPDATE, *POLICY),
+    mistakes=(
+        *("old_action", "max_in_sarsa", "q_learning", "value_of_old_state", "draws_again", "draws_at_end"),
+        *(*STEPS, *UPDATE, *POLICY),
+    ),
     checks=control_checks(sarsa),
 )

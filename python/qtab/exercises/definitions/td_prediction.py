@@ -7,7 +7,17 @@ from numpy.typing import NDArray
 
 from qtab.exercises.exercise import Exercise
 from qtab.exercises.learner_check import PredictionCheck
-from qtab.exercises.parts import NONE, UPDATE, Mistakes, move, nothing_follows, rates
+from qtab.exercises.parts import (
+    NONE,
+    STEPS,
+    UPDATE,
+    Mistakes,
+    move,
+    nothing_follows,
+    rates,
+    state_after,
+    stops_before_update,
+)
 
 STARTER = '''\
 import numpy as np
@@ -46,10 +56,12 @@ def td_prediction(
         while not over:
             next_state, reward, terminated, truncated, _ = env.step(int(policy[state]))
             over = terminated or truncated
+            if stops_before_update(over, wrong):
+                break
             following = values[state if "value_of_old_state" in wrong else next_state]
             target = reward if nothing_follows(terminated, truncated, wrong) else reward + discount * following
             move(values, state, learning_rate, target, wrong)
-            state = next_state
+            state = state_after(state, next_state, wrong)
 
 
 def _check(
@@ -66,7 +78,7 @@ EXERCISE = Exercise(
     section="6.1",
     starter=STARTER,
     model=td_prediction,
-    mistakes=("value_of_old_state", *UPDATE),
+    mistakes=("value_of_old_state", *STEPS, *UPDATE),
     checks=[
         _check("CliffWalking-v1, 5 episodes of at most 30 steps from zeros", "CliffWalking-v1", 5, 30, 0.0, 0.2, 0.9),
         _check("FrozenLake-v1, 20 episodes from random values", "FrozenLake-v1", 20, 1000, 1.0, 0.5, 0.8),
