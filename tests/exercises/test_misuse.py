@@ -59,7 +59,7 @@ def returns_late(env, *others):
             "7 arguments in this order: (env, q, episodes, learning_rate, discount, epsilon, rng), but",
         ),
         (lambda q, env, episodes, learning_rate, discount, epsilon, rng: None, "but takes (q, env, episodes,"),
-        (lambda env, q, *_: q[env.reset()], "Is the state a number? env.reset() returns two values: state, info = "),
+        (lambda env, q, *_: q[env.reset()], ". env.reset() returns two values: state, info = "),
         (old_step, "(expected 4), in line"),
         (old_step, ". env.step returns five values: next_state, reward, terminated, truncated, info"),
         (one_episode, "it returns after 1 episode, but episodes is"),

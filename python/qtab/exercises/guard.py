@@ -99,8 +99,8 @@ def _hint(error: BaseException) -> str:
     message = str(error)
     if isinstance(error, ValueError) and message.startswith("too many values to unpack (expected"):
         return ". env.step returns five values: next_state, reward, terminated, truncated, info"
-    if isinstance(error, IndexError) and message.startswith("only integers, slices"):
-        return ". Is the state a number? env.reset() returns two values: state, info = env.reset()"
+    if message.startswith(("only integers, slices", "setting an array element with a sequence")):
+        return ". env.reset() returns two values: state, info = env.reset()"
     return ""
 
 

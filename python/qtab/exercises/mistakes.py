@@ -2,6 +2,11 @@
 
 from collections.abc import Mapping
 
+PAIRS_AT_ONCE = (
+    "planning draws from all pairs of a state and an action at once. Draw a state first, and then one of the actions "
+    "tried in it"
+)
+"""The explanation of two mistakes, which differ in the order of the pairs."""
 MISTAKES: Mapping[str, str] = {
     # the policy
     "epsilon_inverted": (
@@ -95,6 +100,10 @@ MISTAKES: Mapping[str, str] = {
         "the value after the last reward is discounted once. In a return of n rewards its factor is discount ** n"
     ),
     "end_not_flushed": "the last steps of an episode are not updated. After its end, update all steps that still wait",
+    "no_value_at_time_out": (
+        "the value of the last state is left out when the time limit ends an episode, as in the book's box, whose "
+        "episodes have no time limit. Leave it out only if terminated"
+    ),
     # Monte Carlo
     "every_visit": (
         "every visit is updated. First-visit Monte Carlo updates a state and action only for its first visit in an "
@@ -107,10 +116,8 @@ MISTAKES: Mapping[str, str] = {
     "late_reward": "the return leaves out the reward of its own step: G = R + discount * G comes before the update",
     # Dyna-Q
     "no_planning": "the function does not plan, or the plans change nothing",
-    "plans_over_pairs": (
-        "planning draws from all pairs of a state and an action at once. Draw a state first, and then one of the "
-        "actions tried in it"
-    ),
+    "plans_over_pairs": PAIRS_AT_ONCE,
+    "plans_over_pairs_by_state": PAIRS_AT_ONCE,
     "model_after_planning": "the step is stored only after planning. Store the step first, and plan afterwards",
     # traces
     "replacing_traces": "the traces are replaced by 1. Accumulating traces add 1",

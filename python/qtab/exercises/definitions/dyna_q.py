@@ -49,6 +49,7 @@ def dyna_q(
     """Learns from steps, and from remembered ones."""
     rate, discount = rates(learning_rate, discount, wrong)
     model: Model = {}
+    pairs: list[tuple[int, int]] = []  # in the order of their first tries
 
     def learn(state: int, action: int, reward: float, next_state: int | None) -> None:
         target = reward if next_state is None else reward + discount * q[next_state].max()
@@ -59,8 +60,10 @@ def dyna_q(
             if not model:
                 return
             if "plans_over_pairs" in wrong:
-                pairs = [(state, action) for state, tried in model.items() for action in tried]
                 state, action = pairs[int(rng.integers(len(pairs)))]
+            elif "plans_over_pairs_by_state" in wrong:
+                by_state = [(state, action) for state, tried in model.items() for action in tried]
+                state, action = by_state[int(rng.integers(len(by_state)))]
             else:
                 state = list(model)[int(rng.integers(len(model)))]
                 action = list(model[state])[int(rng.integers(len(model[state])))]
@@ -77,7 +80,9 @@ def dyna_q(
             learn(state, action, float(reward), after)
             if "model_after_planning" in wrong:
                 plan()
-            model.setdefault(state, {})[action] = float(reward), after
+            if action not in model.setdefault(state, {}):
+                pairs.append((state, action))
+            model[state][action] = float(reward), after
             if "model_after_planning" not in wrong:
                 plan()
             state = next_state
@@ -90,6 +95,9 @@ EXERCISE = Exercise(
     section="8.2",
     starter=STARTER,
     model=dyna_q,
-    mistakes=("no_planning", "plans_over_pairs", "model_after_planning", *UPDATE, *POLICY),
+    mistakes=(
+        *("no_planning", "plans_over_pairs", "plans_over_pairs_by_state", "model_after_planning"),
+        *(*UPDATE, *POLICY),
+    ),
     checks=control_checks(dyna_q, planning_steps=(3, 1, 5)),
 )

@@ -51,7 +51,7 @@ def n_step_sarsa(
         state, _ = env.reset()
         action = epsilon_greedy(q[state], epsilon, rng, wrong)
         waiting: list[tuple[int, int, float]] = []
-        over = ended = False
+        over = ended = truncated = False
         while waiting or not over:
             if not over:
                 next_state, reward, terminated, truncated, _ = env.step(action)
@@ -67,7 +67,7 @@ def n_step_sarsa(
                 for _, _, later in waiting:
                     target += factor * later
                     factor *= discount
-                if not ended:
+                if not ended and not (over and truncated and "no_value_at_time_out" in wrong):
                     target += (discount if "discount_once" in wrong else factor) * q[state, action]
                 past_state, past_action, _ = waiting.pop(0)
                 move(q, (past_state, past_action), learning_rate, target, wrong)
@@ -80,6 +80,6 @@ EXERCISE = Exercise(
     section="7.2",
     starter=STARTER,
     model=n_step_sarsa,
-    mistakes=("one_step_more", "discount_once", "end_not_flushed", *UPDATE, *POLICY),
+    mistakes=("one_step_more", "discount_once", "end_not_flushed", "no_value_at_time_out", *UPDATE, *POLICY),
     checks=control_checks(n_step_sarsa, n=(3, 1, 8)),
 )
