@@ -197,6 +197,12 @@ def test_bairds_counterexample_names_its_linearly_dependent_features() -> None:
             partly.minimizer(objective)
 
 
+def test_features_of_states_that_are_never_visited_are_named() -> None:
+    found = linear_geometry("FrozenLake-v1", "random")
+    with pytest.raises(ValueError, match="features 5, 7, 11, 12, 15 are zero there"):
+        _ = found.td_fixed_point  # the holes and the goal, where episodes end
+
+
 def test_a_singular_update_is_refused() -> None:
     """The values w and 2 w of two states, the first leading to the second (section 11.2): A is zero with γ = 1/2."""
     env = chain([(1.0, 1, 1.0, False)], [(1.0, 1, 0.0, True)], start=[1.0, 0.0])

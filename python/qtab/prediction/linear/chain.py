@@ -78,8 +78,8 @@ def _recurrent_states(matrix: FloatArray, first: NDArray[np.bool_]) -> NDArray[n
     preceding = [np.flatnonzero(column) for column in matrix.T > 0.0]
     reached = np.zeros(len(matrix), np.bool_)
     _reach(following, np.flatnonzero(first), reached)
-    # A state that all others lead to is recurrent, and so are those that it leads to. If there is one, it leads back to
-    # every state that was not found before it, so that the last search begins with one.
+    # A state that all others lead to is recurrent, and so are those that it leads to. Each search finds the states that
+    # lead to its first state. If all states lead to some state, they also lead to the first state of the last search.
     found, last = ~reached, 0
     while not found.all():
         last = int(np.flatnonzero(~found)[0])

@@ -1,5 +1,6 @@
 """The fixed point of TD and the errors of linear values, computed exactly."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Literal, TypeAlias, get_args
@@ -194,12 +195,14 @@ class LinearGeometry:
         return array
 
     def _check_independent(self, matrix: FloatArray, name: str) -> None:
-        dependent = dependent_features(np.sqrt(self.distribution)[:, None] * matrix)
+        weighted = np.sqrt(self.distribution)[:, None] * matrix
+        dependent = dependent_features(weighted)
         if dependent:
-            listed = ", ".join(map(str, dependent[:8])) + (", ..." if len(dependent) > 8 else "")
+            zero = [column for column in dependent if not weighted[:, column].any()]
+            fault = f"{_listed(zero)} are zero there" if zero else f"{_listed(dependent)} are linearly dependent"
             raise ValueError(
                 f"{name} must be linearly independent in the states that the distribution weights, or several weight "
-                f"vectors are equally good: features {listed} are linearly dependent"
+                f"vectors are equally good: features {fault}"
             )
 
     def __repr__(self) -> str:
@@ -222,6 +225,11 @@ class LinearGeometry:
         return html.summary(
             f"Linear values in {self.env}", facts, html.state_values("Exact values of the policy", self.values)
         )
+
+
+def _listed(columns: Sequence[int]) -> str:
+    """Returns the first numbers as text."""
+    return ", ".join(map(str, columns[:8])) + (", ..." if len(columns) > 8 else "")
 
 
 def _mean_square(weights: FloatArray, errors: FloatArray) -> FloatArray:
