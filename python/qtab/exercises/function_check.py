@@ -36,7 +36,10 @@ class FunctionCheck:
     """The names of the arguments, all arrays, that the function changes. It must not change any others."""
 
     def run(self, function: Solution, record: Record, seconds: float) -> None:
-        """Calls a function, and records what it returns, changes and draws."""
+        """Calls a function, and records what it returns, changes and draws.
+
+        :meta private:
+        """
         names = parameters(self.model)
         for number, given in enumerate(self.calls()):
             place, about = f"call {number}", _in_words(given)

@@ -54,7 +54,10 @@ class LearnerCheck:
         return (self.table,)
 
     def run(self, function: Solution, record: Record, seconds: float) -> None:
-        """Calls a learner, and records its tables, draws and actions."""
+        """Calls a learner, and records its tables, draws and actions.
+
+        :meta private:
+        """
         with closing(gym.make(self.env_id, max_episode_steps=self.max_episode_steps)) as env:
             rng: Any = agent_stream(self.seed, "PCG64")
             names = parameters(self.model)
