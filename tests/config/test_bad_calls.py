@@ -198,6 +198,8 @@ def test_dyna_q_on_tiles_says_what_it_works_with() -> None:
 def test_a_value_is_shown_shortly() -> None:
     assert shown("a" * 10_000).startswith("'aaa")
     assert len(shown("a" * 10_000)) < LONGEST + 10
+    assert shown(np.zeros((16, 4))) == "an array of shape (16, 4) and dtype float64"
+    assert shown(np.array([0.1, 0.2])) == "array([0.1, 0.2])"
     assert shown(HUGE) == "<int of 16,610 bits>"
     assert shown([1, "b"]) == "[1, 'b']"
 

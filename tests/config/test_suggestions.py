@@ -63,6 +63,9 @@ def test_arguments_of_environments_are_env_kwargs() -> None:
     message = "unknown setting 'is_slippery' (did you mean env_kwargs={'is_slippery': ...}?)"
     with pytest.raises(TypeError, match=f"^{re.escape(message)}$"):
         qtab.train("FrozenLake-v1", is_slippery=False)  # type: ignore[call-arg]
+    run = qtab.train("FrozenLake-v1", episodes=1, seed=0)
+    with pytest.raises(TypeError, match=r"^unknown argument 'epsilon'; help\(qtab.evaluate\) lists the arguments$"):
+        qtab.evaluate(run, epsilon=0.1)  # type: ignore[call-arg]
 
 
 @pytest.mark.parametrize("name", ["seed", "n_seeds", "num_runs"])

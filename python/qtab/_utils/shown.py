@@ -4,17 +4,23 @@ from collections.abc import Iterable
 from difflib import get_close_matches
 from typing import Any
 
+import numpy as np
+
+LONGEST_ARRAY = 200
+"""The maximum number of characters of an array; of a longer one, the shape and the dtype are shown."""
 LONGEST = 450
 """The maximum number of characters; longer texts, such as those of tables, are cut in the middle."""
 
 
 def shown(value: Any) -> str:
-    """Returns the ``repr`` of a value, without the middle of a long one."""
+    """Returns the ``repr`` of a value, without the middle of a long one; of a large array, its shape and dtype."""
     try:
         text = repr(value)
     except Exception:  # such as an integer with more digits than Python prints
         bits = f" of {value.bit_length():,} bits" if isinstance(value, int) else ""
         text = f"<{type(value).__name__}{bits}>"
+    if isinstance(value, np.ndarray) and len(text) > LONGEST_ARRAY:
+        return f"an array of shape {value.shape} and dtype {value.dtype}"
     if len(text) <= LONGEST:
         return text
     half = LONGEST // 2

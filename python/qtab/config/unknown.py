@@ -74,7 +74,8 @@ def _suggestion(name: str, known: Collection[str], function: str, kind: str) -> 
     found = meant(name, known)
     if found is None:
         command = " and qtab train --help list" if function == "train" else " lists"
-        own = f"; arguments of an environment are given as {_as_env_kwargs(name)}" if takes_env_kwargs else ""
+        is_setting = takes_env_kwargs and kind == "setting"
+        own = f"; arguments of an environment are given as {_as_env_kwargs(name)}" if is_setting else ""
         return f"; help(qtab.{function}){command} the {kind}s{own}"
     counted = " qtab counts episodes, not steps" if name in _STEPS else ""
     return f" (did you mean {found!r}?{counted})"
