@@ -104,7 +104,7 @@ def test_a_gap_is_split_into_what_the_table_costs_and_what_was_not_learned(car):
     assert gap.learning == gap.attainable - gap.greedy_return
     assert gap.approximation + gap.learning == pytest.approx(gap.greedy)
     assert -125 < gap.attainable < -110  # the article's grid; its settings end near -180
-    assert f"of the table, whose best known policy returns {gap.attainable:.4g}, and" in str(gap)
+    assert f"due to the table, whose best known policy returns {gap.attainable:.4g}, and" in str(gap)
     assert "best known with this table" in gap._repr_html_()
     assert car.gap(run).attainable == gap.attainable
 

@@ -24,7 +24,7 @@ def test_frozen_lake_is_worth_less_to_a_policy_that_ignores_the_time() -> None:
     run = qtab.train("FrozenLake-v1", seed=0, episodes=300)
     gap = best.gap(run)
     assert gap.attainable == known.expected_return
-    assert "of the table, whose best known policy returns 0.7402, and" in str(gap)
+    assert "due to the table, whose best known policy returns 0.7402, and" in str(gap)
     assert "best known with this table" in gap._repr_html_()
 
 

@@ -79,8 +79,8 @@ class Gap(Generic[Number]):
         attainable = self.attainable
         if attainable is None or not self._table_costs:
             return text
-        table = f"{self.optimum - attainable:.2g} of the table, whose best known policy returns {attainable:.4g}"
-        return f"{text}: {table}, and {attainable - greedy_return:.2g} of learning"
+        table = f"{self.optimum - attainable:.2g} due to the table, whose best known policy returns {attainable:.4g}"
+        return f"{text}: {table}, and {attainable - greedy_return:.2g} due to learning"
 
     @property
     def _table_costs(self) -> bool:
