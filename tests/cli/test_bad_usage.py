@@ -67,7 +67,7 @@ REFUSED: list[tuple[str, str]] = [
     ("playground --out none/page.html --no-open", "--out must be a file that can be written, got 'none/page.html'"),
     ("book 10.4 --runs x", "--runs must be an integer, got 'x'"),
     ("book 99", "NAME must be one of "),
-    ("exercises sarza", "NAMES: there is no exercise 'sarza' (did you mean 'sarsa'?); qtab exercises lists them"),
+    ("exercises sarza", "NAMES: there is no exercise 'sarza' (did you mean 'sarsa'?); `qtab exercises` lists them"),
     ("exercises sarsa --grade none", "--grade must be a folder of submissions, got 'none'"),
     ("exercises sarsa --out homework.txt", "--out must end in .ipynb or .py, got 'homework.txt'"),
     ("exercises --out homework.py", "NAMES must be given with --out or --grade; qtab exercises lists the names"),

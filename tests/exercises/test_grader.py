@@ -267,7 +267,7 @@ def test_exercises_are_found_by_name_and_number() -> None:
         find("sarsaa")
     with pytest.raises(ValueError, match="there is no exercise 13: they are numbered from 1 to 12; "):
         find(13)
-    with pytest.raises(TypeError, match="exercise must be a name or a number, got None"):
+    with pytest.raises(TypeError, match="exercise must be a name, a number or an Exercise, got None"):
         find(None)  # type: ignore[arg-type]
     with pytest.raises(TypeError, match="solution must be a function, such as sarsa, got 3"):
         qtab.exercises.check("sarsa", 3)  # type: ignore[arg-type]

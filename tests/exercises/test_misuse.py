@@ -84,7 +84,9 @@ def test_a_loop_without_an_end_is_stopped(in_thread: bool, monkeypatch: pytest.M
     done = []
 
     def checked() -> None:
-        broken(returns_late, "it was stopped after 0.2 seconds, in line ", seconds=0.2)
+        broken(
+            returns_late, "it was stopped after 0.2 seconds (is there a loop that never ends?), in line ", seconds=0.2
+        )
         assert check("sarsa", returns_late, seconds=0.2).advice == ()
         assert check("sarsa", SARSA).passed
         done.append(True)

@@ -43,8 +43,9 @@ def guarded(function: Callable[..., Any], arguments: Mapping[str, Any], record: 
     except TimeIsUp as error:
         record.was_stopped = True
         limit = f"{seconds:g} second{'' if seconds == 1 else 's'}"
-        where = _line(function, error)
-        raise Misuse(f"it was stopped after {limit} (is there a loop that never ends?){where}") from None
+        raise Misuse(
+            f"it was stopped after {limit} (is there a loop that never ends?){_line(function, error)}"
+        ) from None
     except (Exception, SystemExit) as error:
         hint = _hint(error) if "env" in arguments else ""
         raise Misuse(f"it raised {_named(error)}{_line(function, error)}{hint}") from None

@@ -64,7 +64,7 @@ def _find(name: str) -> exercises.Exercise:
         return exercises.find(name)
     except (ValueError, ImportError) as error:
         raise UsageError(
-            f"NAMES: {error}".replace(": see qtab.exercises.EXERCISES", "; qtab exercises lists them")
+            f"NAMES: {error}".replace("qtab.exercises.EXERCISES lists them", "`qtab exercises` lists them")
         ) from None
 
 
