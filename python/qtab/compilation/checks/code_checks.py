@@ -35,7 +35,7 @@ from qtab.compilation.checks.known_functions import (
     MATH_ROUNDED,
     OTHER_MATH,
 )
-from qtab.compilation.checks.lost_numbers import LostNumbers
+from qtab.compilation.checks.lost_numbers import MAKE_ARRAYS, LostNumbers
 from qtab.compilation.checks.made_arrays import arrays_differ, check_of
 from qtab.compilation.checks.mixed_numbers import MIXED_OPERATIONS, NUMBER, MixedNumbers
 from qtab.compilation.checks.number_types import (
@@ -227,7 +227,8 @@ class Checks(TypedCode):
             return self._math_call(statement, scope, key, name)
         elif isinstance(key, np.ufunc) or str(getattr(key, "__module__", "")).partition(".")[0] == "numpy":
             if self.lost.in_numpy(expression, name):
-                return self.refuse(expression, MIXED, WRITE_FLOATS)
+                advice = f"give a dtype, such as np.float64, or {WRITE_FLOATS}" if name in MAKE_ARRAYS else WRITE_FLOATS
+                return self.refuse(expression, MIXED, advice)
             return check_numpy_call(self, statement, scope, key, name)
         else:
             self.refuse(expression, f"{name} may give another result in compiled code", "write operators")

@@ -75,6 +75,23 @@ NUMPY_EXTREMES = {
 }
 """Functions of NumPy whose zeros may differ in sign for floats, and what to write instead."""
 
+NUMPY_SAME = (
+    "absolute", "add", "all", "any", "append", "arange", "argmax", "argmin", "argwhere", "array", "array_equal",
+    "array_split", "asarray", "ascontiguousarray", "asfortranarray", "atleast_1d", "atleast_2d", "bincount",
+    "bitwise_and", "bitwise_or", "bitwise_xor", "broadcast_to", "ceil", "clip", "column_stack", "concatenate",
+    "conjugate", "copy", "cos", "count_nonzero", "diag", "diff", "digitize", "divide", "empty", "empty_like", "equal",
+    "expand_dims", "eye", "fabs", "finfo", "flatnonzero", "flip", "fliplr", "flipud", "floor", "full", "full_like",
+    "greater", "greater_equal", "hstack", "identity", "iinfo", "invert", "isfinite", "isinf", "isnan", "isscalar",
+    "less", "less_equal", "logical_and", "logical_not", "logical_or", "logical_xor", "multiply", "ndindex", "negative",
+    "nonzero", "not_equal", "ones", "ones_like", "positive", "ravel", "real", "reciprocal", "repeat", "reshape", "rint",
+    "roll", "rot90", "searchsorted", "shape", "sin", "size", "split", "sqrt", "square", "stack", "subtract", "swapaxes",
+    "take", "transpose", "tril", "triu", "trunc", "vstack", "where", "zeros", "zeros_like",
+)  # fmt: skip
+"""Functions of NumPy that give the same results, some of them with checks. Others that have no advice are refused."""
+
+NUMPY_JOINS = ("append", "diff", "digitize", "searchsorted", "where")
+"""Functions that bring numbers to one type, which depends on more than their types in Python."""
+
 NUMPY_OF_FLOATS = ("sin", "cos", "sqrt", "fabs", "isnan", "isinf", "isfinite", "full_like", "zeros", "ones", "empty")
 """Functions of NumPy whose results have the same type for integers as for floats."""
 

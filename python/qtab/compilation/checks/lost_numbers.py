@@ -14,7 +14,7 @@ from qtab.compilation.checks.typed_code import TypedCode
 _CONTAINERS = (types.List, types.ListType, types.Set, types.DictType)
 _TAKE = ("append", "insert", "add", "extend")
 """Methods whose last argument becomes an element; the first may be an index."""
-_MAKE_ARRAYS = {"array": 1, "asarray": 1, "full": 2}
+MAKE_ARRAYS = {"array": 1, "asarray": 1, "full": 2}
 """Functions of NumPy whose dtype follows from the numbers, unless it is the argument at this position."""
 
 
@@ -52,7 +52,7 @@ class LostNumbers:
         given = [*expression.args, *(one for _, one in expression.kws)]
         if not any(map(self._mixed.of, given)) or name in NUMPY_OF_FLOATS:
             return False
-        position = _MAKE_ARRAYS.get(name)
+        position = MAKE_ARRAYS.get(name)
         has_dtype = position is not None and (len(expression.args) > position or "dtype" in dict(expression.kws))
         return not has_dtype and not (position == 1 and any(map(self._has_float, given)))
 

@@ -8,8 +8,10 @@ from numba.core import types
 from qtab.compilation.checks.known_functions import (
     NUMPY_DIFFERENT,
     NUMPY_EXTREMES,
+    NUMPY_JOINS,
     NUMPY_OF_BOOLEANS,
     NUMPY_OPERATORS,
+    NUMPY_SAME,
     NUMPY_SORTS,
     NUMPY_SUMS,
     NUMPY_SUMS_OF_INTEGERS,
@@ -51,8 +53,10 @@ def check_numpy_call(code: TypedCode, statement: Any, scope: Any, function: Any,
         reason, advice = f"np.{name} with an array for the result", "assign the result"
     elif isinstance(function, np.ufunc) and _has_booleans(kinds) and name not in NUMPY_OF_BOOLEANS:
         reason, advice = f"np.{name} of booleans", "convert them with int(...) or array.astype(np.int64)"
-    elif isinstance(function, np.ufunc) and (types_differ := mixed(kinds)):
+    elif (isinstance(function, np.ufunc) or name in NUMPY_JOINS) and (types_differ := mixed(kinds)):
         reason, advice = f"np.{name}: {types_differ}", CONVERT
+    elif name not in (*NUMPY_SAME, *NUMPY_EXTREMES, *NUMPY_SORTS, *NUMPY_SUMS):
+        reason, advice = f"np.{name} may give another result in compiled code", "write a loop over the elements"
     if reason:
         return code.refuse(expression, reason, advice)
     return check_made_array(code, statement, scope, name)

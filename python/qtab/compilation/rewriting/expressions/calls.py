@@ -16,7 +16,7 @@ from qtab.compilation.rewriting.library import arrays, builtin_functions, draws,
 from qtab.compilation.rewriting.source.sources import source_of
 from qtab.compilation.rewriting.source.syntax import CHANGING
 from qtab.compilation.rewriting.statements.effects import check_pure
-from qtab.compilation.rewriting.values import Array, DictKind, InfoKind, Value, constant, in_words
+from qtab.compilation.rewriting.values import Array, DictKind, InfoKind, TupleKind, Value, constant, in_words
 
 if TYPE_CHECKING:
     from qtab.compilation.rewriting.expressions.expressions import Expressions
@@ -63,6 +63,9 @@ def call(scope: "Expressions", node: ast.Call) -> Value:
         if isinstance(base.fixed, dict | list | tuple | str | set | frozenset | range):
             return _of_constant(scope, node, name, base.fixed)
         if isinstance(base.kind, DictKind | InfoKind) or (base.kind is not None and not base.is_fixed):
+            if isinstance(base.kind, TupleKind) and name in CHANGING:
+                advice = "use numbers and NumPy arrays of fixed size, and leave out a list that only the info dict has"
+                raise scope.refuse(node, f"the method {name} of a list", advice)
             raise scope.refuse(node, f"the method {name} of {in_words(base.kind)}", "use numbers and NumPy arrays")
         callee = scope.attribute_of(node.func, base)
     else:
