@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from qtab._utils import checks
+from qtab._utils.progress import ProgressBar, check_progress
 from qtab.exercises.classroom.handing_out import found, key_of
 from qtab.exercises.classroom.marks import Mark, Marks, without_checks
 from qtab.exercises.classroom.submissions import Submission, submissions
@@ -29,6 +30,7 @@ def grade(
     exact: bool = True,
     seconds: float = 10.0,
     processes: int | None = None,
+    progress: bool | None = None,
 ) -> Marks:
     """Checks the functions that students handed in.
 
@@ -44,6 +46,8 @@ def grade(
         exact: As for :func:`qtab.exercises.check`.
         seconds: The time limit of each call, as for :func:`qtab.exercises.check`.
         processes: The number of students to grade at the same time; None for one on each core.
+        progress: Whether to show a progress bar over the students. None shows one on a terminal or in a notebook, if
+            grading takes more than a second and tqdm is installed.
 
     Returns:
         The marks, which show themselves as a table.
@@ -53,6 +57,7 @@ def grade(
         ValueError: if there is no such exercise, or no submission.
         OSError: if the folder cannot be read.
     """
+    check_progress(progress)
     known = found(exercises)
     exact = checks.boolean("exact", exact)
     if checks.finite("seconds", seconds) <= 0.0:
@@ -60,9 +65,12 @@ def grade(
     count = (os.cpu_count() or 1) if processes is None else checks.integer("processes", processes, least=1)
     handed_in = submissions(checks.path("folder", folder))
     task = {"exercises": [key_of(one) for one in exercises], "exact": exact, "seconds": float(seconds)}
-    with ThreadPoolExecutor(count) as pool:
-        rows = list(pool.map(partial(_grade, known, task), handed_in))
-    return Marks(tuple(exercise.name for exercise in known), tuple(mark for row in rows for mark in row))
+    marks: list[Mark] = []
+    with ThreadPoolExecutor(count) as pool, ProgressBar(len(handed_in), "student", progress, "grade") as bar:
+        for number, row in enumerate(pool.map(partial(_grade, known, task), handed_in)):
+            marks += row
+            bar.move_to(number + 1)
+    return Marks(tuple(exercise.name for exercise in known), tuple(marks))
 
 
 def _grade(exercises: Sequence[Exercise], task: dict[str, Any], submission: Submission) -> list[Mark]:
