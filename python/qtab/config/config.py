@@ -67,7 +67,8 @@ class Config(WithOrigin):
     the table has cells for each step before the time limit, and can learn the policy that is optimal under it. Only for
     discretizers with cells."""
     backend: Backend = "auto"
-    """Where to step it: in Rust (rust), in Rust compiled by Numba (numba), in Python (gymnasium, python), or auto."""
+    """Where to step it: in Rust (rust), in Rust compiled by Numba (numba), in Python (gymnasium, python), or auto: in
+    Rust where it can be, also a class that Numba compiles, for 200,000 steps or more in an environment made by qtab."""
 
     # The run
 

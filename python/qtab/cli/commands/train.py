@@ -23,6 +23,7 @@ from qtab.envs.registry import named_spec
 from qtab.results.recording import snapshot_episodes
 from qtab.training.setup.resolve import resolve
 from qtab.training.setup.resolved_run import ResolvedRun, time_limit_notice
+from qtab.training.setup.use import Use
 
 
 def add_arguments(parser: Parser) -> None:
@@ -56,7 +57,7 @@ def run(asked: Namespace) -> int:
     asked.flags = _flags(asked, settings)
     with Report(asked) as report:
         with usage_errors(asked):
-            resolved = resolve(env, with_initial_q(settings))
+            resolved = resolve(env, with_initial_q(settings), use=Use())
         with closing(resolved):
             with usage_errors(asked):
                 outputs = Outputs(resolved.config, asked, report)
