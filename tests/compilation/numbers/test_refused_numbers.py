@@ -23,6 +23,7 @@ REFUSED = {
     "max(n, p)": "max of a boolean and a number",
     # Sets, lists, sums and sorts.
     "x in {1, 2}": "float64 beside int64 in a set",
+    "{n: np.float32(x), m: y}[n]": "numbers of several types in a dict",
     "len({x, y})": "a set of floats",
     "[n for n in {n, m}][0]": "the order of a set",
     "[n, m].count(x)": "another type than integers",
@@ -49,6 +50,7 @@ REFUSED = {
 }
 
 
+@pytest.mark.filterwarnings("ignore:unsafe cast")  # of Numba, beside the refusal
 @pytest.mark.parametrize("expression", REFUSED)
 def test_numbers_that_would_differ_are_refused_with_their_line(expression: str) -> None:
     with pytest.raises(NotCompilable, match=REFUSED[expression]) as raised:

@@ -37,6 +37,8 @@ def refused(code: TypedCode, statement: Any) -> Refusal:
     made, expression = code.type_of(statement.target), statement.value
     if isinstance(made, _KEYED) and holds_floats(_key(made)):
         return f"{_in_words(made)} of floats", "use integers as its elements, or compare numbers in a loop"
+    if expression.op == "build_map" and _converts(code, made, expression.items):
+        return "numbers of several types in a dict", "give all its keys, and all its values, one type"
     if expression.op == "getiter" and isinstance(code.type_of(expression.value), types.Set):
         return _order()
     if expression.op in ("getitem", "static_getitem"):
@@ -53,6 +55,11 @@ def holds_floats(of: Any) -> bool:
     if isinstance(of, types.BaseTuple):
         return any(map(holds_floats, of))
     return holds_floats(of.dtype) if hasattr(of, "dtype") else isinstance(of, types.Float | types.Complex)
+
+
+def _converts(code: TypedCode, made: Any, items: list[Any]) -> bool:
+    given = {tuple(types.unliteral(code.type_of(one)) for one in item) for item in items}
+    return isinstance(made, types.DictType) and not given <= {(made.key_type, made.value_type)}
 
 
 def _operation(code: TypedCode, expression: Any) -> Refusal:
