@@ -3,15 +3,15 @@
 use std::error::Error;
 use std::fmt;
 
-use super::{LaneRows, MAX_TILINGS};
-use crate::checkpoint::{Checkpoint, CheckpointError};
+use super::{ActiveFeatures, LaneRows, MAX_TILINGS};
+use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::errors::BuildError;
 use crate::simd::{F32s, Simd};
 
 /// The active rows of an observation, which are stored and passed by value.
-pub trait ActiveRows: Copy + AsRef<[u32]> + for<'a> TryFrom<&'a [u32]> {}
+pub trait ActiveRows: Copy + ActiveFeatures + for<'a> TryFrom<&'a [u32]> {}
 
-impl<R: Copy + AsRef<[u32]> + for<'a> TryFrom<&'a [u32]>> ActiveRows for R {}
+impl<R: Copy + ActiveFeatures + for<'a> TryFrom<&'a [u32]>> ActiveRows for R {}
 
 /// Maps an observation to the active rows of a Q table: one row for a grid, several for tile coding.
 pub trait Features<O: ?Sized> {
@@ -42,6 +42,11 @@ pub trait Features<O: ?Sized> {
 
     /// The number of rows of the table.
     fn len(&self) -> usize;
+
+    /// The number that divides the learning rate of each row, if this is not the same for all rows; empty otherwise.
+    fn step_size_divisors(&self) -> Vec<f64> {
+        Vec::new()
+    }
 
     /// Checks what the constructors do not: that the bounds of each component are in order.
     /// [`TrainerBuilder::build`](crate::TrainerBuilder::build) calls it.
@@ -75,6 +80,10 @@ impl<O: ?Sized, F: Features<O>> Features<O> for &F {
 
     fn len(&self) -> usize {
         F::len(self)
+    }
+
+    fn step_size_divisors(&self) -> Vec<f64> {
+        F::step_size_divisors(self)
     }
 
     fn check(&self) -> Result<(), BuildError> {
@@ -116,6 +125,7 @@ impl fmt::Display for OutOfBounds {
 impl Error for OutOfBounds {}
 
 /// Saves active rows, or returns those that were saved; `rows` may be `None` while restoring. Each is less than `num_rows`.
+/// Weighted features are saved as their values, one for each row of the table.
 ///
 /// # Errors
 /// As for any value.
@@ -124,6 +134,12 @@ pub fn persist_rows<R: ActiveRows>(
     num_rows: usize,
     checkpoint: &mut Checkpoint<'_>,
 ) -> Result<R, CheckpointError> {
+    if R::WEIGHTED {
+        let mut values = rows.map_or_else(|| vec![0.0; num_rows], |rows| rows.values().to_vec());
+        values.as_mut_slice().persist(checkpoint)?;
+        checkpoint.check(values.iter().all(|value| value.is_finite()), "value of a feature")?;
+        return R::from_values(&values).ok_or(CheckpointError::Invalid("number of features"));
+    }
     let mut numbers = [0; MAX_TILINGS];
     let mut count = 0;
     if let Some(rows) = &rows {

@@ -4,7 +4,7 @@ use std::array::TryFromSliceError;
 
 use super::checked_tilings::check_bounds;
 use super::tile_coding::TiledAxis;
-use super::{BatchFeatures, Features, OutOfBounds, TileCoding};
+use super::{ActiveFeatures, BatchFeatures, Features, OutOfBounds, TileCoding};
 use crate::errors::BuildError;
 use crate::numeric::Float;
 use crate::simd::{F32s, Simd};
@@ -35,6 +35,8 @@ impl<const N: usize> AsRef<[u32]> for FixedTiles<N> {
         &self.0
     }
 }
+
+impl<const N: usize> ActiveFeatures for FixedTiles<N> {}
 
 impl<const N: usize> TryFrom<&[u32]> for FixedTiles<N> {
     type Error = TryFromSliceError;

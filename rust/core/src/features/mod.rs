@@ -1,5 +1,6 @@
 //! Features map an observation to the active rows of a Q table.
 
+mod active_features;
 mod any_grid;
 mod bins;
 mod checked_tilings;
@@ -13,7 +14,10 @@ mod multi_discrete_index;
 mod product;
 mod rounding;
 mod tile_coding;
+mod weighted;
 
+pub use active_features::ActiveFeatures;
+pub(crate) use active_features::assert_binary;
 pub use any_grid::AnyGrid;
 pub use bins::{Bins, Edges};
 pub use features::{ActiveRows, BatchFeatures, Features, OutOfBounds, persist_rows};
@@ -24,3 +28,4 @@ pub use multi_discrete_index::MultiDiscreteIndex;
 pub use product::{Factor, FactorFeatures, Product};
 pub use rounding::{Axis, Rounding};
 pub use tile_coding::{ActiveTiles, MAX_TILINGS, TileCoding};
+pub use weighted::{FeatureVector, FourierBasis, MAX_FEATURES};

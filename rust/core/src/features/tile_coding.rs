@@ -4,7 +4,7 @@ use std::marker::PhantomData;
 
 use super::checked_tilings::check_bounds;
 use super::hashing::{HashTable, mix};
-use super::{Features, OutOfBounds};
+use super::{ActiveFeatures, Features, OutOfBounds};
 use crate::errors::BuildError;
 use crate::numeric::Float;
 
@@ -33,6 +33,8 @@ impl<const M: usize> AsRef<[u32]> for ActiveTiles<M> {
         &self.rows[..self.tilings]
     }
 }
+
+impl<const M: usize> ActiveFeatures for ActiveTiles<M> {}
 
 impl<const M: usize> TryFrom<&[u32]> for ActiveTiles<M> {
     type Error = ();

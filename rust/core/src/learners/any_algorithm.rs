@@ -135,6 +135,17 @@ pub enum AnyAlgorithm {
     },
 }
 
+/// The features with which an algorithm learns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FeatureKinds {
+    /// Any features, weighted ones too.
+    All,
+    /// One or more active rows, whose features are 1.
+    Binary,
+    /// Exactly one active row for each state.
+    SingleRows,
+}
+
 impl AnyAlgorithm {
     /// The number of tables that the algorithm learns.
     pub fn n_tables(&self) -> usize {
@@ -146,20 +157,40 @@ impl AnyAlgorithm {
         matches!(self, Self::OffPolicyMonteCarlo { .. } | Self::NStepTreeBackup { .. } | Self::NStepQSigma { .. })
     }
 
+    /// The features with which the algorithm learns. Every algorithm is listed, so that a new one must decide.
+    pub fn feature_kinds(&self) -> FeatureKinds {
+        match self {
+            Self::QLearning
+            | Self::Sarsa
+            | Self::ExpectedSarsa
+            | Self::DoubleQLearning
+            | Self::NStepSarsa { .. }
+            | Self::NStepTreeBackup { .. }
+            | Self::NStepQSigma { .. }
+            | Self::DifferentialSarsa { .. }
+            | Self::DifferentialQLearning { .. } => FeatureKinds::All,
+            Self::SarsaLambda(_)
+            | Self::TrueOnlineSarsaLambda { .. }
+            | Self::WatkinsQLambda(_)
+            | Self::Reinforce
+            | Self::ReinforceWithBaseline { .. }
+            | Self::ActorCritic { .. }
+            | Self::ActorCriticLambda { .. } => FeatureKinds::Binary,
+            Self::DynaQ { .. }
+            | Self::DynaQPlus { .. }
+            | Self::StochasticDynaQ { .. }
+            | Self::MonteCarlo { .. }
+            | Self::MonteCarloEs { .. }
+            | Self::OffPolicyMonteCarlo { .. }
+            | Self::PrioritizedSweeping { .. }
+            | Self::GradientBandit { .. } => FeatureKinds::SingleRows,
+        }
+    }
+
     /// Whether each state must have exactly one active row: for a model, for a baseline of each state, or for visit
     /// counts.
     pub fn needs_single_rows(&self) -> bool {
-        matches!(
-            self,
-            Self::DynaQ { .. }
-                | Self::DynaQPlus { .. }
-                | Self::StochasticDynaQ { .. }
-                | Self::MonteCarlo { .. }
-                | Self::MonteCarloEs { .. }
-                | Self::OffPolicyMonteCarlo { .. }
-                | Self::PrioritizedSweeping { .. }
-                | Self::GradientBandit { .. }
-        )
+        self.feature_kinds() == FeatureKinds::SingleRows
     }
 
     /// The step size of the state values, stored in the second table; `None` for an algorithm that learns none.
@@ -191,7 +222,8 @@ impl AnyAlgorithm {
 
     /// Creates the learner of an agent and passes it to `visitor`. `second_table` is the other table of Double
     /// Q-learning, or the state values of a critic. The result is `None` if the algorithm needs single rows and `R`
-    /// holds several, or if it needs a second table and there is none.
+    /// holds several, if it needs binary features and those of `R` are weighted, or if it needs a second table and there
+    /// is none.
     ///
     /// # Errors
     /// `OutOfMemory`; `Stopped` after `stop` was set.

@@ -2,9 +2,9 @@
 
 use super::{
     ActorCritic, ActorCriticLambda, Agent, AnyAlgorithm, Critic, DifferentialQLearning, DifferentialSarsa,
-    DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, GradientBandit, Learner, Model, MonteCarloControl, NStepQSigma,
-    NStepSarsa, NStepTreeBackup, OffPolicyMonteCarlo, PrioritizedSweeping, QLearning, Reinforce, Sarsa, SarsaLambda,
-    StochasticModel, TdLearner, TraceOptions, Traces, TrueOnlineSarsaLambda, WatkinsQLambda,
+    DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, FeatureKinds, GradientBandit, Learner, Model, MonteCarloControl,
+    NStepQSigma, NStepSarsa, NStepTreeBackup, OffPolicyMonteCarlo, PrioritizedSweeping, QLearning, Reinforce, Sarsa,
+    SarsaLambda, StochasticModel, TdLearner, TraceOptions, Traces, TrueOnlineSarsaLambda, WatkinsQLambda,
 };
 use crate::checkpoint::RunIdentity;
 use crate::delegate_learner;
@@ -27,27 +27,37 @@ const fn is_single<R>() -> bool {
     size_of::<R>() == size_of::<u32>()
 }
 
-/// Defines the enum of all learners: those for any active rows, and those that need a single row.
+/// Defines the enum of all learners: those for any features, those for binary features, and those that need a single row.
 macro_rules! any_learner {
-    (several { $($several:ident $several_rule:ty,)+ } single { $($single:ident $single_rule:ty,)+ }) => {
+    (
+        any { $($any:ident $any_rule:ty,)+ }
+        binary { $($binary:ident $binary_rule:ty,)+ }
+        single { $($single:ident $single_rule:ty,)+ }
+    ) => {
         /// The learner of any algorithm, for states with active rows `R`: what
         /// [`TrainerBuilder`](crate::TrainerBuilder) trains. A [`TdLearner`] of a known rule, policy and number of
         /// actions is faster.
         #[derive(Clone, Debug, PartialEq)]
         #[non_exhaustive]
         pub enum AnyLearner<R: ActiveRows> {
-            $(#[doc = concat!("The learner with the rule `", stringify!($several_rule), "`.")]
-            $several(TdLearner<$several_rule>),)+
+            $(#[doc = concat!("The learner with the rule `", stringify!($any_rule), "`.")]
+            $any(TdLearner<$any_rule>),)+
+            $(#[doc = concat!("The learner with the rule `", stringify!($binary_rule), "`.")]
+            $binary(TdLearner<$binary_rule>),)+
             $(#[doc = concat!("The learner with the rule `", stringify!($single_rule), "`.")]
             $single(TdLearner<$single_rule>),)+
         }
 
         impl<R: ActiveRows> Learner<R> for AnyLearner<R> {
-            delegate_learner!(all R, learner in $(Self::$several(learner),)+ $(Self::$single(learner)),+);
+            delegate_learner!(
+                all R,
+                learner in $(Self::$any(learner),)+ $(Self::$binary(learner),)+ $(Self::$single(learner)),+
+            );
 
             fn identify(&self, identity: &mut RunIdentity) {
                 match self {
-                    $(Self::$several(learner) => Learner::<R>::identify(learner, identity),)+
+                    $(Self::$any(learner) => Learner::<R>::identify(learner, identity),)+
+                    $(Self::$binary(learner) => Learner::<R>::identify(learner, identity),)+
                     $(Self::$single(learner) => Learner::<R>::identify(learner, identity),)+
                 }
             }
@@ -57,18 +67,22 @@ macro_rules! any_learner {
             /// The agent of the learner: its table, its policy and the constants of its updates.
             pub fn agent(&self) -> &Agent {
                 match self {
-                    $(Self::$several(learner) => &learner.agent,)+
+                    $(Self::$any(learner) => &learner.agent,)+
+                    $(Self::$binary(learner) => &learner.agent,)+
                     $(Self::$single(learner) => &learner.agent,)+
                 }
             }
         }
 
         impl<R: ActiveRows + Send + 'static> AnyLearner<R> {
-            /// Passes the learner to `visitor`; `None` if it needs a single active row and `R` may hold several.
+            /// Passes the learner to `visitor`; `None` if it needs a single active row and `R` may hold several, or binary
+            /// features and those of `R` are weighted.
             pub(super) fn visit<V: LearnerVisitor<R>>(self, visitor: V) -> Option<V::Output> {
                 match self {
-                    $(Self::$several(learner) => Some(visitor.visit(learner)),)+
+                    $(Self::$any(learner) => Some(visitor.visit(learner)),)+
+                    $(Self::$binary(learner) if !R::WEIGHTED => Some(visitor.visit(learner)),)+
                     $(Self::$single(learner) if is_single::<R>() => Some(visitor.visit(learner)),)+
+                    $(Self::$binary(_) => None,)+
                     $(Self::$single(_) => None,)+
                 }
             }
@@ -77,7 +91,7 @@ macro_rules! any_learner {
 }
 
 any_learner! {
-    several {
+    any {
     QLearning QLearning,
     Sarsa Sarsa,
     ExpectedSarsa ExpectedSarsa,
@@ -85,11 +99,13 @@ any_learner! {
     NStepSarsa NStepSarsa<R>,
     NStepTreeBackup NStepTreeBackup<R>,
     NStepQSigma NStepQSigma<R>,
+    DifferentialSarsa DifferentialSarsa<R>,
+    DifferentialQLearning DifferentialQLearning<R>,
+    }
+    binary {
     SarsaLambda SarsaLambda,
     TrueOnlineSarsaLambda TrueOnlineSarsaLambda,
     WatkinsQLambda WatkinsQLambda,
-    DifferentialSarsa DifferentialSarsa<R>,
-    DifferentialQLearning DifferentialQLearning<R>,
     Reinforce Reinforce<R>,
     ActorCritic ActorCritic,
     ActorCriticLambda ActorCriticLambda,
@@ -107,8 +123,8 @@ any_learner! {
 
 impl<R: ActiveRows> AnyLearner<R> {
     /// The learner of an algorithm. `second_table` is the other table of Double Q-learning, or the state values of a
-    /// critic. The result is `None` if the algorithm needs single rows and `R` may hold several, or if it needs a second
-    /// table and there is none.
+    /// critic. The result is `None` if the algorithm needs single rows and `R` may hold several, if it needs binary
+    /// features and those of `R` are weighted, or if it needs a second table and there is none.
     ///
     /// # Errors
     /// `OutOfMemory`; `Stopped` after `stop` was set.
@@ -121,7 +137,12 @@ impl<R: ActiveRows> AnyLearner<R> {
         second_table: Option<QTable>,
         stop: &StopFlag<'_>,
     ) -> Result<Option<Self>, AllocationError> {
-        if algorithm.needs_single_rows() && !is_single::<R>() || algorithm.n_tables() == 2 && second_table.is_none() {
+        let fits = match algorithm.feature_kinds() {
+            FeatureKinds::All => true,
+            FeatureKinds::Binary => !R::WEIGHTED,
+            FeatureKinds::SingleRows => is_single::<R>(),
+        };
+        if !fits || algorithm.n_tables() == 2 && second_table.is_none() {
             return Ok(None);
         }
         let (n_rows, num_actions) = agent.table.shape();

@@ -10,7 +10,7 @@ mod one_step;
 mod policy_gradient;
 mod traces;
 
-pub use any_algorithm::AnyAlgorithm;
+pub use any_algorithm::{AnyAlgorithm, FeatureKinds};
 pub use any_learner::{AnyLearner, LearnerVisitor};
 pub(crate) use common::StepInParts;
 #[cfg(test)]

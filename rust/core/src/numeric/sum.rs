@@ -6,3 +6,29 @@ pub(crate) fn sum(mut numbers: impl Iterator<Item = f64>) -> f64 {
     let first = numbers.next().unwrap_or(0.0);
     numbers.fold(first, |total, number| total + number)
 }
+
+/// The number of partial sums of [`sum_products`].
+const PARTS: usize = 4;
+
+/// Σᵢ wᵢ xᵢ for `A` columns of weights at once. There are four partial sums that begin at 0, of the products 0, 4, 8, … and
+/// 1, 5, 9, … and so on, each from left to right; the result is (p₀ + p₁) + (p₂ + p₃). A single sum would be a chain of
+/// additions that wait for each other.
+#[inline(always)]
+pub(crate) fn sum_products<const A: usize>(x: &[f64], weights: impl Fn(usize) -> [f64; A]) -> [f64; A] {
+    let mut parts = [[0.0; A]; PARTS];
+    let add = |part: &mut [f64; A], weights: [f64; A], x: f64| {
+        for (sum, weight) in part.iter_mut().zip(weights) {
+            *sum += weight * x;
+        }
+    };
+    let (blocks, rest) = x.as_chunks::<PARTS>();
+    for (block, x) in blocks.iter().enumerate() {
+        for (index, part) in parts.iter_mut().enumerate() {
+            add(part, weights(PARTS * block + index), x[index]);
+        }
+    }
+    for ((index, part), &x) in parts.iter_mut().enumerate().zip(rest) {
+        add(part, weights(PARTS * blocks.len() + index), x);
+    }
+    std::array::from_fn(|column| (parts[0][column] + parts[1][column]) + (parts[2][column] + parts[3][column]))
+}

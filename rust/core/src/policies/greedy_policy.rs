@@ -1,6 +1,7 @@
 //! The greedy policy of learned tables.
 
-use crate::numeric::argmax;
+use crate::features::ActiveFeatures;
+use crate::numeric::{argmax, sum_products};
 
 /// The greedy policy: the action with the largest value, and the first one of several. It is a copy of the learned
 /// values, so training can continue beside it.
@@ -41,7 +42,7 @@ impl GreedyPolicy {
     ///
     /// # Panics
     /// If a row is not in the table.
-    pub fn action(&self, rows: impl AsRef<[u32]>) -> usize {
+    pub fn action(&self, rows: impl ActiveFeatures) -> usize {
         argmax(&self.action_values(rows))
     }
 
@@ -49,17 +50,24 @@ impl GreedyPolicy {
     ///
     /// # Panics
     /// As for `action`.
-    pub fn action_among(&self, rows: impl AsRef<[u32]>, available: &[bool]) -> usize {
+    pub fn action_among(&self, rows: impl ActiveFeatures, available: &[bool]) -> usize {
         let mut values = self.action_values(rows);
         mask(&mut values, available);
         argmax(&values)
     }
 
-    /// The action values of the state with these active rows, each the sum over the rows.
+    /// The action values of the state with these active rows, each the sum over the rows; with weighted features, each
+    /// row is multiplied by its value.
     ///
     /// # Panics
     /// As for `action`.
-    pub fn action_values(&self, rows: impl AsRef<[u32]>) -> Vec<f64> {
+    pub fn action_values<R: ActiveFeatures>(&self, rows: R) -> Vec<f64> {
+        if R::WEIGHTED {
+            let value = |row: usize, action: usize| self.values[row * self.num_actions + action];
+            return (0..self.num_actions)
+                .map(|action| sum_products(rows.values(), |row| [value(row, action)])[0])
+                .collect();
+        }
         let mut sums = vec![0.0; self.num_actions];
         for (index, &row) in rows.as_ref().iter().enumerate() {
             let row = &self.values[row as usize * self.num_actions..][..self.num_actions];

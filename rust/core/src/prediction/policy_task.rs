@@ -3,7 +3,7 @@
 use super::Behavior;
 use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::envs::Env;
-use crate::features::Features;
+use crate::features::{ActiveFeatures, Features};
 use crate::random::Rng;
 use crate::tasks::{NativeTask, Next, Task, Transition};
 
@@ -68,6 +68,8 @@ impl<R: AsRef<[u32]>> AsRef<[u32]> for WithAction<R> {
         self.active.as_ref()
     }
 }
+
+impl<R: AsRef<[u32]>> ActiveFeatures for WithAction<R> {}
 
 impl<'a, R: TryFrom<&'a [u32]>> TryFrom<&'a [u32]> for WithAction<R> {
     type Error = R::Error;

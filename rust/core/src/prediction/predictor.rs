@@ -2,6 +2,7 @@
 
 use super::{FixedPolicy, LinearValues};
 use crate::checkpoint::{Checkpoint, CheckpointError};
+use crate::features::{ActiveFeatures, assert_binary};
 use crate::learners::Learner;
 use crate::memory::{AllocationError, RunMemory};
 use crate::random::Rng;
@@ -97,10 +98,11 @@ impl<U: ?Sized, B> Predictor<U, B> {
 
     /// The number of the next state of the episode.
     #[inline]
-    fn visit<R: AsRef<[u32]>>(&mut self, active: &R) -> u32
+    fn visit<R: ActiveFeatures>(&mut self, active: &R) -> u32
     where
         B: Behavior<R>,
     {
+        assert_binary::<R>();
         if !B::OF_STATES {
             self.state = self.values.features.visit(active.as_ref());
         }
@@ -109,7 +111,7 @@ impl<U: ?Sized, B> Predictor<U, B> {
 
     /// The number of the state visited last.
     #[inline]
-    fn last_visit<R: AsRef<[u32]>>(&self, active: &R) -> u32
+    fn last_visit<R: ActiveFeatures>(&self, active: &R) -> u32
     where
         B: Behavior<R>,
     {
@@ -117,7 +119,7 @@ impl<U: ?Sized, B> Predictor<U, B> {
     }
 }
 
-impl<R: AsRef<[u32]> + Copy, U: PredictionRule + ?Sized, B: Behavior<R>> Learner<R> for Predictor<U, B> {
+impl<R: ActiveFeatures + Copy, U: PredictionRule + ?Sized, B: Behavior<R>> Learner<R> for Predictor<U, B> {
     #[inline]
     fn first_action(&mut self, active: R, rng: &mut impl Rng) -> usize {
         self.values.features.begin();

@@ -1,7 +1,9 @@
-//! Linear function approximation with binary features: an action value is the sum over the active rows, from left to
-//! right (Sutton & Barto, equation 9.8). With one active row, as on a grid, it is the value of that row.
+//! Linear function approximation: with binary features an action value is the sum over the active rows, from left to
+//! right (Sutton & Barto, equation 9.8). With one active row, as on a grid, it is the value of that row. With weighted
+//! features each row is multiplied by the value of its feature.
 
 use super::QTable;
+use crate::features::ActiveFeatures;
 use crate::numeric::sum;
 use crate::schedules::{LoggedUpdate, StepSize};
 
@@ -17,7 +19,10 @@ pub enum TerminalUpdate {
 impl<const N: usize> QTable<N> {
     /// The action values of an observation with these active rows.
     #[inline]
-    pub fn action_values<R: AsRef<[u32]> + ?Sized>(&mut self, rows: &R) -> &[f64] {
+    pub fn action_values<R: ActiveFeatures + ?Sized>(&mut self, rows: &R) -> &[f64] {
+        if R::WEIGHTED {
+            return self.weighted_action_values(rows.values());
+        }
         let rows = rows.as_ref();
         if let &[row] = rows {
             return self.row(row);
@@ -45,7 +50,10 @@ impl<const N: usize> QTable<N> {
 
     /// The value of one action with these active rows.
     #[inline]
-    pub fn value<R: AsRef<[u32]> + ?Sized>(&self, rows: &R, action: usize) -> f64 {
+    pub fn value<R: ActiveFeatures + ?Sized>(&self, rows: &R, action: usize) -> f64 {
+        if R::WEIGHTED {
+            return self.weighted_value(rows.values(), action);
+        }
         // The bounds check of the action is then that of `value_mut`.
         if N > 0
             && let &[row] = rows.as_ref()
@@ -61,9 +69,10 @@ impl<const N: usize> QTable<N> {
         row as usize * self.num_actions() + action
     }
 
-    /// Q ← Q + α (target - Q). Each active row moves by its step size times the error.
+    /// Q ← Q + α (target - Q). Each active row moves by its step size times the error, and with weighted features times
+    /// the value of its feature.
     #[inline]
-    pub fn update<R: AsRef<[u32]> + ?Sized>(
+    pub fn update<R: ActiveFeatures + ?Sized>(
         &mut self,
         rows: &R,
         action: usize,
@@ -71,6 +80,9 @@ impl<const N: usize> QTable<N> {
         step_size: &mut impl StepSize,
     ) {
         let error = target - self.value(rows, action);
+        if R::WEIGHTED {
+            return self.update_weighted(rows, action, (target, error), step_size);
+        }
         let rows = rows.as_ref();
         if rows.len() != 1 {
             self.check_finite(error);
@@ -100,27 +112,27 @@ impl<const N: usize> QTable<N> {
     }
 
     #[cold]
-    fn log(
+    pub(super) fn log<R: ActiveFeatures + ?Sized>(
         &self,
-        rows: &[u32],
+        rows: &R,
         action: usize,
         (old, target, learning_rate): (f64, f64, Option<f64>),
         step_size: &mut impl StepSize,
     ) {
         if let Some(log) = step_size.log() {
             let new = self.value(rows, action);
-            log.push(rows, LoggedUpdate { action, old, new, target, learning_rate });
+            log.push(rows.as_ref(), LoggedUpdate { action, old, new, target, learning_rate });
         }
     }
 
     /// The update of the last state-action pair of an episode.
     ///
     /// # Panics
-    /// With [`TerminalUpdate::Assign`] and several active rows.
+    /// With [`TerminalUpdate::Assign`] and several active rows, or weighted features.
     #[inline]
-    pub fn update_terminal(
+    pub fn update_terminal<R: ActiveFeatures + ?Sized>(
         &mut self,
-        rows: &[u32],
+        rows: &R,
         action: usize,
         reward: f64,
         update: TerminalUpdate,
@@ -129,8 +141,9 @@ impl<const N: usize> QTable<N> {
         match update {
             TerminalUpdate::Target => self.update(rows, action, reward, step_size),
             TerminalUpdate::Assign => {
-                assert!(rows.len() == 1, "TerminalUpdate::Assign needs exactly one active row");
-                let old = std::mem::replace(self.value_mut(rows[0], action), reward);
+                let active = rows.as_ref();
+                assert!(active.len() == 1 && !R::WEIGHTED, "TerminalUpdate::Assign needs exactly one active row");
+                let old = std::mem::replace(self.value_mut(active[0], action), reward);
                 if step_size.log().is_some() {
                     self.log(rows, action, (old, reward, None), step_size);
                 }

@@ -3,6 +3,7 @@
 mod linear;
 mod moved_values;
 mod table;
+mod weighted;
 
 pub use linear::TerminalUpdate;
 pub(crate) use linear::sum_rows;

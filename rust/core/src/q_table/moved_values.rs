@@ -1,6 +1,7 @@
 //! Action values while a learner stores some of the values after the rows.
 
 use super::{QTable, sum_rows};
+use crate::features::ActiveFeatures;
 use crate::numeric::sum;
 
 impl QTable {
@@ -12,7 +13,7 @@ impl QTable {
 
     /// [`action_values`](Self::action_values), where `slots` holds the index in the storage of each weight's value.
     #[inline(always)]
-    pub(crate) fn values_at<R: AsRef<[u32]>>(&mut self, slots: &[u32], rows: &R) -> &[f64] {
+    pub(crate) fn values_at<R: ActiveFeatures>(&mut self, slots: &[u32], rows: &R) -> &[f64] {
         match self.num_actions() {
             2 => self.sum_slots::<2>(slots, rows.as_ref()),
             3 => self.sum_slots::<3>(slots, rows.as_ref()),

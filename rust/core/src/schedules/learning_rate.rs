@@ -15,6 +15,10 @@ pub struct LearningRate {
     /// The number of visits to each weight; empty if the learning rate does not depend on visits.
     visits: Vec<u32>,
     min: f64,
+    /// The number that divides the step size of each row; empty if all rows share one step size.
+    divisors: Vec<f64>,
+    /// The step size of each row; empty if all rows share one step size.
+    of_rows: Vec<f64>,
     /// Whether `step_size` applies to every weight and updates are not logged.
     uniform: bool,
     log: UpdateLog,
@@ -31,6 +35,8 @@ impl LearningRate {
             step_size: schedule.value() / n_active,
             visits: Vec::new(),
             min: 0.0,
+            divisors: Vec::new(),
+            of_rows: Vec::new(),
             uniform: true,
             log: UpdateLog::default(),
             logs: false,
@@ -53,6 +59,14 @@ impl LearningRate {
         Ok(Self { visits, min, uniform: false, ..Self::scheduled(Schedule::constant(initial), n_active) })
     }
 
+    /// A learning rate for weighted features, divided by a number for each row: αᵢ = α / dᵢ. It applies to the learners
+    /// that update a table by [`QTable::update`](crate::QTable::update).
+    #[must_use]
+    pub fn scaled_by_row(schedule: Schedule, divisors: Vec<f64>) -> Self {
+        let of_rows = divisors.iter().map(|divisor| schedule.value() / divisor).collect();
+        Self { of_rows, divisors, uniform: false, ..Self::scheduled(schedule, 1) }
+    }
+
     /// The number of active rows of an observation, which share the learning rate.
     pub fn n_active(&self) -> f64 {
         self.n_active
@@ -62,7 +76,7 @@ impl LearningRate {
     /// traces are not logged.
     pub fn set_logging(&mut self, logs: bool) {
         self.logs = logs;
-        self.uniform = self.visits.is_empty() && !logs;
+        self.uniform = self.visits.is_empty() && self.of_rows.is_empty() && !logs;
     }
 
     /// The logged updates.
@@ -92,10 +106,18 @@ impl StepSize for LearningRate {
         }
     }
 
+    #[inline]
+    fn of_rows(&self) -> Option<&[f64]> {
+        (!self.of_rows.is_empty()).then_some(&self.of_rows[..])
+    }
+
     fn end_episode(&mut self) {
         if !self.schedule.is_final() {
             self.schedule.end_episode();
             self.step_size = self.schedule.value() / self.n_active;
+            for (step, divisor) in self.of_rows.iter_mut().zip(&self.divisors) {
+                *step = self.schedule.value() / divisor;
+            }
         }
     }
 
@@ -116,6 +138,15 @@ mod tests {
     #[test]
     fn active_rows_share_the_learning_rate() {
         assert_eq!(LearningRate::scheduled(Schedule::constant(0.5), 8).at(3), 0.0625);
+    }
+
+    #[test]
+    fn the_step_size_of_each_row_follows_the_schedule() {
+        let mut rate = LearningRate::scaled_by_row(Schedule::linear(0.5, 0.1, 4, 0), vec![1.0, 2.0, 0.5]);
+        assert_eq!((rate.uniform(), rate.of_rows()), (None, Some([0.5, 0.25, 1.0].as_slice())));
+        rate.end_episode();
+        let step = 0.5 - 0.4 / 4.0;
+        assert_eq!(rate.of_rows(), Some([step, step / 2.0, step / 0.5].as_slice()));
     }
 
     #[test]

@@ -17,6 +17,12 @@ pub trait StepSize {
     /// The step size of a weight.
     fn at(&self, weight_index: usize) -> f64;
 
+    /// The step size of each row, if it depends on the row.
+    #[inline]
+    fn of_rows(&self) -> Option<&[f64]> {
+        None
+    }
+
     /// Called after every episode.
     #[inline]
     fn end_episode(&mut self) {}

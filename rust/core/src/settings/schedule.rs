@@ -183,4 +183,16 @@ impl LearningRateSpec {
             Self::Visits { value, minimum } => LearningRate::by_visit_count(value, minimum, weights, n_active, stop),
         }
     }
+
+    /// The learning rate of weighted features: that of each row is divided by its number, if there are any. `None` for a
+    /// learning rate by visits, which are those of single rows.
+    pub fn build_weighted(&self, episodes: u64, divisors: Vec<f64>) -> Option<LearningRate> {
+        let Self::Schedule(schedule) = *self else { return None };
+        let schedule = schedule.build(episodes);
+        Some(if divisors.is_empty() {
+            LearningRate::scheduled(schedule, 1)
+        } else {
+            LearningRate::scaled_by_row(schedule, divisors)
+        })
+    }
 }

@@ -4,8 +4,8 @@
 use super::{Next, Task, TimedState, Transition};
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist, RunIdentity};
 
-/// A wrapper around a task with one active row, with separate rows for each step before the time limit: the table has
-/// `max_episode_steps` times as many rows, beginning with those of an episode's first step.
+/// A wrapper around a task with one active row, which is not weighted, with separate rows for each step before the time
+/// limit: the table has `max_episode_steps` times as many rows, beginning with those of an episode's first step.
 ///
 /// There are no rows for the state after the last step: the next state of a truncated episode is reported with the rows
 /// of the last step, and a learner must treat it as terminal.

@@ -2,6 +2,7 @@
 
 use super::ActionMasks;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
+use crate::features::ActiveFeatures;
 use crate::policies::{AnyPolicy, Policy, random_available_action};
 use crate::q_table::{QTable, TerminalUpdate};
 use crate::random::Rng;
@@ -51,7 +52,7 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
     /// Samples an action from the policy in the state with these active rows.
     #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
     #[inline(always)]
-    pub fn choose(&mut self, rows: impl AsRef<[u32]>, rng: &mut impl Rng) -> usize {
+    pub fn choose(&mut self, rows: impl ActiveFeatures, rng: &mut impl Rng) -> usize {
         let values = masked_values::<N>(&mut self.masks, rows.as_ref(), self.table.action_values(&rows));
         self.policy.choose_in(rows.as_ref(), values, rng)
     }
@@ -59,27 +60,27 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
     /// The action values of the state with these active rows. The value of an unavailable action is -∞.
     #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
     #[inline(always)]
-    pub fn action_values(&mut self, rows: impl AsRef<[u32]>) -> &[f64] {
+    pub fn action_values(&mut self, rows: impl ActiveFeatures) -> &[f64] {
         masked_values::<N>(&mut self.masks, rows.as_ref(), self.table.action_values(&rows))
     }
 
     /// The expected value Σₐ π(a) Q(a) of the state with these active rows.
     #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
     #[inline(always)]
-    pub fn expected_value(&mut self, rows: impl AsRef<[u32]>) -> f64 {
+    pub fn expected_value(&mut self, rows: impl ActiveFeatures) -> f64 {
         let values = masked_values::<N>(&mut self.masks, rows.as_ref(), self.table.action_values(&rows));
         self.policy.expected_value_in(rows.as_ref(), values)
     }
 
     /// The probability π(a) of an action in the state with these active rows.
-    pub fn probability(&mut self, rows: impl AsRef<[u32]>, action: usize) -> f64 {
+    pub fn probability(&mut self, rows: impl ActiveFeatures, action: usize) -> f64 {
         let values = masked_values::<N>(&mut self.masks, rows.as_ref(), self.table.action_values(&rows));
         self.policy.probability(values, action)
     }
 
     /// A random available action in the state with these active rows, drawn by `rng.integers`.
     #[inline]
-    pub fn sample_action(&mut self, rows: impl AsRef<[u32]>, rng: &mut impl Rng) -> usize {
+    pub fn sample_action(&mut self, rows: impl ActiveFeatures, rng: &mut impl Rng) -> usize {
         match &self.masks {
             None => rng.integers(self.table.num_actions() as u32) as usize,
             Some(_) => random_available_action(self.action_values(rows), rng),
@@ -88,7 +89,7 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
 
     /// Records the action mask of a state.
     #[inline]
-    pub fn set_action_mask(&mut self, rows: impl AsRef<[u32]>, mask: &[bool]) {
+    pub fn set_action_mask(&mut self, rows: impl ActiveFeatures, mask: &[bool]) {
         if let Some(masks) = &mut self.masks {
             masks.set(rows.as_ref(), mask);
         }
@@ -103,7 +104,7 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
     /// sampled for its value Q(S′, A′) and never taken.
     #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
     #[inline(always)]
-    pub fn sample_next<R: Copy + AsRef<[u32]>>(&mut self, next: Next<R>, rng: &mut impl Rng) -> Option<(R, usize)> {
+    pub fn sample_next<R: Copy + ActiveFeatures>(&mut self, next: Next<R>, rng: &mut impl Rng) -> Option<(R, usize)> {
         match next {
             Next::NonTerminal(next_state) | Next::Truncated(next_state) => {
                 Some((next_state, self.choose(next_state, rng)))
@@ -116,19 +117,19 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
     /// returns 0.
     #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
     #[inline(always)]
-    pub fn next_action<R: Copy + AsRef<[u32]>>(&mut self, next: Next<R>, rng: &mut impl Rng) -> usize {
+    pub fn next_action<R: Copy + ActiveFeatures>(&mut self, next: Next<R>, rng: &mut impl Rng) -> usize {
         if let Next::NonTerminal(next_state) = next { self.choose(next_state, rng) } else { 0 }
     }
 
     /// Q(S, A).
     #[inline]
-    pub fn value(&self, rows: impl AsRef<[u32]>, action: usize) -> f64 {
+    pub fn value(&self, rows: impl ActiveFeatures, action: usize) -> f64 {
         self.table.value(&rows, action)
     }
 
     /// Counts a visit to a state-action pair.
     #[inline]
-    pub fn visit(&mut self, rows: impl AsRef<[u32]>, action: usize) {
+    pub fn visit(&mut self, rows: impl ActiveFeatures, action: usize) {
         if self.learning_rate.uniform().is_some() {
             return;
         }
@@ -139,14 +140,14 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
 
     /// Q(S, A) ← Q(S, A) + α [target - Q(S, A)].
     #[inline]
-    pub fn update(&mut self, rows: impl AsRef<[u32]>, action: usize, target: f64) {
+    pub fn update(&mut self, rows: impl ActiveFeatures, action: usize, target: f64) {
         self.table.update(&rows, action, target, &mut self.learning_rate);
     }
 
     /// The update for a terminal S′, according to `terminal_update`.
     #[inline]
-    pub fn update_terminal(&mut self, rows: impl AsRef<[u32]>, action: usize, reward: f64) {
-        self.table.update_terminal(rows.as_ref(), action, reward, self.terminal_update, &mut self.learning_rate);
+    pub fn update_terminal(&mut self, rows: impl ActiveFeatures, action: usize, reward: f64) {
+        self.table.update_terminal(&rows, action, reward, self.terminal_update, &mut self.learning_rate);
     }
 
     /// The work of an update: 1 with a few actions, more if reading a row takes longer. A number of actions known to

@@ -2,6 +2,7 @@
 
 use super::{Agent, Learner, UpdateRule};
 use crate::checkpoint::{Checkpoint, CheckpointError};
+use crate::features::ActiveFeatures;
 use crate::memory::{AllocationError, RunMemory};
 use crate::policies::Policy;
 use crate::q_table::QTable;
@@ -20,7 +21,7 @@ pub struct TdLearner<U, G = Agent> {
 
 impl<const N: usize, R, U, P, A> Learner<R> for TdLearner<U, Agent<N, P, A>>
 where
-    R: Copy + AsRef<[u32]>,
+    R: Copy + ActiveFeatures,
     U: UpdateRule<R, Agent<N, P, A>>,
     P: Policy,
     A: StepSize,

@@ -4,6 +4,7 @@
 use super::{CountBonus, Learner};
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::delegate_learner;
+use crate::features::ActiveFeatures;
 use crate::random::Rng;
 use crate::tasks::Next;
 
@@ -31,7 +32,7 @@ impl<L> TransformedSteps<L> {
     }
 }
 
-impl<R: AsRef<[u32]>, L: Learner<R>> Learner<R> for TransformedSteps<L> {
+impl<R: ActiveFeatures, L: Learner<R>> Learner<R> for TransformedSteps<L> {
     const HAS_VECTOR_PASSES: bool = L::HAS_VECTOR_PASSES;
 
     delegate_learner!(rest R, learner in Self { learner, .. });

@@ -2,6 +2,7 @@
 
 use super::{DynaModel, Model, ModelEntry, Planning, single_row};
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
+use crate::features::ActiveFeatures;
 use crate::learners::{Agent, UpdateRule, row_work};
 use crate::memory::{AllocationError, RunMemory};
 use crate::random::Rng;
@@ -32,7 +33,7 @@ impl<M: DynaModel> DynaQ<M> {
     }
 }
 
-impl<R: Copy + AsRef<[u32]>, M: DynaModel> UpdateRule<R, Agent> for DynaQ<M> {
+impl<R: Copy + ActiveFeatures, M: DynaModel> UpdateRule<R, Agent> for DynaQ<M> {
     #[inline]
     fn learn(
         &mut self,

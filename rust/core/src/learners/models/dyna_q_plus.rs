@@ -3,6 +3,7 @@
 use super::{Model, ModelEntry, Planning, single_row};
 use crate::StopFlag;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
+use crate::features::ActiveFeatures;
 use crate::learners::{Agent, UpdateRule, row_work};
 use crate::memory::{AllocationError, filled};
 use crate::random::Rng;
@@ -44,7 +45,7 @@ impl DynaQPlus {
     }
 }
 
-impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for DynaQPlus {
+impl<R: Copy + ActiveFeatures> UpdateRule<R, Agent> for DynaQPlus {
     #[inline]
     fn learn(
         &mut self,

@@ -2,6 +2,7 @@
 
 use crate::StopFlag;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
+use crate::features::ActiveFeatures;
 use crate::learners::Agent;
 use crate::memory::{AllocationError, filled, with_capacity};
 use crate::numeric::maximum;
@@ -22,7 +23,7 @@ impl ModelEntry {
     ///
     /// # Panics
     /// If the next state has more than one active row.
-    pub(crate) fn new<R: AsRef<[u32]>>(reward: f64, next: &Next<R>) -> Self {
+    pub(crate) fn new<R: ActiveFeatures>(reward: f64, next: &Next<R>) -> Self {
         let next = match next {
             Next::NonTerminal(next_state) | Next::Truncated(next_state) => Some(single_row(next_state)),
             Next::Terminal => None,
@@ -178,7 +179,7 @@ impl Agent {
 }
 
 /// The row of a state with one active row.
-pub(crate) fn single_row(rows: &impl AsRef<[u32]>) -> u32 {
+pub(crate) fn single_row(rows: &impl ActiveFeatures) -> u32 {
     let &[row] = rows.as_ref() else { unreachable!("a learner of tables has one active row per state") };
     row
 }

@@ -4,6 +4,7 @@
 use super::{Model, ModelEntry, Planning, Predecessors, PriorityQueue, single_row};
 use crate::StopFlag;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
+use crate::features::ActiveFeatures;
 use crate::learners::{Agent, UpdateRule, row_work};
 use crate::memory::AllocationError;
 use crate::numeric::maximum;
@@ -89,7 +90,7 @@ fn consider(queue: &mut PriorityQueue, model: &Model, agent: &mut Agent, (pair, 
     }
 }
 
-impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for PrioritizedSweeping {
+impl<R: Copy + ActiveFeatures> UpdateRule<R, Agent> for PrioritizedSweeping {
     fn learn(
         &mut self,
         agent: &mut Agent,

@@ -4,6 +4,7 @@
 use super::EpisodeSteps;
 use crate::StopFlag;
 use crate::checkpoint::{Checkpoint, CheckpointError};
+use crate::features::ActiveFeatures;
 use crate::learners::{Agent, UpdateRule, row_work, single_row};
 use crate::memory::{AllocationError, RunMemory, filled};
 use crate::random::Rng;
@@ -57,7 +58,7 @@ impl MonteCarloControl {
     }
 }
 
-impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for MonteCarloControl {
+impl<R: Copy + ActiveFeatures> UpdateRule<R, Agent> for MonteCarloControl {
     fn first_action(&mut self, agent: &mut Agent, state: R, rng: &mut impl Rng) -> Option<usize> {
         self.exploring_starts.then(|| agent.sample_action(state, rng))
     }

@@ -3,6 +3,7 @@
 use super::EpisodeSteps;
 use crate::StopFlag;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
+use crate::features::ActiveFeatures;
 use crate::learners::{Agent, UpdateRule, row_work, single_row};
 use crate::memory::{AllocationError, RunMemory, filled};
 use crate::numeric::{argmax, maximum};
@@ -48,7 +49,7 @@ impl OffPolicyMonteCarlo {
 
     /// Samples an action, and stores its probability before any value changes.
     #[inline]
-    fn choose(&mut self, agent: &mut Agent, state: impl Copy + AsRef<[u32]>, rng: &mut impl Rng) -> usize {
+    fn choose(&mut self, agent: &mut Agent, state: impl Copy + ActiveFeatures, rng: &mut impl Rng) -> usize {
         let action = agent.choose(state, rng);
         self.probability = agent.probability(state, action);
         action
@@ -73,7 +74,7 @@ impl OffPolicyMonteCarlo {
     }
 }
 
-impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for OffPolicyMonteCarlo {
+impl<R: Copy + ActiveFeatures> UpdateRule<R, Agent> for OffPolicyMonteCarlo {
     fn first_action(&mut self, agent: &mut Agent, state: R, rng: &mut impl Rng) -> Option<usize> {
         Some(self.choose(agent, state, rng))
     }

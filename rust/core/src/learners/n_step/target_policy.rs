@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use super::NStepVisit;
-use crate::features::ActiveRows;
+use crate::features::{ActiveFeatures, ActiveRows};
 use crate::learners::Agent;
 use crate::numeric::maximum;
 
@@ -19,7 +19,7 @@ pub enum TargetPolicy {
 impl TargetPolicy {
     /// Σₐ π(a|S) Q(S, a).
     #[inline]
-    pub(in crate::learners) fn expected_value(self, agent: &mut Agent, rows: impl AsRef<[u32]>) -> f64 {
+    pub(in crate::learners) fn expected_value(self, agent: &mut Agent, rows: impl ActiveFeatures) -> f64 {
         match self {
             Self::Greedy => maximum(agent.action_values(rows)),
             Self::Behavior => agent.expected_value(rows),
@@ -28,7 +28,7 @@ impl TargetPolicy {
 
     /// π(A|S).
     #[inline]
-    pub(in crate::learners) fn probability(self, agent: &mut Agent, rows: impl AsRef<[u32]>, action: usize) -> f64 {
+    pub(in crate::learners) fn probability(self, agent: &mut Agent, rows: impl ActiveFeatures, action: usize) -> f64 {
         match self {
             Self::Greedy => {
                 let values = agent.action_values(rows);
@@ -40,7 +40,7 @@ impl TargetPolicy {
 
     /// The importance sampling ratio π(A|S) / b(A|S).
     #[inline]
-    pub(in crate::learners) fn ratio(self, agent: &mut Agent, rows: impl AsRef<[u32]>, action: usize) -> f64 {
+    pub(in crate::learners) fn ratio(self, agent: &mut Agent, rows: impl ActiveFeatures, action: usize) -> f64 {
         match self {
             Self::Greedy => self.probability(agent, &rows, action) / agent.probability(&rows, action),
             Self::Behavior => 1.0,

@@ -1,6 +1,7 @@
 //! Double Q-learning (H. van Hasselt, 2010; Sutton & Barto, equation 6.10).
 
 use crate::checkpoint::{Checkpoint, CheckpointError};
+use crate::features::ActiveFeatures;
 use crate::learners::{Agent, UpdateRule, masked_values};
 use crate::numeric::argmax;
 use crate::policies::Policy;
@@ -32,19 +33,19 @@ impl DoubleQLearning {
     }
 
     #[inline]
-    fn choose(&mut self, agent: &mut Agent, rows: &[u32], rng: &mut impl Rng) -> usize {
-        let values = agent.action_values(rows).iter().zip(self.second_table.action_values(rows));
+    fn choose<R: ActiveFeatures>(&mut self, agent: &mut Agent, state: &R, rng: &mut impl Rng) -> usize {
+        let values = agent.action_values(state).iter().zip(self.second_table.action_values(state));
         for (sum, (first, second)) in self.sums.iter_mut().zip(values) {
             *sum = first + second;
         }
-        agent.policy.choose_in(rows, &self.sums, rng)
+        agent.policy.choose_in(state.as_ref(), &self.sums, rng)
     }
 }
 
-impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for DoubleQLearning {
+impl<R: Copy + ActiveFeatures> UpdateRule<R, Agent> for DoubleQLearning {
     #[inline]
     fn first_action(&mut self, agent: &mut Agent, state: R, rng: &mut impl Rng) -> Option<usize> {
-        Some(self.choose(agent, state.as_ref(), rng))
+        Some(self.choose(agent, &state, rng))
     }
 
     #[inline]
@@ -66,16 +67,16 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for DoubleQLearning {
         };
         match next {
             Next::NonTerminal(next_state) | Next::Truncated(next_state) => {
-                let rows = next_state.as_ref();
-                let greedy = argmax(masked_values::<0>(masks, rows, updated.action_values(rows)));
-                let target = reward + *discount * other.value(rows, greedy);
-                updated.update(state.as_ref(), action, target, learning_rate);
+                let values = updated.action_values(&next_state);
+                let greedy = argmax(masked_values::<0>(masks, next_state.as_ref(), values));
+                let target = reward + *discount * other.value(&next_state, greedy);
+                updated.update(&state, action, target, learning_rate);
             }
             Next::Terminal => {
-                updated.update_terminal(state.as_ref(), action, reward, *terminal_update, learning_rate);
+                updated.update_terminal(&state, action, reward, *terminal_update, learning_rate);
             }
         }
-        if let Next::NonTerminal(next_state) = next { self.choose(agent, next_state.as_ref(), rng) } else { 0 }
+        if let Next::NonTerminal(next_state) = next { self.choose(agent, &next_state, rng) } else { 0 }
     }
 
     fn second_table(&self) -> Option<&QTable> {

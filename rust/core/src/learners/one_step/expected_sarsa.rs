@@ -1,5 +1,6 @@
 //! Expected Sarsa (H. van Seijen et al., 2009; Sutton & Barto, equation 6.9).
 
+use crate::features::ActiveFeatures;
 use crate::learners::{Agent, UpdateRule};
 use crate::policies::Policy;
 use crate::random::Rng;
@@ -12,7 +13,7 @@ pub struct ExpectedSarsa;
 
 impl<const N: usize, R, P, A> UpdateRule<R, Agent<N, P, A>> for ExpectedSarsa
 where
-    R: Copy + AsRef<[u32]>,
+    R: Copy + ActiveFeatures,
     P: Policy,
     A: StepSize,
 {

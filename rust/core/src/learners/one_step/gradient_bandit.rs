@@ -2,6 +2,7 @@
 
 use crate::StopFlag;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
+use crate::features::ActiveFeatures;
 use crate::learners::{Agent, UpdateRule, single_row};
 use crate::memory::{AllocationError, filled};
 use crate::random::Rng;
@@ -43,7 +44,7 @@ impl GradientBandit {
     }
 }
 
-impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for GradientBandit {
+impl<R: Copy + ActiveFeatures> UpdateRule<R, Agent> for GradientBandit {
     #[inline]
     fn learn(
         &mut self,

@@ -1,5 +1,6 @@
 //! Q-learning: off-policy temporal-difference control (C. Watkins, 1989; Sutton & Barto, equation 6.8).
 
+use crate::features::ActiveFeatures;
 use crate::learners::{Agent, UpdateRule};
 use crate::numeric::maximum;
 use crate::policies::Policy;
@@ -13,7 +14,7 @@ pub struct QLearning;
 
 impl<const N: usize, R, P, A> UpdateRule<R, Agent<N, P, A>> for QLearning
 where
-    R: Copy + AsRef<[u32]>,
+    R: Copy + ActiveFeatures,
     P: Policy,
     A: StepSize,
 {

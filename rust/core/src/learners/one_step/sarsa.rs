@@ -1,5 +1,6 @@
 //! Sarsa: on-policy temporal-difference control (G. Rummery and M. Niranjan, 1994; Sutton & Barto, equation 6.7).
 
+use crate::features::ActiveFeatures;
 use crate::learners::{Agent, UpdateRule};
 use crate::policies::Policy;
 use crate::random::Rng;
@@ -12,7 +13,7 @@ pub struct Sarsa;
 
 impl<const N: usize, R, P, A> UpdateRule<R, Agent<N, P, A>> for Sarsa
 where
-    R: Copy + AsRef<[u32]>,
+    R: Copy + ActiveFeatures,
     P: Policy,
     A: StepSize,
 {

@@ -2,6 +2,7 @@
 
 use super::Critic;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
+use crate::features::{ActiveFeatures, assert_binary};
 use crate::learners::{Agent, UpdateRule};
 use crate::q_table::QTable;
 use crate::random::Rng;
@@ -29,7 +30,7 @@ impl ActorCritic {
 
 /// δ = R + γ v̂(S′, w) - v̂(S, w)
 #[inline]
-pub(super) fn td_error<R: Copy + AsRef<[u32]>>(
+pub(super) fn td_error<R: Copy + ActiveFeatures>(
     agent: &mut Agent,
     critic: &Critic,
     state: R,
@@ -47,7 +48,7 @@ pub(super) fn td_error<R: Copy + AsRef<[u32]>>(
     error
 }
 
-impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for ActorCritic {
+impl<R: Copy + ActiveFeatures> UpdateRule<R, Agent> for ActorCritic {
     const HAS_CRITIC: bool = true;
 
     #[inline]
@@ -60,6 +61,7 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for ActorCritic {
         next: Next<R>,
         rng: &mut impl Rng,
     ) -> usize {
+        assert_binary::<R>();
         let error = td_error(agent, &self.critic, state, reward, next);
         self.critic.update(state, error);
         agent.ascend(state, action, self.power * error);

@@ -4,6 +4,7 @@ use super::Critic;
 use super::actor_critic::td_error;
 use crate::StopFlag;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
+use crate::features::{ActiveFeatures, assert_binary};
 use crate::learners::{Agent, UpdateRule, VALUES_PER_WORK};
 use crate::memory::{AllocationError, RunMemory, filled, reserve};
 use crate::q_table::QTable;
@@ -83,7 +84,7 @@ impl ActorCriticLambda {
     }
 }
 
-impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for ActorCriticLambda {
+impl<R: Copy + ActiveFeatures> UpdateRule<R, Agent> for ActorCriticLambda {
     const HAS_CRITIC: bool = true;
 
     #[inline]
@@ -96,6 +97,7 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for ActorCriticLambda {
         next: Next<R>,
         rng: &mut impl Rng,
     ) -> usize {
+        assert_binary::<R>();
         let error = td_error(agent, &self.critic, state, reward, next);
         let num_actions = agent.table.num_actions();
         let decay = agent.discount * self.trace_decay;

@@ -1,5 +1,6 @@
 //! State values in addition to a policy: the baseline of REINFORCE, the critic of actor-critic methods.
 
+use crate::features::ActiveFeatures;
 use crate::q_table::QTable;
 
 /// v̂(S, w): the sum over the active rows. The table has a column for each action, like the policy's preferences, and
@@ -15,13 +16,13 @@ pub struct Critic {
 impl Critic {
     /// v̂(S, w).
     #[inline]
-    pub fn value(&self, rows: impl AsRef<[u32]>) -> f64 {
+    pub fn value(&self, rows: impl ActiveFeatures) -> f64 {
         self.table.value(&rows, 0)
     }
 
     /// w ← w + αʷ δ ∇v̂(S, w)
     #[inline]
-    pub fn update(&mut self, rows: impl AsRef<[u32]>, error: f64) {
+    pub fn update(&mut self, rows: impl ActiveFeatures, error: f64) {
         for &row in rows.as_ref() {
             self.add(row, self.step_size * error);
         }

@@ -1,19 +1,20 @@
 //! The gradient of an agent's policy with respect to its table, which then holds preferences.
 
+use crate::features::ActiveFeatures;
 use crate::learners::{Agent, masked_values};
 use crate::schedules::StepSize;
 
 impl Agent {
     /// The components of ∇ln π(A | S), one per action. They are the same for each active row.
     #[inline]
-    pub(in crate::learners) fn log_gradient(&mut self, rows: impl AsRef<[u32]>, action: usize) -> &[f64] {
+    pub(in crate::learners) fn log_gradient(&mut self, rows: impl ActiveFeatures, action: usize) -> &[f64] {
         let values = masked_values::<0>(&mut self.masks, rows.as_ref(), self.table.action_values(&rows));
         self.policy.log_gradient(values, action)
     }
 
     /// θ ← θ + α scale ∇ln π(A | S, θ)
     #[inline]
-    pub(in crate::learners) fn ascend(&mut self, rows: impl AsRef<[u32]>, action: usize, scale: f64) {
+    pub(in crate::learners) fn ascend(&mut self, rows: impl ActiveFeatures, action: usize, scale: f64) {
         self.table.check_finite(scale);
         let step = self.step_size() * scale;
         let values = masked_values::<0>(&mut self.masks, rows.as_ref(), self.table.action_values(&rows));

@@ -2,7 +2,7 @@
 
 use super::Critic;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
-use crate::features::{ActiveRows, persist_rows};
+use crate::features::{ActiveRows, assert_binary, persist_rows};
 use crate::learners::{Agent, StepInParts, UpdateRule};
 use crate::memory::{AllocationError, RunMemory, reserve};
 use crate::q_table::QTable;
@@ -85,6 +85,7 @@ impl<R: ActiveRows> UpdateRule<R, Agent> for Reinforce<R> {
         next: Next<R>,
         rng: &mut impl Rng,
     ) -> usize {
+        assert_binary::<R>();
         self.steps.push(PastStep { rows: state, action, reward });
         if !matches!(next, Next::NonTerminal(_)) {
             self.sum_rewards(agent.discount);

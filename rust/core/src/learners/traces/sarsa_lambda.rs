@@ -2,6 +2,7 @@
 
 use super::{TraceKind, Traces};
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
+use crate::features::{ActiveFeatures, assert_binary};
 use crate::learners::{Agent, UpdateRule, VALUES_PER_WORK};
 use crate::memory::{AllocationError, RunMemory};
 use crate::random::Rng;
@@ -22,7 +23,7 @@ pub struct SarsaLambda {
     pub trace_decay: f64,
 }
 
-impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for SarsaLambda {
+impl<R: Copy + ActiveFeatures> UpdateRule<R, Agent> for SarsaLambda {
     const HAS_VECTOR_PASSES: bool = true;
 
     #[inline(always)]
@@ -35,6 +36,7 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for SarsaLambda {
         next: Next<R>,
         rng: &mut impl Rng,
     ) -> usize {
+        assert_binary::<R>();
         agent.visit(state, action);
         self.traces.begin_step(&mut agent.table);
         let value = self.traces.visit(self.kind, &mut agent.table, state, action);

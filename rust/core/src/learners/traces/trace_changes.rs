@@ -3,6 +3,7 @@
 use std::hint::select_unpredictable;
 
 use super::Traces;
+use crate::features::ActiveFeatures;
 use crate::q_table::QTable;
 
 impl Traces {
@@ -12,7 +13,7 @@ impl Traces {
     pub fn update(
         &mut self,
         table: &mut QTable,
-        rows: impl AsRef<[u32]>,
+        rows: impl ActiveFeatures,
         action: usize,
         change: impl Fn(f64) -> f64,
     ) -> f64 {
@@ -47,7 +48,7 @@ impl Traces {
 
     /// Sets the traces of a state-action pair to 1. Returns Q(S, A).
     #[inline(always)]
-    pub(super) fn replace(&mut self, table: &mut QTable, rows: impl AsRef<[u32]>, action: usize) -> f64 {
+    pub(super) fn replace(&mut self, table: &mut QTable, rows: impl ActiveFeatures, action: usize) -> f64 {
         let weights = weight_indices(rows.as_ref(), table.num_actions(), action);
         self.smallest = self.smallest.min(1.0);
         self.grow(weights.len(), table.storage_mut());

@@ -8,6 +8,7 @@ use super::trace_changes::select;
 use super::trace_pass::BLOCK;
 use crate::StopFlag;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
+use crate::features::ActiveFeatures;
 use crate::learners::{Agent, masked_values};
 use crate::memory::{AllocationError, from_fn, reserve, with_capacity};
 use crate::policies::Policy;
@@ -163,7 +164,7 @@ impl Traces {
 
     /// Changes the traces for a visit to a state-action pair. Returns Q(S, A).
     #[inline(always)]
-    pub fn visit(&mut self, kind: TraceKind, table: &mut QTable, rows: impl AsRef<[u32]>, action: usize) -> f64 {
+    pub fn visit(&mut self, kind: TraceKind, table: &mut QTable, rows: impl ActiveFeatures, action: usize) -> f64 {
         if kind == TraceKind::Accumulating {
             return self.update(table, rows, action, |trace| trace + 1.0);
         }
@@ -180,7 +181,7 @@ impl Traces {
 
     /// The action values of a state, as [`QTable::action_values`].
     #[inline(always)]
-    pub fn action_values<'a>(&self, table: &'a mut QTable, rows: impl AsRef<[u32]>) -> &'a [f64] {
+    pub fn action_values<'a>(&self, table: &'a mut QTable, rows: impl ActiveFeatures) -> &'a [f64] {
         table.values_at(&self.slots, &rows)
     }
 
@@ -193,7 +194,7 @@ impl Traces {
     /// Samples A′ in the next state S′ and returns it with Q(S′, A′); `None` if S′ is terminal. If the episode is
     /// truncated, A′ is sampled for its value and never taken.
     #[inline(always)]
-    pub fn sample_next<R: AsRef<[u32]>>(
+    pub fn sample_next<R: ActiveFeatures>(
         &self,
         agent: &mut Agent,
         next: Next<R>,

@@ -2,6 +2,7 @@
 
 use super::Traces;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
+use crate::features::{ActiveFeatures, assert_binary};
 use crate::learners::{Agent, UpdateRule, VALUES_PER_WORK};
 use crate::memory::{AllocationError, RunMemory};
 use crate::random::Rng;
@@ -36,7 +37,7 @@ impl TrueOnlineSarsaLambda {
     }
 }
 
-impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for TrueOnlineSarsaLambda {
+impl<R: Copy + ActiveFeatures> UpdateRule<R, Agent> for TrueOnlineSarsaLambda {
     const HAS_VECTOR_PASSES: bool = true;
 
     #[inline(always)]
@@ -49,6 +50,7 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for TrueOnlineSarsaLambda {
         next: Next<R>,
         rng: &mut impl Rng,
     ) -> usize {
+        assert_binary::<R>();
         let (traces, rows) = (&mut self.traces, state.as_ref());
         traces.begin_step(&mut agent.table);
         let (next_action, next_value) = traces.sample_next(agent, next, rng).unwrap_or((0, 0.0));

@@ -2,6 +2,7 @@
 
 use super::{TraceKind, Traces};
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
+use crate::features::{ActiveFeatures, assert_binary};
 use crate::learners::{Agent, UpdateRule, VALUES_PER_WORK, masked_values};
 use crate::memory::{AllocationError, RunMemory};
 use crate::numeric::maximum;
@@ -24,7 +25,7 @@ pub struct WatkinsQLambda {
     pub trace_decay: f64,
 }
 
-impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for WatkinsQLambda {
+impl<R: Copy + ActiveFeatures> UpdateRule<R, Agent> for WatkinsQLambda {
     const HAS_VECTOR_PASSES: bool = true;
 
     #[inline(always)]
@@ -37,6 +38,7 @@ impl<R: Copy + AsRef<[u32]>> UpdateRule<R, Agent> for WatkinsQLambda {
         next: Next<R>,
         rng: &mut impl Rng,
     ) -> usize {
+        assert_binary::<R>();
         agent.visit(state, action);
         self.traces.begin_step(&mut agent.table);
         let value = self.traces.visit(self.kind, &mut agent.table, state, action);

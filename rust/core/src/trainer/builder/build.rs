@@ -5,11 +5,12 @@ use super::{AnyTrainer, InitialValues, TrainerBuilder};
 use crate::checkpoint::RunIdentity;
 use crate::envs::Env;
 use crate::errors::BuildError;
-use crate::features::Features;
+use crate::features::{ActiveFeatures, Features};
 use crate::learners::{Agent, AnyAlgorithm, AnyLearner};
 use crate::memory::{filled, from_fn};
 use crate::q_table::QTable;
 use crate::random::{AgentRng, Pcg64, Rng, SeedSequence};
+use crate::schedules::LearningRate;
 use crate::stop_flag::StopFlag;
 use crate::tasks::NativeTask;
 use crate::trainer::Trainer;
@@ -37,7 +38,7 @@ where
         let agent = Agent {
             table: self.table(shape, &mut rng)?,
             policy: self.policy.build(episodes, table_shape, false, &stop)?,
-            learning_rate: self.learning_rate.build(episodes, shape.rows * shape.actions, shape.n_active, &stop)?,
+            learning_rate: self.built_learning_rate(shape, &stop)?,
             discount: self.discount,
             terminal_update: self.terminal_update,
             masks: None,
@@ -62,6 +63,17 @@ where
         Ok(trainer)
     }
 
+    fn built_learning_rate(&self, shape: Shape, stop: &StopFlag<'_>) -> Result<LearningRate, BuildError> {
+        let episodes = self.episodes.unwrap_or(u64::MAX);
+        if F::Active::WEIGHTED {
+            let rate = self.learning_rate.build_weighted(episodes, self.features.step_size_divisors());
+            return rate.ok_or_else(|| {
+                BuildError::invalid("learning_rate", "a schedule with weighted features", "one by visits")
+            });
+        }
+        Ok(self.learning_rate.build(episodes, shape.rows * shape.actions, shape.n_active, stop)?)
+    }
+
     /// The shape of the tables, from the features, the environment and its first observation.
     fn shape(&self, mut rng: Pcg64) -> Result<Shape, BuildError> {
         let (rows, actions) = (self.features.len(), self.env.num_actions());
@@ -71,7 +83,7 @@ where
         BuildError::check(fits(rows), "the number of rows of the features", "from 1 to 2**32 - 1", rows)?;
         let observation = self.env.observe(&self.env.reset(&mut rng));
         match self.features.active_rows(&observation) {
-            Ok(active) => Ok(Shape { rows, actions, n_active: active.as_ref().len() }),
+            Ok(active) => Ok(Shape { rows, actions, n_active: active.as_ref().len(), weighted: F::Active::WEIGHTED }),
             Err(error) => Err(BuildError::invalid("features", "with a row for every observation", error)),
         }
     }

@@ -2,7 +2,7 @@
 
 use super::{InitialValues, TrainerBuilder};
 use crate::errors::BuildError;
-use crate::learners::{AnyAlgorithm, TraceOptions};
+use crate::learners::{AnyAlgorithm, FeatureKinds, TraceOptions};
 use crate::q_table::TerminalUpdate;
 use crate::settings::{LearningRateSpec, PolicySpec, ScheduleSpec, range_of};
 
@@ -12,6 +12,15 @@ pub(super) struct Shape {
     pub(super) rows: usize,
     pub(super) actions: usize,
     pub(super) n_active: usize,
+    /// Whether the features are weighted.
+    pub(super) weighted: bool,
+}
+
+impl Shape {
+    /// Whether each state has a row of its own, as on a grid.
+    fn has_cells(&self) -> bool {
+        self.n_active <= 1 && !self.weighted
+    }
 }
 
 impl<E, F> TrainerBuilder<E, F> {
@@ -19,13 +28,13 @@ impl<E, F> TrainerBuilder<E, F> {
     pub(super) fn check(&self, shape: Shape) -> Result<(), BuildError> {
         BuildError::check_number("discount", 0.0, 1.0, self.discount)?;
         BuildError::check(self.max_episode_steps != Some(0), "max_episode_steps", "at least 1", 0)?;
-        let fits = self.terminal_update == TerminalUpdate::Target || shape.n_active <= 1;
+        let fits = self.terminal_update == TerminalUpdate::Target || shape.has_cells();
         let got = format_args!("Assign with {} active rows", shape.n_active);
         BuildError::check(fits, "terminal_update", "Target with several active rows", got)?;
         self.check_initial_values(shape)?;
-        self.check_learning_rate(shape.n_active)?;
-        self.check_policy(shape.n_active)?;
-        self.check_algorithm(shape.n_active)
+        self.check_learning_rate(shape)?;
+        self.check_policy(shape)?;
+        self.check_algorithm(shape)
     }
 
     fn check_initial_values(&self, shape: Shape) -> Result<(), BuildError> {
@@ -52,11 +61,11 @@ impl<E, F> TrainerBuilder<E, F> {
         }
     }
 
-    fn check_learning_rate(&self, n_active: usize) -> Result<(), BuildError> {
-        let most = match n_active {
+    fn check_learning_rate(&self, shape: Shape) -> Result<(), BuildError> {
+        let most = match shape.has_cells() {
             _ if self.algorithm.learns_preferences() => f64::MAX,
-            1 => 1.0,
-            _ => 2.0,
+            true => 1.0,
+            false => 2.0,
         };
         match &self.learning_rate {
             LearningRateSpec::Schedule(schedule) => self.check_schedule("learning_rate", schedule, most),
@@ -93,7 +102,7 @@ impl<E, F> TrainerBuilder<E, F> {
         }
     }
 
-    fn check_policy(&self, n_active: usize) -> Result<(), BuildError> {
+    fn check_policy(&self, shape: Shape) -> Result<(), BuildError> {
         let is_softmax = matches!(self.policy, PolicySpec::Softmax { .. });
         let fits = is_softmax || !self.algorithm.learns_preferences();
         BuildError::check(fits, "policy", "Softmax for an algorithm that learns preferences", name(&self.policy))?;
@@ -104,7 +113,7 @@ impl<E, F> TrainerBuilder<E, F> {
                 BuildError::check(is_valid, "temperature", "a finite number above 0", temperature)
             }
             &PolicySpec::Ucb { confidence, .. } => {
-                BuildError::check(n_active <= 1, "policy", "one without counts for several active rows", "Ucb")?;
+                BuildError::check(shape.has_cells(), "policy", "one without counts for several active rows", "Ucb")?;
                 let fits = !self.algorithm.needs_probabilities();
                 BuildError::check(fits, "policy", "one with probabilities for this algorithm", "Ucb")?;
                 BuildError::check_number("confidence", 0.0, f64::MAX, confidence)
@@ -112,9 +121,17 @@ impl<E, F> TrainerBuilder<E, F> {
         }
     }
 
-    fn check_algorithm(&self, n_active: usize) -> Result<(), BuildError> {
-        let fits = n_active <= 1 || !self.algorithm.needs_single_rows();
-        let got = format_args!("{n_active} for {:?}", self.algorithm);
+    fn check_algorithm(&self, shape: Shape) -> Result<(), BuildError> {
+        let takes_weighted = self.algorithm.feature_kinds() == FeatureKinds::All;
+        let expected = "one that learns with weighted features";
+        BuildError::check(
+            takes_weighted || !shape.weighted,
+            "algorithm",
+            expected,
+            format_args!("{:?}", self.algorithm),
+        )?;
+        let fits = shape.n_active <= 1 || !self.algorithm.needs_single_rows();
+        let got = format_args!("{} for {:?}", shape.n_active, self.algorithm);
         let expected = "1 for an algorithm that needs single rows";
         BuildError::check(fits, "the number of active rows", expected, got)?;
         let check = |option, number| {

@@ -6,6 +6,8 @@ mod checks;
 mod saving_tests;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod weighted_tests;
 
 use super::Trainer;
 use crate::envs::Env;

@@ -1,0 +1,36 @@
+//! Observations scaled to the unit cube.
+
+use super::super::checked_tilings::check_bounds;
+use crate::errors::BuildError;
+use crate::features::OutOfBounds;
+
+/// The bounds of a box, which is scaled to [0, 1].
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct ScaledBox {
+    bounds: Vec<(f64, f64)>,
+}
+
+impl ScaledBox {
+    pub(super) fn try_new(low: &[f64], high: &[f64]) -> Result<Self, BuildError> {
+        let expected = format_args!("of the length of low, {}", low.len());
+        BuildError::check(high.len() == low.len(), "high", expected, high.len())?;
+        BuildError::check(!low.is_empty(), "low", "the bounds of at least one component", "none")?;
+        let bounds: Vec<_> = low.iter().copied().zip(high.iter().copied()).collect();
+        check_bounds(bounds.iter().copied())?;
+        Ok(Self { bounds })
+    }
+
+    pub(super) fn dimensions(&self) -> usize {
+        self.bounds.len()
+    }
+
+    /// (value - low) / (high - low), clipped to the bounds before.
+    #[inline]
+    pub(super) fn scale(&self, axis: usize, value: f64) -> Result<f64, OutOfBounds> {
+        if value.is_nan() {
+            return Err(OutOfBounds { axis, value });
+        }
+        let (low, high) = self.bounds[axis];
+        Ok((value.clamp(low, high) - low) / (high - low))
+    }
+}
