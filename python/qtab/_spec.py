@@ -56,6 +56,21 @@ class TilesSpec(TypedDict):
     """The rows that all tilings share; None gives each tile its own."""
 
 
+class FourierSpec(TypedDict):
+    """The Fourier basis, whose features multiply the rows."""
+
+    type: Literal["fourier"]
+    dtype: FloatType
+    low: Sequence[float]
+    """What is scaled to 0."""
+    high: Sequence[float]
+    """What is scaled to 1."""
+    order: int
+    coupled: bool
+    scale_step_sizes: bool
+    """Whether the learning rate of a feature is divided by the length of its frequency vector."""
+
+
 class IdentitySpec(TypedDict):
     """Integers, each combination a row in C order."""
 
@@ -88,7 +103,7 @@ class ProductSpec(TypedDict):
     factors: Sequence[FactorSpec]
 
 
-DiscretizerSpec: TypeAlias = RoundSpec | BinsSpec | TilesSpec | IdentitySpec | ProductSpec
+DiscretizerSpec: TypeAlias = RoundSpec | BinsSpec | TilesSpec | FourierSpec | IdentitySpec | ProductSpec
 
 
 # Environments

@@ -35,7 +35,7 @@ COUNTS: tuple[str, ...] = (
     "learning_rate_warm_up",
     "epsilon_warm_up",
 )
-COUNTS += ("tilings", "hashed_rows", "max_rows")
+COUNTS += ("tilings", "hashed_rows", "max_rows", "order")
 LISTS = ("shape", "scale", "tiles", "bins", "low", "high", "edges", "actions", "initial_q")
 NOT_REAL: list[Any] = ["x", b"1", NAN, -0.5, 1j, [0.5], {}, True, np.True_, HUGE, -HUGE]
 NOT_COUNTS: list[Any] = ["3", 1.5, -1, True, np.True_, [3], NAN, HUGE, np.array([3])]
@@ -54,7 +54,8 @@ def settings() -> Iterator[tuple[str, Any]]:
     for name in LISTS:
         yield from ((name, value) for value in NOT_LISTS)
     yield from (("seed", value) for value in ["3", 1.5, -1, True, np.True_, [3], NAN])
-    yield from (("baseline", value) for value in ["yes", 1, 0, 0.5, [True]])
+    for name in ("baseline", "coupled", "scale_step_sizes"):
+        yield from ((name, value) for value in ["yes", 1, 0, 0.5, [True]])
     yield from (("preset", value) for value in [3, b"solved", "slved", ["solved"]])
     yield from (("env_kwargs", value) for value in [3, "goal_velocity", [("a", 1)], {1: 2}])
     yield from [("actions", RAGGED), ("edges", [[2, 1]]), ("hashed_rows", -HUGE)]

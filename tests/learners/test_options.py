@@ -44,7 +44,7 @@ VALUES: dict[str, Any] = {
     "low": (-1.2, -0.07),
     "high": (0.6, 0.07),
     "shape": (19, 15),
-    "max_rows": 100,
+    **{"order": 3, "coupled": True, "scale_step_sizes": True, "max_rows": 100},
 }
 
 
@@ -55,7 +55,7 @@ def strangers() -> list[tuple[str, dict[str, Any]]]:
         "learning_rate_schedule": ["constant", "linear", "visits"],
         "exploration": ["epsilon_greedy", "softmax", "ucb"],
         "epsilon_schedule": ["constant", "linear"],
-        "discretizer": ["round", "bins", "edges", "tiles"],
+        "discretizer": ["round", "bins", "edges", "tiles", "fourier"],
     }
     return [
         (name, {option.choice: chosen})

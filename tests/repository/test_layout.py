@@ -20,6 +20,7 @@ CROWDED = {
     "docs/gallery/pictures": "one picture per block of code in the gallery",
     "docs/how_to": "one page per question; the path of a page is its address",
     "python/qtab": "one folder per subject; the path of a module is how it is imported",
+    "python/qtab/discretizers": "one discretizer per file; pickled runs name its module",
     "rust/core/src": "the modules of the crate, which users name in paths",
     "tests": "the folders of python/qtab, and those of what has no folder there",
 }

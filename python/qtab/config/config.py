@@ -64,8 +64,7 @@ class Config(WithOrigin):
     """The time limit of an episode, in steps. None uses the environment's own limit, or 10,000 if it has none."""
     time_aware: bool = False
     """Whether the number of steps taken in the episode is part of the state, as in Gymnasium's TimeAwareObservation:
-    the table has cells for each step before the time limit, and can learn the policy that is optimal under it. Only for
-    discretizers with cells."""
+    with cells for each step before the time limit, it can learn the policy that is optimal under it. It needs cells."""
     backend: Backend = "auto"
     """Where to step it: in Rust (rust), in Rust compiled by Numba (numba), in Python (gymnasium, python), or auto: in
     Rust where it can be, also a class that Numba compiles, for 200,000 steps or more in an environment made by qtab."""
@@ -119,8 +118,7 @@ class Config(WithOrigin):
     time_weight: float | None = None
     """κ: Dyna-Q+ plans with a bonus of κ √τ on the reward of an action not tried for τ steps."""
     model: ModelKind | None = None
-    """The model of Dyna-Q: the last outcome of each state and action (deterministic), or a sample of all its outcomes
-    so far (stochastic)."""
+    """The model of Dyna-Q: the last outcome of a state and action (deterministic), or a sample of all (stochastic)."""
     priority_threshold: float | None = None
     """θ: prioritized sweeping plans only updates that would change a value by more than this, before α."""
     reward_learning_rate: float | None = None
@@ -128,14 +126,12 @@ class Config(WithOrigin):
     baseline: bool | None = None
     """Whether the gradient bandit algorithm compares rewards with their average in the state, or with 0."""
     value_learning_rate: float | None = None
-    """α of the state values that are learned besides a policy: the baseline of REINFORCE, the critic of
-    actor-critic."""
+    """α of the state values learned besides a policy: the baseline of REINFORCE, the critic of actor-critic."""
     initial_q: float | tuple[float, float] | NDArray[np.float64] = (-1.0, 1.0)
     """The initial Q table, or preferences: drawn uniformly from a range (low, high), one number everywhere, or an array
     to continue from. In an array, -inf marks an action that a state does not have; it is never chosen."""
     terminal_update: TerminalUpdate = "target"
-    """The update at a terminal state: move the value towards the reward (target, as in the textbook), or set it to the
-    reward (assign, as in the well-known article)."""
+    """The update at a terminal state: towards the reward (target, the textbook), or to it (assign, the article)."""
     on_truncation: OnTruncation = "bootstrap"
     """The update at the time limit: bootstrap from the next state (correct), or terminate, as if the next state were
     terminal (a common mistake). With time_aware, where the limit is part of the task, terminate is correct, and the
@@ -176,9 +172,9 @@ class Config(WithOrigin):
 
     discretizer: DiscretizerName | Callable[[Any], Any] | Mapping[str, Any] = "round"
     """How observations index the Q table: rounded to a grid (round), by bins of equal width (bins) or between given
-    edges (edges), by tile coding (tiles), or directly (identity), the default for discrete spaces. Or a function from
-    an observation to its indices within shape; or a mapping from the keys of a Dict or Tuple space to a discretizer
-    each, as a name or with its options: {"position": {"discretizer": "bins", "bins": 20}}."""
+    edges (edges), by tile coding (tiles), directly (identity), the default for discrete spaces, or by Fourier features
+    (fourier), which multiply all rows. Or a function from an observation to its indices within shape; or a mapping from
+    the keys of a Dict or Tuple space to names or options: {"position": {"discretizer": "bins", "bins": 20}}."""
     shape: tuple[int, ...] | None = None
     """The shape of the table without its actions, for a function that returns indices within it."""
     max_rows: int | None = None
@@ -191,17 +187,22 @@ class Config(WithOrigin):
     tiles: tuple[int, ...] | None = None
     """The number of tiles along each component of the observation, or one number for all."""
     hashed_rows: int | None = None
-    """The number of rows that all tiles share by hashing, for tilings too large for memory. None gives each tile its
-    own row."""
+    """The number of rows that all tiles share by hashing, to save memory. None gives each tile its own row."""
     bins: tuple[int, ...] | None = None
     """The number of bins along each component of the observation, or one number for all."""
     edges: tuple[tuple[float, ...], ...] | None = None
     """The inner edges between the bins of each component of the observation, ascending, as np.digitize takes them."""
+    order: int | None = None
+    """The order n of a Fourier basis: its frequencies are integers from 0 to n."""
+    coupled: bool | None = None
+    """Whether it has all (n + 1)^d combinations of frequencies of d components, or only the d n + 1 single ones."""
+    scale_step_sizes: bool | None = None
+    """Whether the learning rate of a Fourier feature is divided by the length of its frequency vector, if not 0."""
     low: tuple[float, ...] | None = None
-    """The lower limits of the bins or tilings, one for each component of the observation. None uses the limits of the
-    observation space. Values outside the limits fall into the outermost bin or tile."""
+    """The lower limits of bins, tilings or a Fourier basis, one for each component of the observation. None uses those
+    of the observation space. Values outside the limits are clipped: they fall into the outermost bin or tile."""
     high: tuple[float, ...] | None = None
-    """The upper limits of the bins or tilings, like low."""
+    """The upper limits of the bins, the tilings or the Fourier basis, like low."""
     actions: int | tuple[float | tuple[float, ...], ...] | None = None
     """The actions to choose from if the action space is a Box: the number of evenly spaced values along each component,
     from low to high, or the actions themselves."""

@@ -16,6 +16,7 @@ from qtab.config.value_checks import Check
 MAX_TILINGS = 32
 MAX_TILES = 2**32 - 1
 MAX_BINS = 1_000_000
+MAX_ORDER = 1023
 MAX_ROWS = 2**32 - 2
 
 
@@ -96,6 +97,18 @@ ONE_STEP = (
 table."""
 TABLES_ONLY = ("dyna_q", "dyna_q_plus", *MONTE_CARLO, "prioritized_sweeping", "gradient_bandit")
 """The algorithms that do not work with tile coding."""
+WEIGHTED = ("fourier",)
+"""The discretizers with weighted features: each row of the table has a number for an observation."""
+LEARNS_WEIGHTED = (
+    "q_learning",
+    "sarsa",
+    "expected_sarsa",
+    "double_q_learning",
+    "n_step_sarsa",
+    *_WITH_TARGET_POLICY,
+    *AVERAGE_REWARD,
+)
+"""The algorithms that learn with weighted features."""
 NO_MASKED_TILES = (*PREFERENCES, *_WITH_TARGET_POLICY)
 """The algorithms that do not work with action masks and tile coding together.
 
@@ -235,8 +248,11 @@ SETTINGS: Mapping[str, Setting] = {
     ),
     "bins": Option(check.counts(1, MAX_BINS), "discretizer", ("bins",), (10,), other_names="n_bins num_bins buckets"),
     "edges": Option(check.edges, "discretizer", ("edges",), None),
-    "low": Option(check.each, "discretizer", ("bins", "tiles"), None),
-    "high": Option(check.each, "discretizer", ("bins", "tiles"), None),
+    "order": Option(check.integer(1, MAX_ORDER), "discretizer", ("fourier",), 3, added=True),
+    "coupled": Option(checks.boolean, "discretizer", ("fourier",), True, added=True),
+    "scale_step_sizes": Option(checks.boolean, "discretizer", ("fourier",), True, added=True),
+    "low": Option(check.each, "discretizer", ("bins", "tiles", "fourier"), None),
+    "high": Option(check.each, "discretizer", ("bins", "tiles", "fourier"), None),
     "actions": Setting(check.actions, other_names="n_actions num_actions", may_be_none=True),
 }
 """Every setting except ``discretizer``, whose check also needs its options; see ``keyed_discretizers.py``."""

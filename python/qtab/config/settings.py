@@ -96,6 +96,9 @@ class SharedSettings(EnvironmentSettings, total=False):
     hashed_rows: Integer | None
     bins: Integer | Integers | None
     edges: Sequence[Reals] | None
+    order: Integer | None
+    coupled: bool | None
+    scale_step_sizes: bool | None
     low: Reals | None
     high: Reals | None
     actions: Integer | Sequence[Real | Reals] | Array | None

@@ -10,6 +10,7 @@ from qtab._utils.shown import did_you_mean, shown
 from qtab.config.choices import CHOICES, FUNCTION, MAPPING
 from qtab.config.options import (
     FIXED,
+    LEARNS_WEIGHTED,
     NO_MASKED_TILES,
     OFF_BY_NONE,
     ONE_STEP,
@@ -17,6 +18,7 @@ from qtab.config.options import (
     PREFERENCES,
     SETTINGS,
     TABLES_ONLY,
+    WEIGHTED,
     WITH_PROBABILITIES,
     fixed_settings,
     is_set,
@@ -26,7 +28,7 @@ from qtab.config.value_checks import not_negative
 
 _CHECKED = (
     *("terminal_update", "learning_rate_schedule", "discount", "algorithm", "exploration", "action_mask"),
-    *("time_aware", "on_truncation"),
+    *("time_aware", "on_truncation", "count_bonus"),
 )
 """The settings, other than options, some of whose values exclude each other."""
 
@@ -48,10 +50,13 @@ def mismatch(name: str, value: Any, fields: Mapping[str, Any]) -> str | None:
             return f"terminal_update must be 'target' for algorithm {algorithm!r}, got 'assign'"
         if with_tiles:
             return "terminal_update must be 'target' for discretizer 'tiles', got 'assign'"
+    if uses_weighted(fields["discretizer"]) and (reason := _mismatch_with_weighted(name, value, fields["discretizer"])):
+        return reason
     by_episode = ("true_online_sarsa_lambda", *PREFERENCES)
     if (name, value) == ("learning_rate_schedule", "visits") and algorithm in by_episode:
         return other_choice(name, value, ("visits",), f"for algorithm {algorithm!r}")
-    if name == "learning_rate_schedule" and value != "visits" and algorithm == "off_policy_monte_carlo":
+    only_visits = algorithm == "off_policy_monte_carlo" and not uses_weighted(fields["discretizer"])
+    if name == "learning_rate_schedule" and value != "visits" and only_visits:
         return f"{name} must be 'visits' for algorithm {algorithm!r}, got {shown(value)}"
     if name in fixed_settings(algorithm) and value != (only := FIXED[algorithm].values[name]):
         wanted = f"{only:g}" if isinstance(only, float) else repr(only)
@@ -78,6 +83,24 @@ def mismatch(name: str, value: Any, fields: Mapping[str, Any]) -> str | None:
         return other_choice(name, value, ("ucb",), "for discretizer 'tiles'")
     if (name, value) == ("exploration", "ucb") and algorithm in WITH_PROBABILITIES:
         return other_choice(name, value, ("ucb",), f"for algorithm {algorithm!r}")
+    return None
+
+
+def _mismatch_with_weighted(name: str, value: Any, discretizer: str) -> str | None:
+    """Returns why a value of a setting has no meaning, or is not supported, with weighted features."""
+    where = f"for discretizer {discretizer!r}"
+    if (name, value) == ("terminal_update", "assign"):
+        return f"terminal_update must be 'target' {where}, got 'assign'"
+    if (name, value) in (("learning_rate_schedule", "visits"), ("exploration", "ucb")):
+        return other_choice(name, value, (value,), f"{where}, whose features are active in every state")
+    if name == "algorithm" and value not in LEARNS_WEIGHTED:
+        return f"algorithm must be {listed(LEARNS_WEIGHTED)} {where}, got {shown(value)}"
+    if name == "action_mask" and value is not False:
+        return f"action_mask must be False {where}, got {shown(value)}"
+    if name == "count_bonus" and value != 0:
+        return f"count_bonus must be 0 {where}, whose states cannot be counted, got {shown(value)}"
+    if name == "time_aware" and value:
+        return f"time_aware must be False {where}, got True; gymnasium.wrappers.TimeAwareObservation adds the time"
     return None
 
 
@@ -143,8 +166,15 @@ def uses_tiles(discretizer: Any) -> bool:
     return bool(discretizer == "tiles")
 
 
+def uses_weighted(discretizer: Any) -> bool:
+    """Whether the features of a discretizer are weighted."""
+    return isinstance(discretizer, str) and discretizer in WEIGHTED
+
+
 _OPTIONS = [
-    name for name, option in OPTIONS.items() if option.choice == "discretizer" and name not in ("shape", "max_rows")
+    name
+    for name, option in OPTIONS.items()
+    if option.choice == "discretizer" and name not in ("shape", "max_rows") and not set(option.values) <= {*WEIGHTED}
 ]
 """The options that the discretizer of a key can have."""
 
@@ -196,6 +226,9 @@ def _of_key(name: str, given: Any) -> dict[str, Any]:
             f"{name} must be a name, or a mapping of 'discretizer' to a name and of options, got {shown(given)}"
         )
     chosen = checks.choice(name, options["discretizer"], CHOICES["discretizer"])
+    if chosen in WEIGHTED:
+        others = [word for word in CHOICES["discretizer"] if word not in WEIGHTED]
+        raise ValueError(f"{name} must be {listed(others)}, because {chosen!r} has no rows for a key, got {chosen!r}")
     complete: dict[str, Any] = {"discretizer": chosen}
     for option, value in options.items():
         if option == "discretizer" or not is_set(value):
@@ -246,7 +279,10 @@ def validated(fields: Mapping[str, Any], standard: Mapping[str, Any]) -> dict[st
     missing = isinstance(checked["initial_q"], np.ndarray) and np.isneginf(checked["initial_q"]).any()
     if missing and uses_tiles(checked["discretizer"]):
         raise ValueError(other_choice("discretizer", "tiles", ("tiles",), "for an initial_q that contains -inf"))
-    most_rate = 2 if uses_tiles(checked["discretizer"]) else 1
+    if missing and uses_weighted(checked["discretizer"]):
+        raise ValueError(other_choice("discretizer", checked["discretizer"], WEIGHTED, "for an initial_q with -inf"))
+    without_cells = uses_tiles(checked["discretizer"]) or uses_weighted(checked["discretizer"])
+    most_rate = 2 if without_cells else 1
     if checked["algorithm"] in PREFERENCES:
         not_negative("learning_rate", checked["learning_rate"])
     else:

@@ -13,6 +13,7 @@ from qtab.diagnosis.checks import CHECKS, Check
 from qtab.diagnosis.diagnosis import Diagnosis
 from qtab.diagnosis.facts import Facts
 from qtab.diagnosis.finding import Finding, Unchecked
+from qtab.discretizers.base import check_binary
 from qtab.planning.optimum import Optimum
 from qtab.results.run import Run
 from qtab.training.setup.run_env import check_same
@@ -40,10 +41,11 @@ def diagnose(
     Raises:
         MemoryError: if the runs of so many ``seeds`` would take more than half of the machine's memory.
         TypeError: for an argument of the wrong type.
-        ValueError: for a run without a finished episode, or the optimum of another environment, or if ``env`` differs
-            from the environment of the run.
+        ValueError: for a run without a finished episode or with weighted features, such as those of a Fourier basis, or
+            the optimum of another environment, or if ``env`` differs from the environment of the run.
     """
     checks.instance("run", run, Run)
+    check_binary("run", run.discretizer, "be diagnosed")
     if optimum is not None:
         checks.instance("optimum", optimum, Optimum)
         optimum.check_same_env(run)

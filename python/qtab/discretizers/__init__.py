@@ -34,6 +34,7 @@ _CLASSES = {
     "Bins": "bins:Bins",
     "Composite": "composite:Composite",
     "Edges": "edges:Edges",
+    "FourierBasis": "weighted.fourier:FourierBasis",
     "Function": "function:Function",
     "Identity": "identity:Identity",
     "Rounding": "rounding:Rounding",

@@ -40,6 +40,8 @@ class Discretizer(ABC):
     if it does more than that."""
     has_cells: ClassVar[bool] = True
     """Whether exactly one row, the cell of an observation, is active, so that the table has an axis per component."""
+    is_weighted: ClassVar[bool] = False
+    """Whether every row is active and has a number for an observation, by which a learner multiplies it."""
     is_time_aware: ClassVar[bool] = False
     """Whether the first axis is the number of steps taken in the episode."""
     has_component_axes: ClassVar[bool] = True
@@ -165,6 +167,10 @@ class Discretizer(ABC):
         """
         return self._compiled.active_rows(observation)
 
+    def active_features(self, observation: Any) -> NDArray[Any]:
+        """Returns what a learner reads of one or n observations: the active rows, or values of weighted features."""
+        return self.active_rows(observation)
+
     def split(self, observation: Any, count: int | None) -> list[Any]:
         """Splits a batch for :meth:`active_rows` into a list of ``count`` observations; None means a single one."""
         return [observation] if count is None else list(observation)
@@ -196,6 +202,23 @@ class Discretizer(ABC):
     def __getstate__(self) -> dict[str, Any]:
         """Returns only the fields: the extension's object is rebuilt."""
         return {field.name: getattr(self, field.name) for field in fields(self)}
+
+
+def check_binary(name: str, discretizer: Discretizer, purpose: str) -> None:
+    """Raises an error for weighted features, for a function that reads the rows of observations.
+
+    Args:
+        name: The argument that has the discretizer, for the message.
+        discretizer: The discretizer.
+        purpose: What the function does, such as "be explained".
+
+    Raises:
+        ValueError: if the features are weighted.
+    """
+    if discretizer.is_weighted:
+        raise ValueError(
+            f"{name} must have rows for its observations to {purpose}, got weighted features: {discretizer!r}"
+        )
 
 
 def check_table_size(name: str, given: Any, values: float, instead: str = "") -> None:

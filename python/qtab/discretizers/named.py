@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from qtab.config import Config
 from qtab.config.choices import FUNCTION, MAPPING, DiscretizerName
-from qtab.config.validation import kind
+from qtab.config.validation import kind, uses_weighted
 from qtab.discretizers.base import Discretizer
 from qtab.discretizers.identity import integer_bounds
 from qtab.envs.actions import FLOATS
@@ -19,6 +19,7 @@ DISCRETIZERS: Mapping[DiscretizerName, str] = {
     "bins": "bins:Bins",
     "edges": "edges:Edges",
     "tiles": "tile_coding:TileCoding",
+    "fourier": "weighted.fourier:FourierBasis",
     "identity": "identity:Identity",
 }
 """The module and the class for each value of the setting ``discretizer``, for spaces that the extension reads
@@ -66,4 +67,4 @@ def _class_of(config: Config, *, plain: bool) -> type[Discretizer]:
         return class_at("assigned_rows:AssignedRows")
     if chosen in _OTHERS:
         return class_at(_OTHERS[chosen])
-    return class_at(DISCRETIZERS[chosen] if plain else _COMPOSITE)
+    return class_at(DISCRETIZERS[chosen] if plain or uses_weighted(chosen) else _COMPOSITE)

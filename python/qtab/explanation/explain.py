@@ -14,6 +14,7 @@ from qtab._utils import checks
 from qtab._utils.progress import ProgressBar
 from qtab.config import Config
 from qtab.config.options import AVERAGE_REWARD, MONTE_CARLO
+from qtab.discretizers.base import check_binary
 from qtab.explanation.explanation import Explanation
 from qtab.explanation.fast_forward import Start, start_of
 from qtab.explanation.records import ExplainedStep, Trace, Update
@@ -69,10 +70,11 @@ def explain(
     Raises:
         RuntimeError: if the reference does not repeat the run's episodes, so that nothing can be explained.
         TypeError: for an argument of the wrong type.
-        ValueError: for an argument out of range. If a run was resumed with more episodes while a rate fell, only the
-            episodes before can be explained.
+        ValueError: for an argument out of range, or a run with weighted features, such as those of a Fourier basis. If
+            a run was resumed with more episodes while a rate fell, only the episodes before can be explained.
     """
     checks.instance("run", run, Run)
+    check_binary("run", run.discretizer, "be explained")
     finished = len(run.episode_returns)
     if finished == 0:
         raise ValueError("run must have a finished episode, got one that was stopped during its first")

@@ -8,6 +8,7 @@ import gymnasium as gym
 from gymnasium.envs.registration import EnvSpec
 
 from qtab._utils.shown import shown
+from qtab.discretizers.base import check_binary
 from qtab.discretizers.box import BoxDiscretizer
 from qtab.planning.classic_control import GridSolver
 from qtab.planning.optimum import Optimum
@@ -38,6 +39,7 @@ def resolve_prediction(
             raise TypeError(f"env must make an environment, got {shown(made)}")
     resolved = resolve(made, {**settings.config(), **brought, **given, "seed": seed}, owns_env=made is not env)
     cells = resolved.discretizer
+    check_binary("discretizer", cells, "estimate values")
     if cells.reads_space or not (cells.has_cells or isinstance(cells, BoxDiscretizer)):
         raise ValueError(f"env must have discrete observations or a Box with one axis of floats, got {cells!r}")
     if isinstance(made, gym.Env) or not callable(policy) or isinstance(cells, BoxDiscretizer):

@@ -30,6 +30,17 @@ def summed(parts: Iterable[NDArray[np.float64]]) -> NDArray[np.float64]:
     return total
 
 
+def weighted_sum(x: NDArray[np.float64], weights: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Returns (..., actions): the sums of the products of (..., n) features and (n, actions) weights.
+
+    Four partial sums are added in pairs, as the learners do.
+    """
+    parts = np.zeros((4, *x.shape[:-1], weights.shape[-1]))
+    for index, row in enumerate(weights):
+        parts[index % 4] += x[..., index, np.newaxis] * row
+    return np.asarray((parts[0] + parts[1]) + (parts[2] + parts[3]))
+
+
 def read_by_policy(config: Config, tables: NDArray[np.float64]) -> NDArray[np.float64]:
     """Returns the tables, (k, ...), whose sum the greedy policy uses; preferences without the state values."""
     return tables[:1] if config.algorithm in WITH_STATE_VALUES else tables
@@ -110,12 +121,15 @@ def to_choose_from(run: "Run", observation: Any, action_masks: Any, steps: Any =
     return values
 
 
-def _of_rows(run: "Run", rows: NDArray[np.int64]) -> NDArray[np.float64]:
+def _of_rows(run: "Run", rows: NDArray[Any]) -> NDArray[np.float64]:
+    tables = read_by_policy(run.config, run.tables)
+    if run.discretizer.is_weighted:
+        return summed(weighted_sum(rows, table) for table in tables)
     active = np.moveaxis(rows, -1, 0)
-    return summed(summed(table[row] for row in active) for table in read_by_policy(run.config, run.tables))
+    return summed(summed(table[row] for row in active) for table in tables)
 
 
-def _available(run: "Run", observation: Any, rows: NDArray[np.int64]) -> NDArray[np.bool_] | None:
+def _available(run: "Run", observation: Any, rows: NDArray[Any]) -> NDArray[np.bool_] | None:
     """Returns (..., actions): the masks of observations, from the function or as last seen in their cells."""
     setting = run.config.action_mask
     if callable(setting):
@@ -125,7 +139,8 @@ def _available(run: "Run", observation: Any, rows: NDArray[np.int64]) -> NDArray
     if run.action_masks is None:
         return None
     known: NDArray[np.bool_] = run.action_masks.reshape(-1, len(run.actions))
-    return known[rows[..., 0]]
+    masks_of: NDArray[np.bool_] = known[rows[..., 0]]
+    return masks_of
 
 
 def mask_of_step(config: Config, env: gym.Env, observation: Any, info: Mapping[str, Any]) -> NDArray[np.bool_] | None:

@@ -82,12 +82,15 @@ def over_all_steps(run: Any) -> Any:
 
 
 def rows_of(run: "Run", observation: Any, steps: Any) -> Any:
-    """Returns the active rows of one or n observations; with ``time_aware``, after ``steps`` steps."""
+    """Returns the active rows of one or n observations; with ``time_aware``, after ``steps`` steps.
+
+    With weighted features, it returns their values.
+    """
     discretizer: Any = run.discretizer
     return (
         discretizer.rows_after(steps, observation)
         if discretizer.is_time_aware
-        else discretizer.active_rows(observation)
+        else discretizer.active_features(observation)
     )
 
 

@@ -128,6 +128,11 @@ def train(
 def train_resolved(resolved: ResolvedRun, options: TrainingOptions | None = None, earlier: Run | None = None) -> Run:
     """Trains a run that is already resolved, or continues an earlier one; see :func:`train` and :func:`qtab.resume`."""
     options = TrainingOptions() if options is None else options
+    if options.visits and resolved.discretizer.is_weighted:
+        raise ValueError(
+            f"visits must be False for discretizer {resolved.config.discretizer!r}, whose states cannot be counted, "
+            f"got {options.visits!r}"
+        )
     total, record = resolved.config.episodes, int(options.record)
     done, seconds, taken = 0, 0.0, None
     if earlier is None:

@@ -4,7 +4,7 @@ use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArray, PyUntypedArray
 use pyo3::exceptions::PyValueError;
 use pyo3::intern;
 use pyo3::prelude::*;
-use qtab_core::features::{Features, MAX_TILINGS, OutOfBounds};
+use qtab_core::features::{ActiveFeatures, Features, MAX_FEATURES, MAX_TILINGS, OutOfBounds};
 use qtab_core::memory::with_capacity;
 use qtab_core::numeric::Float;
 
@@ -19,6 +19,8 @@ pub(crate) struct PyDiscretizer {
     /// The number of components of an observation; None for a single integer.
     dimensions: Option<usize>,
     n_active: usize,
+    /// Whether the features are weighted.
+    weighted: bool,
 }
 
 enum AnyFeatures {
@@ -32,10 +34,10 @@ impl PyDiscretizer {
     #[new]
     fn new(spec: &Bound<'_, PyAny>) -> PyResult<Self> {
         let spec = DiscretizerSpec::parse(&Fields::new(spec)?)?;
-        let n_active = spec.n_active();
+        let (n_active, weighted) = (spec.n_active(), spec.weighted().is_some());
         if let DiscretizerSpec::Identity(reader) = spec {
             let dimensions = (!reader.is_scalar()).then(|| reader.dimensions());
-            return Ok(Self { features: AnyFeatures::Discrete(reader), dimensions, n_active });
+            return Ok(Self { features: AnyFeatures::Discrete(reader), dimensions, n_active, weighted });
         }
         let (dtype, dimensions) = spec.box_space()?;
         let features = match dtype {
@@ -45,7 +47,7 @@ impl PyDiscretizer {
                 spec => AnyFeatures::F64(dyn_features(&spec, |bound| bound)?),
             },
         };
-        Ok(Self { features, dimensions: Some(dimensions), n_active })
+        Ok(Self { features, dimensions: Some(dimensions), n_active, weighted })
     }
 
     /// The number of rows of the table.
@@ -72,19 +74,55 @@ impl PyDiscretizer {
         let array = array.cast_into::<PyUntypedArray>()?;
         let batch = self.batch_size(&array)?;
         let rows = match &self.features {
-            AnyFeatures::F32(features) => self.rows_of_floats(&**features, &array, batch)?,
-            AnyFeatures::F64(features) => self.rows_of_floats(&**features, &array, batch)?,
+            AnyFeatures::F32(features) => {
+                self.of_floats(&array, batch, |one: &[f32], rows| features.append_active_rows(one, rows))?
+            }
+            AnyFeatures::F64(features) => {
+                self.of_floats(&array, batch, |one: &[f64], rows| features.append_active_rows(one, rows))?
+            }
             AnyFeatures::Discrete(reader) => self.rows_of_integers(reader, &array, batch)?,
         };
-        let rows = PyArray1::from_vec(py, rows);
-        match batch {
-            Some(count) => rows.reshape([count, self.n_active].as_slice()),
-            None => rows.reshape([self.n_active].as_slice()),
+        self.in_shape(py, rows, batch)
+    }
+
+    /// The values of weighted features: shape `(n_rows,)` for one observation, `(n, n_rows)` for a batch of `n`
+    /// observations.
+    fn feature_values<'py>(&self, observations: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        if !self.weighted {
+            return Err(PyValueError::new_err("feature_values needs weighted features, such as those of 'fourier'"));
         }
+        let py = observations.py();
+        let array = py.import(intern!(py, "numpy"))?.call_method1(intern!(py, "asarray"), (observations,))?;
+        let array = array.cast_into::<PyUntypedArray>()?;
+        let batch = self.batch_size(&array)?;
+        let values = match &self.features {
+            AnyFeatures::F32(features) => {
+                self.of_floats(&array, batch, |one: &[f32], values| features.append_values(one, values))?
+            }
+            AnyFeatures::F64(features) => {
+                self.of_floats(&array, batch, |one: &[f64], values| features.append_values(one, values))?
+            }
+            AnyFeatures::Discrete(_) => Vec::new(),
+        };
+        self.in_shape(py, values, batch)
     }
 }
 
 impl PyDiscretizer {
+    /// The numbers of one observation, or of a batch, as an array.
+    fn in_shape<'py, N: numpy::Element>(
+        &self,
+        py: Python<'py>,
+        numbers: Vec<N>,
+        batch: Option<usize>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<N>>> {
+        let numbers = PyArray1::from_vec(py, numbers);
+        match batch {
+            Some(count) => numbers.reshape([count, self.n_active].as_slice()),
+            None => numbers.reshape([self.n_active].as_slice()),
+        }
+    }
+
     /// The number of observations in an array; None for a single observation that is not in a batch.
     fn batch_size(&self, array: &Bound<'_, PyUntypedArray>) -> PyResult<Option<usize>> {
         let (shape, components) = (array.shape(), self.dimensions.as_slice());
@@ -104,14 +142,13 @@ impl PyDiscretizer {
         }))
     }
 
-    fn rows_of_floats<T: FromNumber>(
+    fn of_floats<T: FromNumber, N>(
         &self,
-        features: &dyn DynFeatures<T>,
         array: &Bound<'_, PyUntypedArray>,
         batch: Option<usize>,
-    ) -> PyResult<Vec<i64>> {
-        let values = floats::<T>(array)?;
-        self.rows(&values, batch, |observation, rows| features.append_active_rows(observation, rows))
+        append: impl Fn(&[T], &mut Vec<N>) -> Result<(), OutOfBounds>,
+    ) -> PyResult<Vec<N>> {
+        self.of_each(&floats::<T>(array)?, batch, append)
     }
 
     fn rows_of_integers(
@@ -121,19 +158,19 @@ impl PyDiscretizer {
         batch: Option<usize>,
     ) -> PyResult<Vec<i64>> {
         let values = integers(array)?;
-        self.rows(&values, batch, |observation, rows| {
+        self.of_each(&values, batch, |observation, rows| {
             rows.push(reader.row(observation)?.into());
             Ok(())
         })
     }
 
-    /// The active rows of all observations, one observation after another.
-    fn rows<T>(
+    /// The active rows, or their features, of all observations, one observation after another.
+    fn of_each<T, N>(
         &self,
         values: &[T],
         batch: Option<usize>,
-        append: impl Fn(&[T], &mut Vec<i64>) -> Result<(), OutOfBounds>,
-    ) -> PyResult<Vec<i64>> {
+        append: impl Fn(&[T], &mut Vec<N>) -> Result<(), OutOfBounds>,
+    ) -> PyResult<Vec<N>> {
         let dimensions = self.dimensions.unwrap_or(1);
         let count = batch.unwrap_or(1);
         let mut rows = with_capacity(count.saturating_mul(self.n_active)).map_err(allocation)?;
@@ -154,6 +191,8 @@ trait DynFeatures<T>: Send + Sync {
     fn n_rows(&self) -> usize;
 
     fn append_active_rows(&self, observation: &[T], rows: &mut Vec<i64>) -> Result<(), OutOfBounds>;
+
+    fn append_values(&self, observation: &[T], values: &mut Vec<f64>) -> Result<(), OutOfBounds>;
 }
 
 impl<T, F: Features<[T]> + Send + Sync> DynFeatures<T> for F {
@@ -165,6 +204,11 @@ impl<T, F: Features<[T]> + Send + Sync> DynFeatures<T> for F {
         rows.extend(self.active_rows(observation)?.as_ref().iter().map(|&row| i64::from(row)));
         Ok(())
     }
+
+    fn append_values(&self, observation: &[T], values: &mut Vec<f64>) -> Result<(), OutOfBounds> {
+        values.extend_from_slice(self.active_rows(observation)?.values());
+        Ok(())
+    }
 }
 
 fn dyn_features<T: Float + 'static>(
@@ -173,6 +217,9 @@ fn dyn_features<T: Float + 'static>(
 ) -> PyResult<Box<dyn DynFeatures<T>>> {
     if let DiscretizerSpec::Tiles(tiles) = spec {
         return Ok(Box::new(tiles.tile_coding::<T, MAX_TILINGS>()));
+    }
+    if let DiscretizerSpec::Fourier(fourier) = spec {
+        return Ok(Box::new(fourier.basis::<T, MAX_FEATURES>()?));
     }
     Ok(Box::new(spec.grid(to_dtype)?))
 }

@@ -101,7 +101,7 @@ def plane(subject: Subject, at: Mapping[str, float] | None, sampled: bool = Fals
     if as_cells:
         rows = _cell_rows(subject, known, chosen, fixed)
     else:
-        rows = discretizer.active_rows(observations)
+        rows = discretizer.active_features(observations)
     note = ", ".join(f"{one.name} = {fixed[one.name]:.4g}" for one in known if one.name in fixed)
 
     def locate(observed: NDArray[Any]) -> NDArray[np.float64]:

@@ -44,8 +44,9 @@ class Raster:
     """(nx + 1,): the edges of the columns."""
     y_edges: NDArray[np.float64]
     """(ny + 1,): the edges of the rows."""
-    rows: NDArray[np.int64]
-    """(ny, nx, n_active): the active rows of the table at each point; -1 where there is no state."""
+    rows: NDArray[Any]
+    """(ny, nx, n_active): the active rows of the table at each point, -1 where there is no state; or the values of
+    weighted features."""
     locate: Callable[[NDArray[Any]], NDArray[np.float64]]
     """Returns (n, 2): the positions in the picture of observations, (n, d) or (n,)."""
     labels: tuple[str, str] = ("", "")
@@ -70,6 +71,13 @@ class Raster:
     """(ny * nx, d): the observation at each point; None if the rows were counted directly."""
     size: tuple[float, float] = (8.0, 4.5)
     """The width and the height of a figure that suits the picture, in inches."""
+
+    @property
+    def has_state(self) -> NDArray[np.bool_]:
+        """(ny, nx): whether there is a state at each point. Weighted features are those of a Box, full of states."""
+        if self.rows.dtype.kind == "f":
+            return np.ones(self.rows.shape[:2], np.bool_)
+        return np.asarray((self.rows >= 0).all(axis=-1))
 
     @property
     def centers(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -92,7 +92,7 @@ def shade_unknown(ax: "Axes", raster: Raster, values: NDArray[Any]) -> None:
     """Fills the states without a value, which have NaN or negative indices, with grey."""
     from matplotlib.colors import ListedColormap
 
-    unknown = (raster.rows >= 0).all(axis=-1) & ~(values >= 0 if values.dtype.kind == "i" else np.isfinite(values))
+    unknown = raster.has_state & ~(values >= 0 if values.dtype.kind == "i" else np.isfinite(values))
     if unknown.any():
         grey = ListedColormap(["#444444" if is_dark(ax) else "#d5d5d5"])
         draw_cells(ax, raster, np.where(unknown, 0.0, np.nan), grey)

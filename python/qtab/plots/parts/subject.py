@@ -18,7 +18,7 @@ from qtab.envs.actions import Actions
 from qtab.envs.metadata.quantities import Quantities, quantities_of, tabulated_quantities
 from qtab.envs.registry import TABULATED
 from qtab.planning.optimum import Optimum
-from qtab.results.action_values import read_by_policy
+from qtab.results.action_values import read_by_policy, weighted_sum
 from qtab.results.axes import Axis, action_names, axes_of, run_quantities
 from qtab.results.run import Run
 from qtab.results.runs import Runs
@@ -65,15 +65,18 @@ class Subject:
         """The components of the observation."""
         return axes_of(self.quantities, self.discretizer)
 
-    def action_values(self, rows: NDArray[np.int64]) -> NDArray[np.float64]:
+    def action_values(self, rows: NDArray[Any]) -> NDArray[np.float64]:
         """Returns (seeds, ny, nx, actions) values; NaN where there is no state, or nothing was learned.
 
         Args:
-            rows: (ny, nx, n_active): the active rows at each point of a picture, -1 where there is no state.
+            rows: (ny, nx, n_active): the active rows at each point of a picture, -1 where there is no state; or the
+                values of weighted features.
         """
         return self._read(self.tables, rows)
 
-    def _read(self, tables: NDArray[np.float64], rows: NDArray[np.int64]) -> NDArray[np.float64]:
+    def _read(self, tables: NDArray[np.float64], rows: NDArray[Any]) -> NDArray[np.float64]:
+        if self.discretizer.is_weighted:
+            return np.stack([weighted_sum(rows, table) for table in tables])
         points = rows.reshape(-1, rows.shape[-1])
         first, *others = np.ascontiguousarray(points.T)
         total = np.empty((len(tables), len(points), tables.shape[-1]))
@@ -89,7 +92,7 @@ class Subject:
         total[:, first < 0] = np.nan
         return total.reshape(len(total), *rows.shape[:2], -1)
 
-    def state_values(self, rows: NDArray[np.int64]) -> NDArray[np.float64]:
+    def state_values(self, rows: NDArray[Any]) -> NDArray[np.float64]:
         """Returns (ny, nx): the learned state value, or else the largest action value or preference.
 
         It is the mean over the seeds; NaN if no seed has learned it.
@@ -100,7 +103,7 @@ class Subject:
         mean: NDArray[np.float64] = np.divide(total, count, out=np.full(total.shape, np.nan), where=count > 0)
         return mean
 
-    def greedy_actions(self, rows: NDArray[np.int64]) -> NDArray[np.int64]:
+    def greedy_actions(self, rows: NDArray[Any]) -> NDArray[np.int64]:
         """Returns (ny, nx): the greedy action, for several seeds the most frequent one; -1 where none is known."""
         values = self.action_values(rows)
         unknown = np.isnan(values).any(axis=-1)

@@ -41,9 +41,11 @@ def epsilon_schedule(config: Config) -> Schedule:
 
 
 class LearningRate:
-    """The step size of a value in the table: α over the number of active rows."""
+    """The step size of a value in the table: α over the number of active rows, or over a divisor of the row."""
 
-    def __init__(self, config: Config, shape: tuple[int, int], n_active: int) -> None:
+    def __init__(
+        self, config: Config, shape: tuple[int, int], n_active: int, divisors: list[float] | None = None
+    ) -> None:
         self.schedule = Schedule(
             config.learning_rate_schedule,
             config.learning_rate,
@@ -52,7 +54,7 @@ class LearningRate:
             config.learning_rate_warm_up or 0,
             config.episodes,
         )
-        self.n_active = n_active
+        self.n_active, self.divisors = n_active, divisors
         self.visits = np.zeros(shape, dtype=int)
         self.by_visits = config.learning_rate_schedule == "visits"
 
@@ -65,7 +67,7 @@ class LearningRate:
         """Returns the step size; by visits, that of the n-th visit is 1/n of the first one."""
         if self.by_visits:
             return max(self.schedule.value / int(self.visits[row, action]), self.schedule.minimum) / self.n_active
-        return self.schedule.value / self.n_active
+        return self.schedule.value / (self.n_active if self.divisors is None else self.divisors[row])
 
     def steps(self, rows: NDArray[np.int64], actions: NDArray[np.int64]) -> NDArray[np.float64]:
         """Returns the step sizes of several values, (n,)."""

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from qtab._utils.checks import required
 from qtab.config import Config
 from qtab.reference.parts.actions import ActionMasks, actions
+from qtab.reference.parts.discretizers import WeightedRows
 from qtab.reference.parts.observations import discretizer
 from qtab.reference.parts.observer import current_observer
 from qtab.reference.parts.policies import policy, valid_actions
@@ -67,7 +68,8 @@ class Task:
 
     def new_learning_rate(self) -> LearningRate:
         """Returns the learning rate of a table."""
-        rate = LearningRate(self.config, (self.n_rows, self.n_actions), self.discretizer.n_active)
+        divisors = getattr(self.discretizer, "divisors", None)
+        rate = LearningRate(self.config, (self.n_rows, self.n_actions), self.discretizer.n_active, divisors)
         self.observer.learning_rate(rate)
         return rate
 
@@ -198,8 +200,12 @@ class Task:
         """Updates Q(S, A) <- Q(S, A) + α [target - Q(S, A)], with the step size of each active row of S."""
         self.observer.before_update(Q, state, action, target)
         error = target - value(Q, state, action)
-        for row, step_size in zip(state, step_sizes, strict=True):
-            Q[row, action] += step_size * error
+        if isinstance(state, WeightedRows):  # w <- w + (α error) x
+            for row, x, step_size in zip(state, state.x, step_sizes, strict=True):
+                Q[row, action] += step_size * error * x
+        else:
+            for row, step_size in zip(state, step_sizes, strict=True):
+                Q[row, action] += step_size * error
         self.observer.after_update(Q, step_sizes)
 
     def result(self, *tables: Table) -> Result:
@@ -210,7 +216,15 @@ class Task:
 
 
 def values(Q: Table, state: Rows) -> NDArray[np.float64]:
-    """Returns Q(S, ·): the sum over the active rows of S, from left to right (``np.sum`` would add in pairs)."""
+    """Returns Q(S, ·): the sum over the active rows of S, from left to right (``np.sum`` would add in pairs).
+
+    With weighted features it is the sum of w x: every fourth product from left to right, and the four sums in pairs.
+    """
+    if isinstance(state, WeightedRows):
+        parts = np.zeros((4, Q.shape[1]))
+        for row, x in zip(state, state.x, strict=True):
+            parts[row % 4] += Q[row] * x
+        return np.asarray((parts[0] + parts[1]) + (parts[2] + parts[3]))
     total: NDArray[np.float64] = Q[state[0]].copy()
     for row in state[1:]:
         total += Q[row]

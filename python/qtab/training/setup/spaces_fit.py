@@ -11,7 +11,7 @@ from gymnasium import spaces
 from qtab.config import DEFAULTS, Config
 from qtab.config.config import replace_checked
 from qtab.config.options import OPTIONS, WITH_STATE_VALUES, is_set, n_tables
-from qtab.config.validation import mismatch, uses_tiles
+from qtab.config.validation import mismatch, uses_tiles, uses_weighted
 from qtab.discretizers import Discretizer, is_plain
 from qtab.discretizers.identity import integer_bounds
 
@@ -46,7 +46,7 @@ def set_aside(env: gym.Env, config: Config, asked: Mapping[str, Any]) -> Config:
         names.append("initial_q")
     if names:
         config = _with_defaults(config, names, asked)
-    if config.learning_rate > 1 and not uses_tiles(config.discretizer):
+    if config.learning_rate > 1 and not (uses_tiles(config.discretizer) or uses_weighted(config.discretizer)):
         config = _with_defaults(config, ["learning_rate"], asked)
     return config
 

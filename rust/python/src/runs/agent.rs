@@ -28,10 +28,7 @@ pub(super) fn generic_agent(
     Ok(Agent {
         table: spec.initial_q.table((0, spec.algorithm.n_tables()), shape, rng, stop)?,
         policy: spec.policy.build(spec.episodes, shape, has_masks, stop).map_err(allocation)?,
-        learning_rate: spec
-            .learning_rate
-            .build(spec.episodes, n_rows * spec.num_actions, n_active, stop)
-            .map_err(allocation)?,
+        learning_rate: spec.new_learning_rate(n_rows * spec.num_actions, n_active, stop)?,
         discount: spec.discount,
         terminal_update: spec.terminal_update,
         masks,

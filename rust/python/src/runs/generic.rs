@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use pyo3::prelude::*;
-use qtab_core::features::{ActiveRows, MAX_TILINGS};
+use qtab_core::features::{ActiveFeatures, ActiveRows, MAX_TILINGS};
 use qtab_core::learners::{CountBonus, LearnerVisitor, TransformedSteps};
 use qtab_core::random::AgentRng;
 use qtab_core::tasks::{BoxedTask, EpisodeRecorder, NativeTask, Recordings, RngSnapshot, TimeAware, VisitCounter};
@@ -18,7 +18,7 @@ use super::{AnyRecordings, Run, RunFactory};
 use crate::convert::Seed;
 use crate::error::{RunError, allocation, invalid};
 use crate::rng::environment_rng;
-use crate::spec::{DiscretizerSpec, RunSpec, TilesSpec};
+use crate::spec::{DiscretizerSpec, RunSpec, TilesSpec, match_capacity};
 
 /// The number of bytes of a recorded action: in Rust, in the list that Python reads, and in Python's recording.
 const RECORDED_ACTION_BYTES: u64 = 4 + 8 + 8;
@@ -45,6 +45,10 @@ where
             _ => generic(env, tiles.tile_coding::<f32, MAX_TILINGS>(), spec),
         ),
         DiscretizerSpec::Tiles(tiles) => generic(env, tiles.tile_coding::<f32, MAX_TILINGS>(), spec),
+        DiscretizerSpec::Fourier(fourier) => match_capacity!(
+            fourier.n_features(),
+            ROOM => generic(env, fourier.basis::<f32, ROOM>()?, spec)
+        ),
         grid => generic(env, grid.grid(|bound| bound as f32)?, spec),
     }
 }
@@ -136,8 +140,13 @@ where
     W: Task<Active: Send, State: Send> + Send + 'static,
     RunError: From<W::Error>,
 {
+    if W::Active::WEIGHTED {
+        // Again, because visits are not counted in the spec that was parsed.
+        spec.check_weighted()?;
+    }
     let rng = spec.bit_generator.agent_rng(seed)?;
-    if spec.time_aware {
+    // What `check_weighted` refuses is not compiled for weighted features: each condition is known to the compiler.
+    if spec.time_aware && !W::Active::WEIGHTED {
         return time_aware_run(BoxedTask::new(task), shape.0, rng, spec, stop);
     }
     build_learner(boxed_task(task, shape, spec, stop)?, shape, rng, spec, stop)
@@ -170,7 +179,7 @@ where
     W: Task<Active: Send, State: Send> + Send + 'static,
     RunError: From<W::Error>,
 {
-    if spec.count_visits {
+    if spec.count_visits && !W::Active::WEIGHTED {
         let counter = VisitCounter::new(task, n_rows, spec.num_actions, stop).map_err(allocation)?;
         Ok(BoxedTask::new(counter))
     } else {
@@ -189,7 +198,9 @@ fn build_learner<R>(
 where
     R: ActiveRows + Send + 'static,
 {
-    if let Some(prediction) = &spec.prediction {
+    if let Some(prediction) = &spec.prediction
+        && !R::WEIGHTED
+    {
         if n_active != 1 {
             return Err(invalid("discretizer", "one with a cell for each observation", "tile coding"));
         }

@@ -16,7 +16,7 @@ use super::python_env::PythonEnv;
 use super::{AnyRecordings, BuiltRun};
 use crate::convert::{BoxReader, ObservationReader, Seed};
 use crate::error::RunError;
-use crate::spec::{BoxFeatures, DiscretizerSpec, FloatType, PredictionSpec, RunSpec};
+use crate::spec::{BoxFeatures, DiscretizerSpec, FloatType, PredictionSpec, RunSpec, match_capacity};
 
 /// The number of Q-learning steps on a grid that one step in Python counts as. It may take a millisecond.
 const STEP_WORK: u64 = 127;
@@ -68,6 +68,13 @@ impl PythonTaskBuilder<'_> {
             let tiles = tiles.tile_coding::<T, MAX_TILINGS>();
             let n_rows = Features::<[T]>::len(&tiles);
             return self.run(BoxReader::new(tiles, dimensions), n_rows, stop);
+        }
+        if let DiscretizerSpec::Fourier(fourier) = &self.spec.discretizer {
+            let n_rows = fourier.n_features();
+            return match_capacity!(
+                n_rows,
+                ROOM => self.run(BoxReader::new(fourier.basis::<T, ROOM>()?, dimensions), n_rows, stop)
+            );
         }
         let grid = self.spec.discretizer.grid(to_dtype)?;
         let n_rows = Features::<[T]>::len(&grid);

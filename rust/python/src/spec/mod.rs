@@ -4,6 +4,7 @@
 mod action_masks;
 mod discretizer;
 mod fields;
+mod fourier;
 mod initial_q;
 mod prediction;
 mod product;
@@ -11,19 +12,22 @@ mod product;
 use std::sync::Arc;
 
 use pyo3::prelude::*;
-use qtab_core::learners::AnyAlgorithm;
+use qtab_core::StopFlag;
+use qtab_core::learners::{AnyAlgorithm, FeatureKinds};
 use qtab_core::memory::MemoryRoom;
 use qtab_core::q_table::TerminalUpdate;
+use qtab_core::schedules::LearningRate;
 use qtab_core::settings::SettingSource;
 
 pub(crate) use action_masks::ActionMasksSpec;
 pub(crate) use discretizer::{DISCRETIZERS, DiscretizerSpec, FloatType, TilesSpec};
 pub(crate) use fields::{Fields, Variant};
+pub(crate) use fourier::match_capacity;
 pub(crate) use initial_q::InitialQSpec;
 pub(crate) use prediction::{BoxFeatures, PredictionSpec, ReadRows};
 pub(crate) use qtab_core::settings::{LearningRateSpec, PolicySpec, ScheduleSpec};
 
-use crate::error::invalid;
+use crate::error::{allocation, invalid};
 use crate::rng::BitGenerator;
 
 /// The largest learning rate. Tile coding divides it among the tilings.
@@ -100,10 +104,12 @@ impl RunSpec {
             ("record", *record > 0),
             ("visits", *count_visits),
         ];
-        match refused.iter().find(|(_, is_given)| *is_given) {
-            Some((name, _)) => Err(invalid(name, "left at its default to estimate values", "another value")),
-            None => Ok(Self { prediction: Some(Arc::new(prediction)), ..self }),
+        if let Some((name, _)) = refused.iter().find(|(_, is_given)| *is_given) {
+            return Err(invalid(name, "left at its default to estimate values", "another value"));
         }
+        let spec = Self { prediction: Some(Arc::new(prediction)), ..self };
+        spec.check_weighted()?;
+        Ok(spec)
     }
 
     /// The prediction, if its policies read the observations of a Box.
@@ -144,12 +150,74 @@ impl RunSpec {
             prediction: None,
         };
         spec.check_tile_coding()?;
+        spec.check_weighted()?;
         spec.check_preferences()?;
         spec.check_time_aware()?;
         if spec.algorithm.needs_probabilities() && matches!(spec.policy, PolicySpec::Ucb { .. }) {
             return Err(invalid("policy", "'epsilon_greedy' or 'softmax' for this algorithm", "'ucb'"));
         }
         Ok(spec)
+    }
+
+    /// Rejects settings that have no meaning with weighted features, or are not supported yet. Every field is named, so
+    /// that adding one forces a decision here.
+    pub(crate) fn check_weighted(&self) -> PyResult<()> {
+        let Self {
+            // Any values.
+            discretizer,
+            num_actions: _,
+            max_episode_steps: _,
+            discount: _,
+            terminate_on_truncation: _,
+            episodes: _,
+            bit_generator: _,
+            record: _,
+            room: _,
+            // Some values.
+            algorithm,
+            policy,
+            learning_rate,
+            initial_q,
+            time_aware,
+            count_bonus,
+            action_masks,
+            terminal_update,
+            count_visits,
+            prediction,
+        } = self;
+        if discretizer.weighted().is_none() {
+            return Ok(());
+        }
+        let refused = [
+            ("algorithm", algorithm.feature_kinds() != FeatureKinds::All),
+            ("policy", matches!(policy, PolicySpec::Ucb { .. })),
+            ("learning_rate", matches!(learning_rate, LearningRateSpec::Visits { .. })),
+            ("initial_q", initial_q.has_masked_actions()),
+            ("time_aware", *time_aware),
+            ("count_bonus", *count_bonus != 0.0),
+            ("action_masks", !action_masks.is_none()),
+            ("terminal_update", *terminal_update != TerminalUpdate::Target),
+            ("visits", *count_visits),
+            ("estimate_values", prediction.is_some()),
+        ];
+        match refused.iter().find(|(_, is_given)| *is_given) {
+            Some((name, _)) => Err(invalid(name, "a setting that works with weighted features", "another")),
+            None => Ok(()),
+        }
+    }
+
+    /// The learning rate of a table of so many weights, of which `n_active` share it unless they are weighted.
+    pub(crate) fn new_learning_rate(
+        &self,
+        weights: usize,
+        n_active: usize,
+        stop: &StopFlag<'_>,
+    ) -> PyResult<LearningRate> {
+        let Some(features) = self.discretizer.weighted() else {
+            return self.learning_rate.build(self.episodes, weights, n_active, stop).map_err(allocation);
+        };
+        let rate = self.learning_rate.build_weighted(self.episodes, features.step_size_divisors()?);
+        rate.ok_or_else(|| invalid("learning_rate", "a schedule by the episode for weighted features", "'visits'"))
     }
 
     /// Rejects settings that need a table with a row for each state.

@@ -22,7 +22,9 @@ use crate::convert::Seed;
 use crate::error::{CompiledCodeError, invalid};
 use crate::runs::{AnyRecordings, BoxedFactory, RunFactory, boxed_run, check_actions, observed_run, one_step_runs};
 
-use crate::spec::{ActionMasksSpec, BoxFeatures, DiscretizerSpec, FloatType, PredictionSpec, ReadRows, RunSpec};
+use crate::spec::{
+    ActionMasksSpec, BoxFeatures, DiscretizerSpec, FloatType, PredictionSpec, ReadRows, RunSpec, match_capacity,
+};
 use crate::vector::{DynVectorEnv, VectorOptions};
 
 /// An environment of another library, shared by all runs.
@@ -185,6 +187,12 @@ impl ExternalEnv {
         if let DiscretizerSpec::Tiles(tiles) = &spec.discretizer {
             return self.runs_with::<T, _>(tiles.tile_coding::<T, MAX_TILINGS>(), spec);
         }
+        if let DiscretizerSpec::Fourier(fourier) = &spec.discretizer {
+            return match_capacity!(
+                fourier.n_features(),
+                ROOM => self.runs_with::<T, _>(fourier.basis::<T, ROOM>()?, spec)
+            );
+        }
         self.cell_runs::<T, _>(spec.discretizer.grid(to_dtype)?, spec)
     }
 
@@ -246,7 +254,7 @@ impl ExternalEnv {
         match (observation_type, dtype) {
             (FLOAT32, FloatType::F32) => self.same_box_runs::<f32>(to_f32, spec),
             (FLOAT64, FloatType::F64) => self.same_box_runs::<f64>(|bound| bound, spec),
-            _ if spec.prediction_by_observation().is_some() => {
+            _ if spec.prediction_by_observation().is_some() || spec.discretizer.weighted().is_some() => {
                 Err(invalid("env", "one with observations of the dtype of its space", "another dtype"))
             }
             (FLOAT32, FloatType::F64) => self.box_runs::<f32, f64>(|bound| bound, spec),
