@@ -110,6 +110,27 @@ def test_without_signals_a_second_thread_stops_a_loop() -> None:
     assert time_limit._by_thread(10.0, max, (1, 2)) == 2
 
 
+def test_a_very_short_limit_in_threads_neither_escapes_nor_blocks() -> None:
+    def loop() -> None:
+        while True:
+            pass
+
+    outcomes: list[Any] = []
+
+    def stopped() -> None:
+        for _ in range(8):
+            with pytest.raises(time_limit.TimeIsUp):
+                time_limit._by_thread(0.002, loop, ())
+            outcomes.append(time_limit._by_thread(60.0, max, (1, 2)))
+
+    threads = [threading.Thread(target=stopped, daemon=True) for _ in range(3)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(60.0)
+    assert outcomes == [2] * 24
+
+
 @pytest.mark.parametrize(
     ("function", "message"),
     [

@@ -62,24 +62,28 @@ def _by_signal(seconds: float, function: Callable[..., Any], arguments: Sequence
 def _by_thread(seconds: float, function: Callable[..., Any], arguments: Sequence[Any]) -> Any:
     caller = ctypes.c_ulong(threading.get_ident())
     raise_in = ctypes.pythonapi.PyThreadState_SetAsyncExc
-    over, lock = threading.Event(), threading.Lock()
+    active, lock = True, threading.Lock()
+    begun, over = threading.Event(), threading.Event()
 
     def interrupt() -> None:
+        begun.wait()  # otherwise the exception could appear before the try statement below
         pause = seconds
         while not over.wait(pause):
             with lock:
-                if not over.is_set():
-                    raise_in(caller, ctypes.py_object(TimeIsUp))
+                if not active:
+                    return
+                raise_in(caller, ctypes.py_object(TimeIsUp))
             pause = REPEAT
 
     threading.Thread(target=interrupt, daemon=True).start()
     try:
+        begun.set()
         return function(*arguments)
     finally:
-        while not over.is_set():
-            try:
-                with lock:
-                    over.set()
-                    raise_in(caller, None)  # takes back an exception that has not appeared yet
-            except TimeIsUp:
-                continue
+        active = False  # first: an exception appears between calls, not in an assignment
+        try:
+            with lock:  # from here on no other exception can follow
+                raise_in(caller, None)  # takes back one that has not appeared yet
+        except TimeIsUp:
+            pass
+        over.set()
