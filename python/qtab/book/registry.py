@@ -96,7 +96,7 @@ def find(name: str) -> Experiment:
     """
     if not isinstance(name, str):
         raise TypeError(f"name must be one of {', '.join(EXPERIMENTS)}, got {name!r}")
-    wanted = name.strip().lower().replace(" ", "-")
+    wanted = name.strip().lower().replace(" ", "-").replace("_", "-")
     if wanted in EXPERIMENTS:
         return EXPERIMENTS[wanted]
     matches = [experiment for experiment in EXPERIMENTS.values() if experiment.number == wanted]
@@ -104,7 +104,7 @@ def find(name: str) -> Experiment:
         raise ValueError(f"name must be {' or '.join(match.name for match in matches)}, got {name!r}, which is both")
     if not matches:
         suggestion = did_you_mean(wanted, EXPERIMENTS)
-        raise ValueError(f"name must be one of {_choices(wanted)}, got {name!r}{suggestion}")
+        raise ValueError(f"name must be {_choices(wanted)}, got {name!r}{suggestion}")
     return matches[0]
 
 
@@ -113,10 +113,10 @@ def _choices(wanted: str) -> str:
     number = re.search(r"(?:^|-)(\d+)\b", wanted)
     of_chapter = [chapter for chapter in CHAPTERS if number is not None and chapter.number == int(number[1])]
     if not of_chapter:
-        return ", ".join(EXPERIMENTS)
+        return f"one of {', '.join(EXPERIMENTS)}"
     (chapter,) = of_chapter
     names = ", ".join(experiment.name for experiment in chapter.experiments)
-    return f"{names} for chapter {chapter.number}"
+    return f"{'one of ' if len(chapter.experiments) > 1 else ''}{names} for chapter {chapter.number}"
 
 
 def run(

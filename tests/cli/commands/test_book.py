@@ -46,6 +46,7 @@ CHAPTER_6 = "example-6.2, figure-6.2, example-6.5, example-6.6, figure-6.3, figu
     [
         (["99"], "qtab book: error: NAME must be one of figure-2.1, figure-2.2"),
         (["6.9"], f"qtab book: error: NAME must be one of {CHAPTER_6}, got '6.9'"),
+        (["chapter_7"], "qtab book: error: NAME must be figure-7.2 for chapter 7, got 'chapter_7'"),
         (["figure-6.9"], f"qtab book: error: NAME must be one of {CHAPTER_6}, got 'figure-6.9'"),
         (["6.5"], "qtab book: error: NAME must be example-6.5 or figure-6.5, got '6.5', which is both"),
         (["8.2", "--runs", "0"], "qtab book: error: --runs must be an integer of at least 1, got 0"),
