@@ -255,7 +255,7 @@ def test_classes_that_would_differ_are_refused_by_name(made: Any, mode: str, rea
     assert str(raised.value).endswith("or step it with gymnasium.vector.SyncVectorEnv")
 
 
-@pytest.mark.filterwarnings("ignore:.*share an object", "ignore:.*precision lowered")
+@pytest.mark.filterwarnings("ignore::UserWarning")
 def test_views_and_other_dtypes_are_shown_where_no_last_observation_is() -> None:
     made: Any
     for made in (refused_vectors.ShowsView, refused_vectors.Doubles):

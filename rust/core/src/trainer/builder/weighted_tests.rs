@@ -85,8 +85,8 @@ fn what_has_no_meaning_with_weighted_features_is_refused_by_name() {
         let refused = message(car().algorithm(algorithm));
         assert!(refused.starts_with("algorithm must be one that learns with weighted features"), "{refused}");
     }
-    let by_visits = message(car().learning_rate(LearningRateSpec::by_visit_count(1.0, 0.0)));
-    assert_eq!(by_visits, "learning_rate must be a schedule with weighted features, got one by visits");
+    let by_visit_count = message(car().learning_rate(LearningRateSpec::by_visit_count(1.0, 0.0)));
+    assert_eq!(by_visit_count, "learning_rate must be a schedule with weighted features, got one by visits");
     let ucb = PolicySpec::Ucb { confidence: 2.0, ties: TieBreaking::First };
     assert!(message(car().policy(ucb)).starts_with("policy must be one without counts"));
 }
