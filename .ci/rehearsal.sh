@@ -1,11 +1,11 @@
 # A release rehearsed on this machine, for .ci/run, which sources this file.
 
-# What PyPI checks; an upload to an index, which this task starts and ends; and for each Python that is installed, an empty
-# environment without Rust, into which pip installs qtab from that index and which runs the README's first Python code and the
-# end of its first command. Then a notebook, as Google Colab and Binder would run it.
+# What PyPI checks; an upload to an index, which this task starts and ends; and for the lowest and the newest Python that is
+# installed, an empty environment without Rust, into which pip installs qtab from that index and which runs the README's first
+# Python code and the end of its first command. Then a notebook, as Google Colab and Binder would run it.
 rehearsal() {
     built_wheel
-    local tools=.venv-rehearsal/$bin version python found="" tried=0
+    local tools=.venv-rehearsal/$bin version python newest found=()
     [ -d .venv-rehearsal ] || "$host_python" -m venv .venv-rehearsal
     $tools/pip install --quiet twine==7.0.0 pypiserver==2.4.2
     $tools/twine check --strict "$work"/dist/*
@@ -14,15 +14,14 @@ rehearsal() {
         --repository-url "$index" "$work"/dist/*
     for version in 3.10 3.11 3.12 3.13 3.14; do
         if python=$(interpreter $version); then
-            install_from_index "$python"
-            found=$python
-            tried=$((tried + 1))
-        else
-            echo "skipped: python$version is not installed"
+            found+=("$python")
         fi
     done
-    [ "$tried" -gt 0 ] || { echo "no Python of 3.10 to 3.14 is installed" && exit 1; }
-    launched_notebooks "$found"
+    [ ${#found[@]} -gt 0 ] || { echo "no Python of 3.10 to 3.14 is installed" && exit 1; }
+    install_from_index "${found[0]}"
+    newest=${found[${#found[@]} - 1]}
+    [ "$newest" = "${found[0]}" ] || install_from_index "$newest"
+    launched_notebooks "$newest"
     kill "$server"
     wait "$server" || true
     trap 'rm -rf "$work"' EXIT
