@@ -21,7 +21,7 @@ pub(super) struct SubEnv {
     /// The state, the progress and the generator before the present call.
     before: (Vec<u8>, Progress, Option<Pcg64>),
     /// The episode so far, for an environment that repeats it in Python where a call fails.
-    pub(super) episodes: Option<Episodes>,
+    pub(super) played: Option<CurrentEpisode>,
     failed: Option<Failed>,
 }
 
@@ -38,7 +38,7 @@ pub(super) struct Progress {
 
 /// The episode so far, and what the present call has changed of it.
 #[derive(Default)]
-pub(super) struct Episodes {
+pub(super) struct CurrentEpisode {
     pub(super) now: EpisodeSoFar,
     /// The episode that a reset in the present call has ended.
     ended: EpisodeSoFar,
@@ -47,7 +47,7 @@ pub(super) struct Episodes {
     actions_before: usize,
 }
 
-impl Episodes {
+impl CurrentEpisode {
     fn begin_call(&mut self) {
         (self.was_reset, self.actions_before) = (false, self.now.actions.len());
     }
@@ -86,20 +86,20 @@ impl SubEnv {
             terminated: false,
             truncated: false,
             before: (with_capacity(state_size)?, Progress::default(), None),
-            episodes: env.0.repeats_episodes.then(Episodes::default),
+            played: env.0.repeats_episodes.then(CurrentEpisode::default),
             failed: None,
         })
     }
 
     /// Makes room for the action of a step.
     pub(super) fn reserve_action(&mut self) -> Result<(), AllocationError> {
-        self.episodes.as_mut().map_or(Ok(()), |episodes| reserve(&mut episodes.now.actions, 1))
+        self.played.as_mut().map_or(Ok(()), |played| reserve(&mut played.now.actions, 1))
     }
 
     /// Keeps what `undo` restores.
     pub(super) fn begin_call(&mut self, rng: &Pcg64) {
-        if let Some(episodes) = &mut self.episodes {
-            episodes.begin_call();
+        if let Some(played) = &mut self.played {
+            played.begin_call();
         }
         let (state, progress, generator) = &mut self.before;
         state.clear();
@@ -113,8 +113,8 @@ impl SubEnv {
         rng.clone_from(generator);
         self.progress = *progress;
         self.failed = None;
-        if let Some(episodes) = &mut self.episodes {
-            episodes.undo();
+        if let Some(played) = &mut self.played {
+            played.undo();
         }
         if progress.has_state {
             self.episode.set_state(state);
@@ -129,8 +129,8 @@ impl SubEnv {
         match self.episode.reset(&mut RandomBits::new(&mut EnvironmentBits(rng))) {
             Ok(()) => {
                 self.progress = Progress { has_state: true, elapsed: 0, done: false };
-                if let Some(episodes) = &mut self.episodes {
-                    episodes.reset(position);
+                if let Some(played) = &mut self.played {
+                    played.reset(position);
                 }
             }
             Err(error) => self.failed = Some(Failed { error, position, action: None }),
@@ -145,14 +145,14 @@ impl SubEnv {
             Ok((reward, terminated, truncated)) => {
                 let elapsed = self.progress.elapsed + 1;
                 // A library's sum of both counts as terminated; a class returns both.
-                let is_cut = (truncated || elapsed >= library_limit) && (!terminated || self.episodes.is_some());
+                let is_cut = (truncated || elapsed >= library_limit) && (!terminated || self.played.is_some());
                 self.reward = reward;
                 self.terminated = terminated;
                 self.truncated = is_cut || elapsed >= limit;
                 self.progress.elapsed = elapsed;
                 self.progress.done = self.terminated || self.truncated;
-                if let Some(episodes) = &mut self.episodes {
-                    episodes.now.actions.push(action as u32);
+                if let Some(played) = &mut self.played {
+                    played.now.actions.push(action as u32);
                 }
             }
             Err(error) => self.failed = Some(Failed { error, position, action: Some(action) }),
@@ -163,8 +163,8 @@ impl SubEnv {
     pub(super) fn error(&self, py: Python<'_>, seed: &Seed) -> Option<PyErr> {
         let Failed { error, position, action } = self.failed.as_ref()?;
         let state = action.map(|_| self.episode.state());
-        let episodes = self.episodes.as_ref().map(|episodes| (episodes.now.start, episodes.now.actions.as_slice()));
-        let failed = FailedCall { state, before: *position, action: *action, seed, episodes };
+        let played = self.played.as_ref().map(|played| (played.now.start, played.now.actions.as_slice()));
+        let failed = FailedCall { state, before: *position, action: *action, seed, played };
         Some(self.episode.shared().0.error(py, *error, &failed))
     }
 
@@ -178,7 +178,7 @@ impl SubEnv {
             self.episode.observe().map_err(|_| CheckpointError::Invalid("state of the environment"))?;
         }
         let num_actions = self.episode.environment().num_actions();
-        let Some(Episodes { now, .. }) = &mut self.episodes else { return Ok(()) };
+        let Some(CurrentEpisode { now, .. }) = &mut self.played else { return Ok(()) };
         now.start.persist(checkpoint)?;
         checkpoint.values(&mut now.actions)?;
         let is_valid = now.actions.iter().all(|&action| (action as usize) < num_actions);
