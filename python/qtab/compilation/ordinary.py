@@ -47,10 +47,10 @@ class OrdinaryEnv:
         require_numba()
         self._name = str(env) if name is None else name
         observation = ObservationLayout.of(env.observation_space)
-        self.outside = refuse_effects(env)
+        shared = refuse_effects(env)
         self.env = twin_of(env)
-        with restored(self.outside.shared):
-            self.rewritten = rewrite(self.env, shared_attributes(env, self.outside.shared))
+        with restored(shared):
+            self.rewritten = rewrite(self.env, shared_attributes(env, shared))
         _check_episodes(env, self.rewritten)
         if check is not None:
             check(self)
@@ -60,10 +60,6 @@ class OrdinaryEnv:
             first[name] = self.rewritten.initial[name]
         self.parameters: NDArray[np.uint8] = first.view(np.uint8).reshape(-1).copy()
         self.compiled = self._compiled(observation)
-
-    def copy(self) -> Any:
-        """Returns a copy of the environment, to be stepped in Python."""
-        return twin_of(self.env)
 
     def capsule(self) -> Any:
         """Returns the capsule ``qtab.env.1``."""

@@ -66,8 +66,7 @@ class Config(WithOrigin):
     """Whether the number of steps taken in the episode is part of the state, as in Gymnasium's TimeAwareObservation:
     with cells for each step before the time limit, it can learn the policy that is optimal under it. It needs cells."""
     backend: Backend = "auto"
-    """Where to step it: in Rust (rust), in Rust compiled by Numba (numba), in Python (gymnasium, python), or auto: in
-    Rust where it can be, also a class that Numba compiles, for 200,000 steps or more in an environment made by qtab."""
+    """Where to step it: in Rust (rust), in Rust compiled by Numba (numba), in Python (gymnasium, python), or auto."""
 
     # The run
 

@@ -66,12 +66,6 @@ def copied(config: C, origin: Origin | None) -> C:
     return copy
 
 
-def was_compiled_by_default(config: WithOrigin) -> bool:
-    """Returns whether Numba compiled the environment of a run for which no backend was asked."""
-    is_derived = config.origin is not None and "backend" in config.origin.derived
-    return is_derived and getattr(config, "backend", None) == "numba"
-
-
 def trained_on(config: WithOrigin) -> "EnvironmentDescription | None":
     """Returns the environment that the run of a config was trained on; None if it is not known."""
     return None if config.origin is None else config.origin.environment

@@ -79,7 +79,7 @@ def plan_again(sweep: "Sweep", chosen: Sequence[int], numbers: tuple[int, ...], 
         # A function passes the arguments to the environment itself.
         own: dict[str, Any] = {"env_kwargs": {}} if callable(made) else {}
         overrides = [{**over(config, {}), **own} for config in configs]
-    resolved = [resolve_template(made, {**given, "seed": max(numbers)}, len(numbers)) for given in overrides]
+    resolved = [resolve_template(made, {**given, "seed": max(numbers)}) for given in overrides]
     for index, run in zip(chosen, resolved, strict=True):
         _check_environment(sweep, index, run)
     study = Study(made, [sweep.settings[index] for index in chosen], overrides, numbers, resolved, sweep.block)

@@ -13,10 +13,9 @@ import numpy as np
 from qtab._utils import checks
 from qtab._utils.memory import check_memory
 from qtab._utils.memory import memory_limit as memory_limit_in_bytes
-from qtab.config import DEFAULTS, Config
+from qtab.config import DEFAULTS
 from qtab.config.functions import function_name
 from qtab.config.merge import Base, over
-from qtab.config.origin import was_compiled_by_default
 from qtab.config.unknown import check_names
 from qtab.envs.origin.description import EnvironmentDescription
 from qtab.envs.registry import stored_id
@@ -107,7 +106,10 @@ class Study:
     @cached_property
     def stored(self) -> StoredStudy:
         """The study in the form of a store."""
-        configs = [_stored_config(resolved.config) for resolved in self.resolved]
+        configs = [
+            {name: value for name, value in stored_settings(resolved.config).items() if name != "seed"}
+            for resolved in self.resolved
+        ]
         settings = [dict(setting) for setting in self.settings]
         content = {"configs": configs, "settings": settings, "seeds": self.seeds, "block": self.block}
         return study_from_json(json.dumps(content, default=_jsonable))
@@ -120,18 +122,6 @@ class Study:
             first, last = max(chunk.start - setting * count, 0), min(chunk.stop - setting * count, count)
             parts.append((setting, list(self.seeds[first:last])))
         return parts
-
-
-def _stored_config(config: Config) -> dict[str, Any]:
-    """Returns a config without the seed, as a store has it.
-
-    Whether a class is compiled by default depends on the machine and on the number of seeds, and its numbers are the
-    same as in Python, so that the store records that backend.
-    """
-    stored = {name: value for name, value in stored_settings(config).items() if name != "seed"}
-    if was_compiled_by_default(config):
-        stored["backend"] = "gymnasium"
-    return stored
 
 
 def study_from_json(text: str) -> StoredStudy:
@@ -192,7 +182,7 @@ def plan_study(
     if in_both:
         raise TypeError(f"{in_both[0]} must be either in the grid or shared by all settings, got both")
     overrides = [over(base or {}, {**shared, **setting}) for setting in settings]
-    resolved = [resolve_template(env, {**given, "seed": max(numbers)}, len(numbers)) for given in overrides]
+    resolved = [resolve_template(env, {**given, "seed": max(numbers)}) for given in overrides]
     for setting, run in zip(settings, resolved, strict=True):
         asked = setting.get("max_episode_steps")
         if asked is not None and asked > run.max_episode_steps:

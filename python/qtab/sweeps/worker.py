@@ -17,7 +17,6 @@ from qtab.sweeps.run_records import RunRecord
 from qtab.training.process_pool import trained_in_python
 from qtab.training.setup.resolved_run import ResolvedRun
 from qtab.training.setup.run_memory import bytes_of_run
-from qtab.training.setup.use import TYPICAL_MAX_STEPS
 from qtab.training.train_many import allocate_results, resolve_template, train_in_threads
 
 if TYPE_CHECKING:
@@ -28,6 +27,8 @@ CHUNK_SECONDS = 1.0
 """The time between two commits. An interruption loses no more than this, unless single runs take longer."""
 MAX_CHUNK_RUNS = 4096
 """The maximum number of runs in a chunk."""
+TYPICAL_MAX_STEPS = 1000
+"""The expected maximum number of steps of an episode whose time limit is longer."""
 CAUTION = 4.0
 """The factor by which a new setting may take longer than predicted from the previous one."""
 

@@ -15,7 +15,6 @@ from qtab._utils import checks
 from qtab._utils.memory import memory_limit as bytes_limit
 from qtab._utils.shown import shown
 from qtab.config import Config
-from qtab.envs.origin.class_code import is_of_library
 from qtab.training.progress import Callback, EpisodeReader, Progress
 from qtab.training.setup.environment import PythonEnvironment
 from qtab.training.setup.resolved_run import ResolvedRun
@@ -79,24 +78,6 @@ class BaseCallback(ABC):
 
 def _shown(value: Any) -> str:
     return repr(str(value)) if isinstance(value, Path) else shown(value)
-
-
-def watching(callbacks: Any) -> str | None:
-    """Returns which callback may see or change an environment while it is trained in; None without any.
-
-    Those of this package do neither, unless they evaluate in an environment of the user.
-    """
-    for one in as_tuple(callbacks):
-        cls = type(one)
-        own = vars(one).items() if is_of_library(cls) else None
-        if own is not None:
-            inner = [value for _, value in own if isinstance(value, BaseCallback)]
-            if (found := watching(inner)) is not None:
-                return found
-        if own is None or any(isinstance(value, gym.Env) or hasattr(cls, name) for name, value in own):
-            name = getattr(one, "__qualname__", cls.__qualname__)
-            return f"the callback {name} may read or change the environment"
-    return None
 
 
 class CallbackList:

@@ -17,7 +17,7 @@ from qtab.config.config import replace_checked
 from qtab.config.functions import STORED, MissingFunction
 from qtab.config.merge import Base, over
 from qtab.config.options import is_set
-from qtab.config.origin import copied, trained_on, was_compiled_by_default
+from qtab.config.origin import copied, trained_on
 from qtab.discretizers.assigned_rows import AssignedRows
 from qtab.envs.origin.description import differences
 from qtab.envs.registry import versioned
@@ -25,11 +25,10 @@ from qtab.results.files.loading import load, with_action_mask
 from qtab.results.rates import extensions
 from qtab.results.recording import resumed_snapshot_episodes
 from qtab.results.run import Run
-from qtab.training.callbacks import TrainingOptions, watching
+from qtab.training.callbacks import TrainingOptions
 from qtab.training.setup.resolve import resolve
 from qtab.training.setup.resolved_run import ResolvedRun
 from qtab.training.setup.run_env import environment_of, resolve_run
-from qtab.training.setup.use import Use
 
 _LOGGER = logging.getLogger("qtab")
 _OF_ENV = ("env_kwargs", "max_episode_steps")
@@ -84,10 +83,10 @@ def resolve_resumed(
     if has_finished(earlier, asked.get("episodes"), options):
         return earlier, options, None
     made = env if isinstance(env, gym.Env) else None
-    return earlier, options, resolve_again("resume", earlier, asked.get("episodes"), made, options.callback)
+    return earlier, options, resolve_again("resume", earlier, asked.get("episodes"), made)
 
 
-def resolve_again(name: str, run: Run, episodes: Any, env: gym.Env | None, callbacks: Any = None) -> ResolvedRun:
+def resolve_again(name: str, run: Run, episodes: Any, env: gym.Env | None) -> ResolvedRun:
     """Resolves the whole run, given its earlier part.
 
     Args:
@@ -95,7 +94,6 @@ def resolve_again(name: str, run: Run, episodes: Any, env: gym.Env | None, callb
         run: The earlier part.
         episodes: The number of episodes of the whole run; None takes that of ``run``.
         env: The environment; None makes the environment of ``run``.
-        callbacks: The callbacks of the call. With one that may change the environment, Python steps it.
 
     Raises:
         gymnasium.error.Error: if the environment is not registered.
@@ -107,12 +105,11 @@ def resolve_again(name: str, run: Run, episodes: Any, env: gym.Env | None, callb
     _check_id(run, env)
     # Derived settings are kept, not derived again.
     kept = {"max_episode_steps": config.max_episode_steps, "backend": config.backend}
-    use = Use(watched=watching(callbacks), resumes=was_compiled_by_default(run.config))
     if env is None:
-        resolved = resolve_run(config, over(config, kept), use)
+        resolved = resolve_run(config, over(config, kept))
     else:
         # The environment object determines its keyword arguments.
-        resolved = resolve(env, over(config, {**kept, "env_kwargs": {}}), use=use)
+        resolved = resolve(env, over(config, {**kept, "env_kwargs": {}}))
         _check_settings(run, resolved.config, _OF_ENV)
         _check_env(run, resolved)
     origin = config.origin or resolved.config.origin
@@ -170,11 +167,10 @@ def check_agrees(run: Run, env: str | EnvSpec | gym.Env | None, settings: Mappin
         return
     _check_id(run, env)
     kept = {"backend": run.config.backend, **given}
-    use = Use(resumes=was_compiled_by_default(run.config))
     if env is None or isinstance(env, str):
-        resolved = resolve_run(run.config, over(run.config, kept), use)
+        resolved = resolve_run(run.config, over(run.config, kept))
     else:
-        resolved = resolve(env, over(run.config, {"env_kwargs": {}, **kept}), use=use)
+        resolved = resolve(env, over(run.config, {"env_kwargs": {}, **kept}))
     resolved.close()
     _check_settings(run, resolved.config, (*_OF_ENV, *given))
     _check_env(run, resolved)

@@ -30,7 +30,6 @@ from qtab.training.callbacks import TrainingOptions
 from qtab.training.setup.resolve import resolve
 from qtab.training.setup.resolved_run import log_python_stepping
 from qtab.training.setup.run_env import check_env, check_spaces, resolve_run
-from qtab.training.setup.use import Use
 from qtab.training.train import train_resolved
 
 if TYPE_CHECKING:
@@ -197,7 +196,7 @@ def evaluate(
             "backend": "auto" if env is not None or env_kwargs is not None or is_derived else config.backend,
         },
     )
-    resolved = resolve_run(config, settings, Use()) if env is None else resolve(env, settings)
+    resolved = resolve_run(config, settings) if env is None else resolve(env, settings)
     if isinstance(run.discretizer, AssignedRows):
         played_on = replace_checked(resolved.config, initial_q=greedy_table(run))
         resolved = replace(resolved, discretizer=run.discretizer.as_played(), config=played_on)

@@ -97,8 +97,7 @@ def trained_in_python(
         OverflowError: if the values of the tables have overflowed.
         Exception: any exception that the environment or the settings raise.
     """
-    made = env() if callable(env) else env
-    with closing(resolve(made, {**settings, "seed": seed, "backend": "gymnasium"}, owns_env=True)) as resolved:
+    with closing(resolve(env() if callable(env) else env, {**settings, "seed": seed}, owns_env=True)) as resolved:
         trainer = _core.Trainer(resolved.spec(), resolved.seed, memory=memory)
         _Worker.training = True
         try:

@@ -76,7 +76,7 @@ def resume(
     options = TrainingOptions(callback, callback_every, record, visits, snapshots, progress, memory_limit)
     if has_finished(earlier, episodes, options):
         return earlier
-    resolved = resolve_again("run", earlier, episodes, env, callback)
+    resolved = resolve_again("run", earlier, episodes, env)
     try:
         return train_resolved(resolved, options, earlier)
     finally:

@@ -23,12 +23,11 @@ from qtab.config.settings import Settings
 from qtab.results.recording import SnapshotCollector, recordings_of, snapshot_episodes
 from qtab.results.run import Run
 from qtab.results.run_state import RunState, generator_state
-from qtab.training.callbacks import CALLBACK_EVERY, CallbackList, Callbacks, TrainingOptions, watching
+from qtab.training.callbacks import CALLBACK_EVERY, CallbackList, Callbacks, TrainingOptions
 from qtab.training.setup.environment import PythonEnvironment
 from qtab.training.setup.resolve import resolve
 from qtab.training.setup.resolved_run import ResolvedRun, log_default_limit, log_python_stepping, masks_of
 from qtab.training.setup.run_memory import check_run_memory, tables_shape
-from qtab.training.setup.use import Use
 
 _LOGGER = logging.getLogger("qtab")
 
@@ -56,9 +55,8 @@ def train(
     Args:
         env: An environment's id, its EnvSpec, or an environment, which is not closed. None takes the environment of
             ``config``. If Rust implements an environment and it is unchanged since ``gymnasium.make``, Rust trains
-            with the same numbers and leaves the object untouched. So it does with an ordinary class, given as an id,
-            that Numba compiles for a long run. Any other environment is stepped in Python; the logger ``qtab`` gives
-            the reason once, unless ``progress`` is False.
+            with the same numbers and leaves the object untouched. Any other environment is stepped in Python; the
+            logger ``qtab`` gives the reason once, unless ``progress`` is False.
         config: The settings to start from. ``qtab.train(config=run.config)`` repeats a run exactly, in the environment
             that it was trained on, with its wrappers. Settings of a Config that do not apply together with the
             keywords are ignored; with another environment, so are its ``env_kwargs``, its ``preset`` and settings
@@ -110,12 +108,10 @@ def train(
         if again is None:
             return earlier
         resolved = again
+    elif isinstance(base, Config):
+        resolved, _, _ = resolve_over(env, base, settings, resolve)
     else:
-        attempt = partial(resolve, use=Use(watched=watching(callback)))
-        if isinstance(base, Config):
-            resolved, _, _ = resolve_over(env, base, settings, attempt)
-        else:
-            resolved = attempt(env, base, settings)
+        resolved = resolve(env, base, settings)
     log_default_limit(resolved)
     if progress is not False:
         log_python_stepping(resolved)

@@ -4,9 +4,7 @@ import math
 import os
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from contextlib import suppress
-from dataclasses import replace
-from functools import partial
+from contextlib import closing, suppress
 from typing import Any, TypeAlias
 
 import gymnasium as gym
@@ -29,15 +27,14 @@ from qtab.config.help import with_settings
 from qtab.config.merge import collect
 from qtab.config.settings import SharedSettings
 from qtab.discretizers.assigned_rows import AssignedRows
+from qtab.envs.in_rust.matching import equal_environments
 from qtab.results.runs import Runs
 from qtab.training.runs_progress import RunsCallback, RunsReporter, train_in_parts
 from qtab.training.setup.environment import mask_bytes
-from qtab.training.setup.equal_objects import DIFFERENT, made_by, maker_of, makes_equals
 from qtab.training.setup.resolve import resolve
 from qtab.training.setup.resolved_run import ResolvedRun, log_default_limit, log_python_stepping
 from qtab.training.setup.run_env import resolve_over
 from qtab.training.setup.run_memory import bytes_in_progress, tables_shape
-from qtab.training.setup.use import Use
 
 MakeEnv: TypeAlias = Callable[[], gym.Env]
 
@@ -97,8 +94,7 @@ def train_many(
     env, base = collect(train_many, env, config, settings)
     # The bit generator may reject the largest seed.
     largest = numbers[-1] if isinstance(numbers, range) else max(numbers)
-    attempt = partial(resolve_template, runs=len(numbers))
-    template, env, overrides = resolve_over(env, base, {**settings, "seed": largest}, attempt)
+    template, env, overrides = resolve_over(env, base, {**settings, "seed": largest}, resolve_template)
     resolved = template.with_seed(numbers[0])
     log_default_limit(resolved)
     log_python_stepping(resolved)
@@ -181,13 +177,8 @@ def thread_count(threads: int | None) -> int:
     return os.cpu_count() or 1
 
 
-def resolve_template(env: str | EnvSpec | MakeEnv, settings: Mapping[str, Any], runs: int | None = None) -> ResolvedRun:
-    """Resolves one of many runs that differ only by their seed; its environment is closed again.
-
-    Args:
-        env: The environment.
-        settings: The settings.
-        runs: The number of runs, for which an ordinary class may be compiled by default; None never does that.
+def resolve_template(env: str | EnvSpec | MakeEnv, settings: Mapping[str, Any]) -> ResolvedRun:
+    """Resolves a run that the others differ from only by their seed; its environment is closed again.
 
     Raises:
         TypeError: for a single environment, which several runs cannot share.
@@ -196,21 +187,27 @@ def resolve_template(env: str | EnvSpec | MakeEnv, settings: Mapping[str, Any], 
         raise TypeError(
             "env must be an id, an EnvSpec or a function that makes an environment: runs cannot share an environment"
         )
-    made, watched = made_by(env) if callable(env) else (env, None)
-    use = None if runs is None else Use(runs, watched, maker_of(env))
-    resolved = resolve(made, settings, owns_env=True, use=use)
+    made: Any = env
+    if callable(env):
+        made = env()
+        if not isinstance(made, gym.Env):
+            raise TypeError(f"env must make an environment, got {shown(made)}")
+    resolved = resolve(made, settings, owns_env=True)
     resolved.close()
-    if resolved.is_native and not makes_equals(env, made, resolved.config):
+    if callable(env) and resolved.is_native and not _makes_equals(env, made):
         if (backend := settings.get("backend")) in INSISTING:
             raise ValueError(
                 f"env must make equal environments at every call for backend {backend!r}, got two that differ"
             )
         # Each run then makes an environment, in a separate process.
-        reason = DIFFERENT if resolved.config.backend == "numba" else None
-        resolved = resolve(env() if callable(env) else env, {**settings, "backend": "gymnasium"}, owns_env=True)
+        resolved = resolve(env(), {**settings, "backend": "gymnasium"}, owns_env=True)
         resolved.close()
-        resolved = replace(resolved, python_reason=reason)
     return resolved
+
+
+def _makes_equals(make_env: MakeEnv, made: gym.Env) -> bool:
+    with closing(make_env()) as another:
+        return equal_environments(made, another)
 
 
 def allocate_results(

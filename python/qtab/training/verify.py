@@ -18,7 +18,6 @@ from qtab._utils.memory import check_memory, memory_limit
 from qtab._utils.shown import counted, shown
 from qtab._utils.versions import versions
 from qtab.config import Config
-from qtab.config.origin import was_compiled_by_default
 from qtab.config.unknown import suggesting
 from qtab.reference import LEARNERS
 from qtab.results.rates import ONLY_FIRST, repeatable
@@ -250,8 +249,6 @@ def _again(config: Config, env: gym.Env | None, episodes: int) -> tuple[NDArray[
 
 def _fields(config: Config, env: gym.Env | None) -> dict[str, Any]:
     fields = {name: value for name, value in vars(config).items() if name != "env"}
-    if was_compiled_by_default(config):  # Numba may be missing here
-        fields["backend"] = "auto"
     if env is not None:
         del fields["env_kwargs"]
         fields["backend"] = "gymnasium" if config.backend == "gymnasium" else "auto"

@@ -55,7 +55,7 @@ def test_effects_are_refused_and_never_happen(
 @pytest.mark.parametrize("cls", CHANGING_DATA, ids=lambda one: one.__name__)
 def test_data_outside_of_the_environment_is_restored(cls: Callable[[], gym.Env]) -> None:
     env = cls()
-    shared = refuse_effects(env).shared
+    shared = refuse_effects(env)
     with pytest.raises(NotCompilable, match="outside of the environment is changed"), restored(shared):
         twin_of(env).reset(seed=0)
     assert (RAN, effects.BOARD, Quiet.shared.tolist()) == ([], [0, 0, 0], [0.0, 0.0, 0.0])

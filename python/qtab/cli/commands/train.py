@@ -23,7 +23,6 @@ from qtab.envs.registry import named_spec
 from qtab.results.recording import snapshot_episodes
 from qtab.training.setup.resolve import resolve
 from qtab.training.setup.resolved_run import ResolvedRun, time_limit_notice
-from qtab.training.setup.use import Use
 
 
 def add_arguments(parser: Parser) -> None:
@@ -57,7 +56,7 @@ def run(asked: Namespace) -> int:
     asked.flags = _flags(asked, settings)
     with Report(asked) as report:
         with usage_errors(asked):
-            resolved = resolve(env, with_initial_q(settings), use=Use())
+            resolved = resolve(env, with_initial_q(settings))
         with closing(resolved):
             with usage_errors(asked):
                 outputs = Outputs(resolved.config, asked, report)

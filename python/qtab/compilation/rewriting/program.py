@@ -88,14 +88,6 @@ class Program:
         """The info dicts that ``reset`` and ``step`` return, with their functions."""
         self.mask: tuple[str, ast.expr | None] = "", None
         """The dtype of the compiled action mask, and its expression in the info dicts; None for a method."""
-        self.new_infos = True
-        """Whether all info dicts that were returned so far were made for the call."""
-        self.left_out: list[Any] = []
-        """The expressions that are left out; see :mod:`qtab.compilation.rewriting.statements.left_out`."""
-        self.stale: dict[str, list[Any]] = {}
-        """The values that are assigned to attributes that are never read, by the names of the attributes."""
-        self.assigned_by_reset: set[str] = set()
-        """The attributes that ``reset`` assigns on every path, once it is rewritten."""
         self.failed: set[Any] = set()
         """The keys of functions that cannot be compiled."""
         self.problems: list[NotCompilable] = []

@@ -19,7 +19,6 @@ from qtab.compilation.rewriting.infos.shown import Shown, shown_of
 from qtab.compilation.rewriting.observations import observation_code
 from qtab.compilation.rewriting.program import Compiled, Program, as_float
 from qtab.compilation.rewriting.source.sources import Source, source_of
-from qtab.compilation.rewriting.statements import left_out
 from qtab.compilation.rewriting.user_functions import called, compiled_function
 from qtab.compilation.rewriting.values import BOOL, INT, Scalar, TupleKind, Value, constant, in_words
 from qtab.compilation.twins.class_twin import reset_twin
@@ -56,11 +55,8 @@ class Rewritten:
     kept_between_episodes: tuple[str, ...]
     """The attributes that change, and that ``reset`` does not assign before it reads them: the first state of an
     episode depends on the episodes before."""
-    left_out: NotCompilable | None
-    """Why something that compiled code leaves out, such as the info dict, might raise an error in Python; None if
-    nothing can."""
     changed: frozenset[str]
-    """The attributes that ``reset`` or ``step`` assigns or changes in place, also those that are left out."""
+    """The attributes that ``reset`` or ``step`` assigns or changes in place, and that compiled code needs."""
     changed_in_place: frozenset[str]
     """Those of which elements are assigned."""
     lines: dict[int, tuple[str, int]]
@@ -144,7 +140,6 @@ def _rewritten(env: gym.Env, attributes: Attributes, program: Program) -> Rewrit
     except Follows:  # to find the problems of step as well
         _method(program, "step")
         raise
-    program.assigned_by_reset = reset.flow.assigned
     step = _method(program, "step")
     _add_top(program, "reset", reset)
     _add_top(program, "step", step)
@@ -178,8 +173,7 @@ def _rewritten(env: gym.Env, attributes: Attributes, program: Program) -> Rewrit
         dtype,
         initial,
         tuple(kept),
-        left_out.refusal(program),
-        frozenset({*program.stored, *attributes.changed_in_place, *program.stale}),
+        frozenset(program.stored | attributes.changed_in_place),
         frozenset(attributes.changed_in_place),
         lines,
         source,

@@ -66,8 +66,6 @@ class Scope:
         """Whether arrays of the record are copied where they are read, as the statement may change them."""
         self.unknown: set[str] = set()
         """The local variables that statements assign which cannot be compiled."""
-        self.new_infos: dict[str, bool] = {}
-        """For each info dict, whether it was made by the environment for this call, so that nobody else can use it."""
         self.whole: ast.expr | None = None
         """The expression that is all of a statement, or all of what a statement assigns or returns."""
         self.is_shared = False

@@ -18,7 +18,6 @@ from qtab.compilation.rewriting.source.sources import Source, source_of
 from qtab.compilation.rewriting.source.syntax import CHANGING
 from qtab.compilation.rewriting.statements.effects import PURE_BUILTINS, PURE_METHODS
 from qtab.compilation.twins.known_values import KnownValues
-from qtab.compilation.twins.outside import Outside
 from qtab.compilation.twins.plain_data import is_plain, mutable_parts
 
 METHODS = ("reset", "step", "action_masks", "action_mask")
@@ -42,34 +41,36 @@ REFUSED: tuple[type[ast.AST], ...] = (
 ADVICE = "use numbers, math, and the NumPy functions of the documentation"
 
 
-def refuse_effects(env: gym.Env) -> Outside:
+def refuse_effects(env: gym.Env) -> list[Any]:
     """Refuses an environment whose resets or steps may have effects outside of it, such as files, prints or windows.
 
     Args:
         env: The environment, without wrappers. Nothing of it is run.
 
+    Returns:
+        The lists, dicts, sets, deques and arrays that its methods read: of its class, of modules, of default arguments.
+
     Raises:
-        NotCompilable: if they may, with the line, or if the source is not available.
+        NotCompilable: if they may, with the line, or if the source code is not available.
     """
     if (base := next((one for one in type(env).__mro__ if "__del__" in vars(one)), None)) is not None:
         raise NotCompilable(f"{base.__name__} defines __del__, which would be called for a copy", advice="use close")
-    search = Search(env)
+    search = _Search(env)
     for name in METHODS:
         member, owner = search.known.find(name)
         if isinstance(member, FunctionType):
             search.add(member, owner)
     search.run()
-    return Outside(list(search.shared.values()), search.message)
+    return list(search.shared.values())
 
 
-class Search:
+class _Search:
     """The functions of an environment that are reached, and what is known about it."""
 
     def __init__(self, env: gym.Env) -> None:
         self.env = env
         self.known = Attributes(env, env)
         self.shared: dict[int, Any] = {}
-        self.message: str | None = None
         self._waiting: list[tuple[FunctionType, type | None, str]] = []
         self._found: set[tuple[FunctionType, type | None, str]] = set()
 
@@ -81,7 +82,8 @@ class Search:
             owner: The class that defines it; None if it is no method.
             receiver: ``"self"`` or ``"class"`` if its first argument is the environment or its class, else ``""``.
         """
-        if (one := (function, owner, receiver)) not in self._found:
+        one = (function, owner, receiver)
+        if one not in self._found:
             self._found.add(one)
             self._waiting.append(one)
 
@@ -89,17 +91,13 @@ class Search:
         """Searches all functions that are reached."""
         while self._waiting:
             function, owner, receiver = self._waiting.pop()
-            self.body(source_of(function), owner, receiver).search()
-
-    def body(self, source: Source, owner: type | None, receiver: str) -> "Body":
-        """Returns the search in one of the functions."""
-        return Body(self, source, owner, receiver)
+            _Body(self, source_of(function), owner, receiver).search()
 
 
-class Body(KnownValues):
+class _Body(KnownValues):
     """The search in the body of a function."""
 
-    def __init__(self, search: Search, source: Source, owner: type | None, receiver: str) -> None:
+    def __init__(self, search: _Search, source: Source, owner: type | None, receiver: str) -> None:
         super().__init__(search.env, search.known, source, receiver)
         self._all, self._source, self._owner = search, source, owner
 
@@ -267,8 +265,6 @@ class Body(KnownValues):
         root = module.partition(".")[0]
         if getattr(builtins, name, None) is value and (name in SAFE_BUILTINS or isinstance(value, type)):
             return
-        if module == "gymnasium.logger" and self._all.message is None:
-            self._all.message = f"{self._source.file}:{getattr(node, 'lineno', self._source.node.lineno)}"
         if value is gym.Env.reset or module in ("math", "gymnasium.logger") or value is super:
             return
         if root == "numpy" and isinstance(

@@ -12,7 +12,6 @@ from qtab.envs.origin.class_code import is_of_library
 
 if TYPE_CHECKING:
     from qtab.compilation.ordinary import OrdinaryEnv
-    from qtab.compilation.twins.stepped_in_python import SteppedInPython
 
 
 def has_capsule(env: gym.Env) -> bool:
@@ -89,22 +88,7 @@ def compiled_class(
     return compiled
 
 
-def stepped_in_python(env: gym.Env, has_action_mask: bool) -> _core.ExternalEnv:
-    """Returns an ordinary Gymnasium class that Python steps, as if it were compiled; see :class:`SteppedInPython`.
-
-    Raises:
-        NotInRustError: if a class with its spaces or its wrappers cannot have been compiled.
-    """
-    from qtab.compilation import NotCompilable
-    from qtab.compilation.twins.stepped_in_python import SteppedInPython
-
-    try:
-        return external_of(SteppedInPython(_unwrapped(env), str(env), has_action_mask))
-    except NotCompilable as refusal:
-        raise NotInRustError(refusal.place_and_reason, refusal.advice) from None
-
-
-def external_of(env: "OrdinaryEnv | SteppedInPython") -> _core.ExternalEnv:
+def external_of(env: "OrdinaryEnv") -> _core.ExternalEnv:
     """Returns an ordinary class as Rust steps it."""
     capsule = env.capsule()  # kept here: it must not end while an error is raised
     return _core.ExternalEnv(capsule, env.repeat, repeats_episodes=True)

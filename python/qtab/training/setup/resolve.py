@@ -2,9 +2,9 @@
 
 from collections.abc import Mapping
 from contextlib import ExitStack
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, TypeAlias
 
 import gymnasium as gym
 import numpy as np
@@ -20,8 +20,8 @@ from qtab.config.origin import Origin, copied
 from qtab.config.presets import preset
 from qtab.config.validation import defaults
 from qtab.envs.actions import Actions, choose_actions
-from qtab.envs.in_rust.matching import rust_unavailable, time_limit
-from qtab.envs.in_rust.native import KnownTable, known_table, native_env
+from qtab.envs.in_rust.matching import NotInRustError, entry_for_env, rust_unavailable, time_limit
+from qtab.envs.in_rust.native import KnownTable, check_not_shown, known_table, native_env
 from qtab.envs.origin.class_code import LIBRARY, is_of_library
 from qtab.envs.origin.description import EnvironmentDescription, describe_entry
 from qtab.envs.registry import (
@@ -42,13 +42,12 @@ from qtab.training.setup.environment import (
     observed_masks,
     with_discretizer,
 )
-from qtab.training.setup.matching import InRust, match
 from qtab.training.setup.resolved_run import ResolvedRun, derived_settings
 from qtab.training.setup.spaces_fit import fit_initial_q, infer_discretizer, set_aside
-from qtab.training.setup.use import Use
-from qtab.training.setup.visibility import HELD, references
 
 READ_IN_PYTHON = "a function as the discretizer, or max_rows, reads each observation in Python"
+InRust: TypeAlias = EnvEntry | _core.ExternalEnv
+"""An environment that Rust steps: an entry of the registry, or that of a capsule."""
 MASKS_BY_STEP = "its action masks are known only from step to step"
 MASKS_MISSING = (
     "action_mask=True needs an environment with action masks: write a method action_masks(self) that returns an array "
@@ -74,8 +73,6 @@ class _Request:
     """The reason why an environment object is stepped in Python although this was not requested, and a remedy."""
     spec: EnvSpec | None = None
     """The spec of an environment that was made here."""
-    by_default: bool = False
-    """Whether the entry is an ordinary class that was compiled by default."""
 
     def description(self) -> EnvironmentDescription:
         """Describes the environment, before anything steps it."""
@@ -94,10 +91,7 @@ class _Request:
 
 
 def resolve(
-    env: str | EnvSpec | gym.Env | partial[gym.Env],
-    *layers: Mapping[str, Any],
-    owns_env: bool = False,
-    use: Use | None = None,
+    env: str | EnvSpec | gym.Env | partial[gym.Env], *layers: Mapping[str, Any], owns_env: bool = False
 ) -> ResolvedRun:
     """Finds the environment and fills in all defaults.
 
@@ -106,7 +100,6 @@ def resolve(
         *layers: Settings by field name; later layers override earlier ones, and all override the preset.
         owns_env: Whether to close an environment that is given, with the run, or at once if it is not needed. An
             environment made here is always closed.
-        use: How the call uses the environment. None never compiles an ordinary class by default.
 
     Raises:
         gymnasium.error.Error: raised by Gymnasium for an unknown environment id.
@@ -122,9 +115,9 @@ def resolve(
         if isinstance(env, gym.Env):
             if owns_env:
                 on_exit.callback(env.close)
-            request = _from_env(env, asked, owns_env, use)
+            request = _from_env(env, asked)
         elif isinstance(env, str | EnvSpec):
-            request = _from_spec(env, asked, use)
+            request = _from_spec(env, asked)
             owns_env = True
             on_exit.callback(request.env.close)
         else:
@@ -136,28 +129,26 @@ def resolve(
     return run
 
 
-def _from_spec(env: str | EnvSpec, asked: Mapping[str, Any], use: Use | None) -> _Request:
+def _from_spec(env: str | EnvSpec, asked: Mapping[str, Any]) -> _Request:
     # The id keeps its package, so that the config can make the environment anywhere.
     name, spec = (env.id, env) if isinstance(env, EnvSpec) else named_spec(env)
     asked = {"env_kwargs": dict(spec.kwargs), **asked}
     config = config_of(name, asked)
     entry: InRust | None = None if config.backend == "numba" else entry_for_spec(spec, config.env_kwargs)
-    known, python_reason, by_default = None, None, False
+    known, python_reason = None, None
     if entry is not None and config.backend not in IN_PYTHON and config.action_mask is False:
         known = known_table(spec, config.env_kwargs)
-    made, new = _make(spec, config) if known is None else known, gym.Env()
-    if use is not None and references(made) > references(new):
-        use = replace(use, watched=HELD)
+    made = _make(spec, config) if known is None else known
     own_limit = spec.max_episode_steps
     if entry is None:
         try:
-            entry, python_reason, by_default = match(made, config, use, is_made=True, is_ours=True)
+            entry, python_reason = _match(made, config, is_made=True)
         except ValueError:
             made.close()
             raise
         if entry is not None:  # its class, or the function that makes it, may have a limit of its own
             config, own_limit = _within_limit(config, time_limit(made))
-    return _Request(made, entry, config, asked, own_limit, python_reason, spec, by_default)
+    return _Request(made, entry, config, asked, own_limit, python_reason, spec)
 
 
 def _within_limit(config: Config, limit: int | None) -> tuple[Config, int | None]:
@@ -167,6 +158,33 @@ def _within_limit(config: Config, limit: int | None) -> tuple[Config, int | None
     return config, limit
 
 
+def _match(env: gym.Env, config: Config, *, is_made: bool) -> tuple[InRust | None, str | None]:
+    """Returns the entry, or the capsule, of an environment that Rust can step; else None, and the reason with a remedy.
+
+    Args:
+        env: The environment.
+        config: The settings given.
+        is_made: Whether the environment was made from an id. A render mode then requests frames, which Rust cannot
+            draw.
+
+    Raises:
+        ValueError: if the backend is Rust, and Rust cannot step the environment.
+    """
+    if config.backend in IN_PYTHON:
+        return None, None
+    from qtab.envs.external.capsule import external_env
+
+    try:
+        entry = external_env(env, config.backend, needs_masks=config.action_mask is True) or entry_for_env(env)
+        if is_made or config.backend == "auto":
+            check_not_shown(env)
+    except NotInRustError as error:
+        if config.backend in INSISTING:
+            raise rust_unavailable(error, config.backend) from None
+        return None, f"{error}; {error.remedy}" if error.remedy else str(error)
+    return entry, None
+
+
 def _make(spec: EnvSpec, config: Config) -> gym.Env:
     limit: dict[str, Any] = {}
     if config.max_episode_steps is not None:
@@ -174,16 +192,16 @@ def _make(spec: EnvSpec, config: Config) -> gym.Env:
     return make_env(spec, config.env_kwargs, **limit)
 
 
-def _from_env(env: gym.Env, asked: Mapping[str, Any], is_ours: bool, use: Use | None) -> _Request:
+def _from_env(env: gym.Env, asked: Mapping[str, Any]) -> _Request:
     name = env.spec.id if env.spec is not None else type(env.unwrapped).__name__
     kwargs = dict(env.spec.kwargs) if env.spec is not None else {}
     if asked.get("env_kwargs"):
         raise ValueError(f"env_kwargs must be left out with an environment object, got {shown(asked['env_kwargs'])}")
     asked = {**asked, "env_kwargs": kwargs}
     config = config_of(name, asked)
-    entry, python_reason, by_default = match(env, config, use, is_made=False, is_ours=is_ours)
+    entry, python_reason = _match(env, config, is_made=False)
     config, limit = _within_limit(config, time_limit(env))
-    return _Request(env, entry, config, asked, limit, python_reason, by_default=by_default)
+    return _Request(env, entry, config, asked, limit, python_reason)
 
 
 def _fill_defaults(request: _Request, owns_env: bool) -> ResolvedRun:
@@ -235,7 +253,7 @@ def _fill_defaults(request: _Request, owns_env: bool) -> ResolvedRun:
         backend="gymnasium" if not in_rust else "rust" if external is None else _backend_of(env),
     )
     origin = Origin(description, derived_settings(request.config, config, discretizer))
-    run = ResolvedRun(
+    return ResolvedRun(
         config=copied(config, origin),
         environment=environment,
         discretizer=discretizer,
@@ -246,12 +264,6 @@ def _fill_defaults(request: _Request, owns_env: bool) -> ResolvedRun:
         default_time_limit=own_limit is None,
         python_reason=python_reason,
     )
-    if in_rust and request.by_default:
-        from qtab.training.setup.trial_episodes import differs_from_python
-
-        if (found := differs_from_python(run, env)) is not None:
-            return _fill_defaults(replace(request, entry=None, python_reason=found, by_default=False), owns_env)
-    return run
 
 
 def _environment(request: _Request, actions: Actions, owns_env: bool) -> tuple[Environment, str | None]:

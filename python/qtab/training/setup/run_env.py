@@ -25,7 +25,6 @@ from qtab.envs.registry import ENTRIES, gymnasium_id, hint_for, make_env, spec_o
 from qtab.results.run import Run
 from qtab.training.setup.resolve import resolve
 from qtab.training.setup.resolved_run import ResolvedRun
-from qtab.training.setup.use import Use
 
 Attempt = Callable[[Any, dict[str, Any]], ResolvedRun]
 """Resolves settings in an environment, given as an id or as a function that makes it."""
@@ -78,21 +77,15 @@ def can_be_made(config: Config) -> bool:
     return True
 
 
-def resolve_run(config: Config, settings: Mapping[str, Any], use: Use | None = None) -> ResolvedRun:
+def resolve_run(config: Config, settings: Mapping[str, Any]) -> ResolvedRun:
     """Resolves settings in the environment of a run.
-
-    Args:
-        config: The config of the run.
-        settings: The settings.
-        use: How the call uses the environment; see :func:`qtab.training.setup.resolve.resolve`.
 
     Raises:
         gymnasium.error.UnregisteredEnv: if the run was trained on an environment that is not registered.
         ValueError: if the environment cannot be made as it was, or a setting does not fit.
     """
     spec_of_run(config.env)  # raises for a class name, which is not an id
-    attempt = partial(resolve, use=use)
-    return as_in_training(config, {"env_kwargs": config.env_kwargs, **settings}, attempt)[0]
+    return as_in_training(config, {"env_kwargs": config.env_kwargs, **settings}, resolve)[0]
 
 
 def as_in_training(

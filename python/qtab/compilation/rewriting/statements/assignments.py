@@ -1,13 +1,12 @@
 """Assignments to local variables, attributes and elements."""
 
 import ast
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from qtab.compilation.rewriting import specials
 from qtab.compilation.rewriting.expressions import containers
 from qtab.compilation.rewriting.expressions.operators import SYMBOLS
 from qtab.compilation.rewriting.statements.effects import check_pure
-from qtab.compilation.rewriting.statements.left_out import check_changed, is_new, note
 from qtab.compilation.rewriting.statements.stores import changeable, store, store_element
 from qtab.compilation.rewriting.statements.variables import in_variables, is_simple, kept
 from qtab.compilation.rewriting.values import (
@@ -33,13 +32,6 @@ def assign(scope: "Statements", node: ast.stmt, targets: list[ast.expr], value_n
     if all(_is_left_out(scope, target) for target in targets):
         check_pure(scope, value_node)
         for target in targets:
-            note(scope, value_node, target.attr if isinstance(target, ast.Attribute) else "")
-            if isinstance(target, ast.Name):
-                scope.new_infos[target.id] = is_new(scope, value_node) and scope.new_infos.get(target.id, True)
-            if isinstance(target, ast.Subscript) and isinstance(target.value, ast.Name):
-                check_changed(scope, node, target.value.id)
-            if isinstance(target, ast.Subscript) and not _can_store(scope, target):
-                note(scope, target, refused=True)
             if isinstance(target, ast.Name):
                 scope.kinds[scope.version(target.id)] = INFO
                 scope.note_set(target.id)
@@ -84,15 +76,6 @@ def _is_left_out(scope: "Statements", target: ast.expr) -> bool:
     return _is_unread(scope, target)
 
 
-def _can_store(scope: "Statements", target: ast.Subscript) -> bool:
-    """Returns whether an element of an info dict can be assigned: the dict exists, and the key is a constant."""
-    return isinstance(target.slice, ast.Constant) and scope.is_set(target.value.id)  # type: ignore[attr-defined]
-
-
-def _loaded(target: Any) -> ast.expr:
-    return ast.copy_location(ast.Attribute(target.value, target.attr, ast.Load()), target)
-
-
 def _is_unread(scope: "Statements", target: ast.expr) -> bool:
     if isinstance(target, ast.Attribute) and isinstance(target.value, ast.Name):
         base = scope.fixed.get(target.value.id)
@@ -122,12 +105,10 @@ def _bind_name(scope: "Statements", node: ast.stmt, name: str, value: Value) -> 
     scope.note_set(name)
     if name in scope.infos:
         if isinstance(value.kind, InfoKind | DictKind) or isinstance(value.fixed, dict):
-            scope.new_infos[name] = isinstance(value.kind, InfoKind) and scope.program.new_infos
             scope.kinds[scope.version(name)] = INFO
             return
         raise scope.refuse(node, "the info dict is made in another assignment", "assign it by itself")
     if value.kind == INFO:
-        scope.new_infos[name] = scope.program.new_infos
         scope.kinds[scope.version(name)] = INFO
         return
     if scope.depth and scope.names.counts[name] > 1 and name not in scope.dynamic:
@@ -182,8 +163,6 @@ def augmented(scope: "Statements", node: ast.AugAssign) -> None:
         return
     if _is_unread(scope, target):
         check_pure(scope, node.value)
-        sum_of_both = ast.copy_location(ast.BinOp(_loaded(target), node.op, node.value), node)
-        note(scope, sum_of_both, target.attr)  # type: ignore[union-attr]
         return
     if isinstance(target, ast.Attribute):
         before = scope.expression(target)
@@ -195,7 +174,6 @@ def augmented(scope: "Statements", node: ast.AugAssign) -> None:
         return
     if isinstance(target.value, ast.Name) and target.value.id in scope.infos:
         check_pure(scope, node.value)
-        note(scope, node, refused=True)  # whether it has the key is not known
         return
     base = changeable(scope, node, target)
     if any(isinstance(one, ast.Call) for one in ast.walk(target.slice)):

@@ -97,9 +97,9 @@ def _of_call(
     if isinstance(callee, ast.Attribute) and isinstance(callee.value, ast.Name) and callee.value.id == own:
         member, _ = scope.program.attributes.find(callee.attr)
         return _of_function(scope, getattr(member, "__func__", member), seen)
-    found = resolved(callee, function)
+    found = _resolved(callee, function)
     if isinstance(callee, ast.Attribute) and found is MISSING:
-        owner = resolved(callee.value, function)
+        owner = _resolved(callee.value, function)
         simple = owner is MISSING or isinstance(owner, np.ndarray | str | dict | list | tuple)
         if simple and callee.attr in PURE_METHODS:
             return None
@@ -124,7 +124,7 @@ def _is_numpy(value: Any) -> bool:
     return numpy and "random" not in module and not isinstance(bound, np.random.Generator | np.random.RandomState)
 
 
-def resolved(node: ast.expr, function: FunctionType) -> Any:
+def _resolved(node: ast.expr, function: FunctionType) -> Any:
     """Returns the constant that a name or a dotted name stands for; ``MISSING`` if it is none."""
     if isinstance(node, ast.Name):
         if node.id in function.__code__.co_varnames:
@@ -133,7 +133,7 @@ def resolved(node: ast.expr, function: FunctionType) -> Any:
             node.id, function.__globals__.get(node.id, getattr(builtins, node.id, MISSING))
         )
     if isinstance(node, ast.Attribute):
-        owner = resolved(node.value, function)
+        owner = _resolved(node.value, function)
         if isinstance(owner, ModuleType | type):
             return getattr(owner, node.attr, MISSING)
     return MISSING

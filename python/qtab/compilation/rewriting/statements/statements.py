@@ -12,7 +12,6 @@ from qtab.compilation.rewriting.program import tuple_value
 from qtab.compilation.rewriting.source.syntax import calls_own_functions, info_names
 from qtab.compilation.rewriting.statements import assignments, loops
 from qtab.compilation.rewriting.statements.effects import check_pure
-from qtab.compilation.rewriting.statements.left_out import is_new, is_update, note
 from qtab.compilation.rewriting.statements.variables import kept
 from qtab.compilation.rewriting.values import INFO, Array, InfoKind, TupleKind, Value, constant, in_words, join
 
@@ -98,12 +97,22 @@ class Statements(Displays):
     def _do_expr(self, node: ast.Expr) -> bool:
         if isinstance(node.value, ast.Constant):
             return False
-        if is_update(self, node.value):
+        if self._is_info_update(node.value):
             return False
         self.whole = node.value
         value = self.expression(node.value)
         if value.code and (not value.is_fixed or self.has_effects(value)):
             self.emit(value.code, node)
+        return False
+
+    def _is_info_update(self, node: ast.expr) -> bool:
+        """Drops ``info.update(...)``."""
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr == "update":
+            base = node.func.value
+            if isinstance(base, ast.Name) and base.id in self.infos:
+                for one in (*node.args, *[keyword.value for keyword in node.keywords]):
+                    check_pure(self, one)
+                return True
         return False
 
     @cached_property
@@ -250,9 +259,6 @@ class Statements(Displays):
             last = node.elts[-1]
             if not (isinstance(last, ast.Name) and last.id in self.infos):
                 check_pure(self, last)
-                note(self, last)
-            elif not self.is_set(last.id):
-                note(self, last, refused=True)
             self.note_info(last)
             return tuple_value((*[self.lift(part, node) for part in parts], Value(INFO)))
         value = self.expression(node)
@@ -269,7 +275,6 @@ class Statements(Displays):
     def note_info(self, node: ast.expr) -> None:
         """Notes the info dict that is returned, for its action mask."""
         self.program.infos.setdefault(self.role, []).append((self, node))
-        self.program.new_infos = self.program.new_infos and is_new(self, node)
 
     returns: list[Any]
 
