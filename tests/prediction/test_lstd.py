@@ -119,6 +119,7 @@ def test_the_exact_weights_of_boyans_chain_are_found() -> None:
     [
         (lambda: LSTD(0), ValueError, "n_features must be an integer of at least 1"),
         (lambda: LSTD(3, epsilon=0.0), ValueError, "epsilon must be above 0, got 0"),
+        (lambda: LSTD(3, epsilon=1e-309), ValueError, "epsilon must have a finite reciprocal if recursive, got 1e-309"),
         (lambda: LSTD(3, trace_decay=2), ValueError, r"trace_decay must lie in \[0, 1\]"),
         (
             lambda: LSTD(3).update([1, 2], 0.0, [1, 2, 3]),
@@ -140,3 +141,22 @@ def test_a_singular_matrix_is_refused() -> None:
     with pytest.raises(ValueError, match="A is singular"):
         _ = found.weights
     assert repr(found) == "<LSTD of 1 feature: discount 1, λ = 0, ε = 1>"
+
+
+def test_a_singular_matrix_is_refused_by_the_recursion() -> None:
+    found, other = LSTD(1, 1.0, epsilon=1.0, trace_decay=0.5), LSTD(1, 1.0, epsilon=1.0, trace_decay=0.5)
+    with pytest.raises(ValueError, match="A is singular after these transitions"):
+        found.update([1.0], 3.0, [2.0])
+    for learner in (found, other):  # the refused transition has no effect
+        learner.update([1.0], 1.0, [0.5])
+    assert found.weights.tobytes() == other.weights.tobytes()
+    assert found.b.tobytes() == other.b.tobytes()
+
+
+@pytest.mark.parametrize("recursive", [True, False])
+@pytest.mark.filterwarnings("ignore:overflow:RuntimeWarning", "ignore:invalid value:RuntimeWarning")
+def test_weights_that_overflow_are_refused(recursive: bool) -> None:
+    found = LSTD(1, 1.0, epsilon=1e-300, recursive=recursive)
+    found.update([1e-10], 1e300, [1e-10])
+    with pytest.raises(ValueError, match="the weights are not finite"):
+        _ = found.weights

@@ -1,5 +1,6 @@
 """Least-squares TD: the weights that are the fixed point of TD on all transitions seen so far."""
 
+import math
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,8 @@ from qtab._utils.arrays import numbers
 from qtab._utils.shown import counted
 
 FloatArray = NDArray[np.float64]
+
+_SINGULAR = "A is singular after these transitions; another epsilon helps"
 
 
 class LSTD:
@@ -50,6 +53,8 @@ class LSTD:
             raise ValueError(f"epsilon must be above 0, got {self.epsilon:g}")
         self.recursive = checks.boolean("recursive", recursive)
         scale = 1.0 / self.epsilon if self.recursive else self.epsilon
+        if not math.isfinite(scale):
+            raise ValueError(f"epsilon must have a finite reciprocal if recursive, got {self.epsilon:g}")
         self._matrix = scale * np.eye(count)  # A⁻¹ if recursive, else A
         self._b, self._trace = np.zeros(count), np.zeros(count)
 
@@ -58,14 +63,16 @@ class LSTD:
         """(d,): the weights w = A⁻¹ b.
 
         Raises:
-            ValueError: if A is singular.
+            ValueError: if A is singular, or if numbers overflowed.
         """
-        if self.recursive:
-            return _product(self._matrix, self._b)
         try:
-            weights: NDArray[Any] = np.linalg.solve(self._matrix, self._b)
+            weights: NDArray[Any] = (
+                _product(self._matrix, self._b) if self.recursive else np.linalg.solve(self._matrix, self._b)
+            )
         except np.linalg.LinAlgError:
-            raise ValueError("A is singular after these transitions; another epsilon helps") from None
+            raise ValueError(_SINGULAR) from None
+        if not np.isfinite(weights).all():
+            raise ValueError("the weights are not finite: A is singular, or numbers overflowed; another epsilon helps")
         return weights
 
     @property
@@ -88,7 +95,8 @@ class LSTD:
 
         Raises:
             TypeError: for an argument of the wrong type.
-            ValueError: for another number of features, or a number that is not finite.
+            ValueError: for another number of features, or a number that is not finite; if recursive, also if A would
+                be singular. The transition is then not learned.
         """
         x, next_x = self._vector("features", features), self._vector("next_features", next_features)
         self._learn(x, checks.finite("reward", reward), next_x, checks.boolean("terminated", terminated))
@@ -104,7 +112,8 @@ class LSTD:
 
         Raises:
             TypeError: for an argument of the wrong type.
-            ValueError: for another shape, or a number that is not finite.
+            ValueError: for another shape, or a number that is not finite; if recursive, also if A would be singular.
+                The transitions before that one are then learned.
         """
         matrix, given = numbers("features", features), numbers("rewards", rewards)
         if given.ndim != 1 or matrix.shape != (len(given) + 1, len(self._b)):
@@ -118,17 +127,19 @@ class LSTD:
             self._learn(matrix[step], reward, matrix[step + 1], ends and step == len(given) - 1)
 
     def _learn(self, x: FloatArray, reward: float, next_x: FloatArray, terminated: bool) -> None:
-        z = self._trace
-        z *= self.discount * self.trace_decay
-        z += x
+        z = self._trace * (self.discount * self.trace_decay) + x
         difference = x if terminated else x - self.discount * next_x
         if self.recursive:
             v = _product(self._matrix.T, difference)
             along = _product(self._matrix, z)
-            self._matrix -= along[:, None] * v / (1.0 + _product(v[None], z)[0])
+            denominator = 1.0 + _product(v[None], z)[0]
+            if denominator == 0.0:  # by which the determinant of A is multiplied
+                raise ValueError(_SINGULAR)
+            self._matrix -= along[:, None] * v / denominator
         else:
             self._matrix += z[:, None] * difference
         self._b += reward * z
+        self._trace = z
 
     def _vector(self, name: str, values: ArrayLike) -> FloatArray:
         vector = numbers(name, values)
