@@ -174,7 +174,7 @@ def test_the_generator_of_the_action_space_is_reported() -> None:
         env.action_space.sample()
         SARSA(env, q, episodes, learning_rate, discount, epsilon, rng)
 
-    broken(samples, "it calls env.action_space.sample(), which has a generator of its own")
+    broken(samples, "it calls env.action_space.sample(), which uses a separate generator")
     assert check("sarsa", samples).advice == ()
 
 

@@ -57,6 +57,9 @@ def test_an_exercise_is_found_in_its_module(tmp_path: Path, monkeypatch: pytest.
         find("week_three:SARS")
     with pytest.raises(ValueError, match="it defines no exercise"):
         find("json:SARSA")
+    for name in (":SARSA", ".week_three:SARSA"):
+        with pytest.raises(ValueError, match=f"exercise must be module:NAME, got '{name}'"):
+            find(name)
     with pytest.raises(ImportError, match="week_four"):
         find("week_four:SARSA")
     sys.modules.pop("week_three")

@@ -69,6 +69,8 @@ def find(exercise: str | int | Exercise) -> Exercise:
 def _own(exercise: str) -> Exercise:
     """Returns an exercise that a module defines, by ``"module:NAME"``."""
     module, _, name = exercise.partition(":")
+    if not module or module.startswith("."):
+        raise ValueError(f"exercise must be module:NAME, got {exercise!r}")
     defined = {key: value for key, value in vars(import_module(module)).items() if isinstance(value, Exercise)}
     if name in defined:
         return defined[name]

@@ -20,7 +20,7 @@ from qtab.exercises.recording_env import RecordingEnv
 from qtab.reference.parts.discretizers import TileCoding
 from qtab.reference.parts.streams import agent_stream
 
-SAMPLES = "it calls env.action_space.sample(), which has a generator of its own: draw all random numbers from rng"
+SAMPLES = "it calls env.action_space.sample(), which uses a separate generator: draw all random numbers from rng"
 
 
 @with_fields

@@ -26,3 +26,13 @@ def test_it_hands_out_and_grades(tmp_path: Path) -> None:
     assert done.stderr == ""
     assert (tmp_path / "marks.csv").read_text(encoding="utf-8").endswith("\nada,0,0,0\n")
     assert "2 checks passed" in (tmp_path / "reports" / "ada.txt").read_text(encoding="utf-8")
+
+
+def test_reports_that_cannot_be_written_are_refused_before_grading(tmp_path: Path) -> None:
+    (tmp_path / "submissions").mkdir()
+    (tmp_path / "submissions" / "ada.py").write_text("", encoding="utf-8")
+    (tmp_path / "reports").write_text("a file", encoding="utf-8")
+    done = qtab_here("exercises", "1", "--grade", "submissions", "--reports", "reports", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "--reports must be a folder that can be written, got 'reports': File exists" in done.stderr
+    assert done.stdout == ""

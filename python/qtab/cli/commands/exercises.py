@@ -1,5 +1,6 @@
 """List the exercises, show a task, hand out tasks to a class, or grade a folder of submissions."""
 
+import tempfile
 from argparse import Namespace
 from pathlib import Path
 
@@ -38,8 +39,6 @@ def run(options: Namespace) -> int:
         raise UsageError("--out must be left out with --grade")
     with usage_errors(options):
         found = [_find(name) for name in options.exercises]
-        if options.save is not None:
-            check_writable("save", options.save)
     if options.grade is not None:
         return _grade(options)
     if options.out is not None:
@@ -80,7 +79,11 @@ def _list() -> None:
 def _grade(options: Namespace) -> int:
     if not options.grade.is_dir():
         raise UsageError(f"--grade must be a folder of submissions, got {str(options.grade)!r}")
-    with usage_errors(options):
+    with usage_errors(options):  # the files are checked first, since grading may take minutes
+        if options.save is not None:
+            check_writable("save", options.save)
+        if options.reports is not None:
+            _check_folder(options.reports)
         marks = exercises.grade(options.grade, options.exercises, exact=options.exact, seconds=options.seconds)
     print_above(str(marks))
     if options.save is not None:
@@ -90,3 +93,19 @@ def _grade(options: Namespace) -> int:
         marks.save_reports(options.reports)
         print_above(f"Saved the reports to {options.reports}")
     return 0
+
+
+def _check_folder(folder: Path) -> None:
+    """Makes the folder of the reports, and checks that files can be written to it.
+
+    Raises:
+        UsageError: if not.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        raise UsageError(
+            f"--reports must be a folder that can be written, got {str(folder)!r}: {error.strerror}"
+        ) from None

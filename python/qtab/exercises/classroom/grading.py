@@ -2,7 +2,6 @@
 
 import json
 import os
-import subprocess
 import sys
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -15,6 +14,7 @@ from qtab._utils import checks
 from qtab._utils.progress import ProgressBar, check_progress
 from qtab.exercises.classroom.handing_out import found, key_of
 from qtab.exercises.classroom.marks import Mark, Marks, without_checks
+from qtab.exercises.classroom.processes import Processes
 from qtab.exercises.classroom.submissions import Submission, submissions
 from qtab.exercises.exercise import Exercise
 
@@ -38,7 +38,7 @@ def grade(
     a sandbox: grade code that you do not trust on a machine that you can afford to lose.
 
     Of each file and notebook, only imports, functions, classes, and the assignments of names that functions use are
-    run. Plots, long training runs and cells that fail are left out.
+    run, also those in ``if`` and ``try`` statements. Plots, long training runs and cells that fail are left out.
 
     Args:
         folder: The submissions: a folder for each student, or a file ``.py`` or ``.ipynb``, named for the student.
@@ -66,39 +66,51 @@ def grade(
     handed_in = submissions(checks.path("folder", folder))
     task = {"exercises": [key_of(one) for one in exercises], "exact": exact, "seconds": float(seconds)}
     marks: list[Mark] = []
+    running = Processes()
     with ThreadPoolExecutor(count) as pool, ProgressBar(len(handed_in), "student", progress, "grade") as bar:
-        for number, row in enumerate(pool.map(partial(_grade, known, task), handed_in)):
-            marks += row
-            bar.move_to(number + 1)
+        try:
+            for number, row in enumerate(pool.map(partial(_grade, known, task, running), handed_in)):
+                marks += row
+                bar.move_to(number + 1)
+        finally:  # after Ctrl-C, too, which the processes do not receive
+            running.stop()
     return Marks(tuple(exercise.name for exercise in known), tuple(marks))
 
 
-def _grade(exercises: Sequence[Exercise], task: dict[str, Any], submission: Submission) -> list[Mark]:
+def _grade(
+    exercises: Sequence[Exercise], task: dict[str, Any], running: Processes, submission: Submission
+) -> list[Mark]:
     """Returns the marks of a student, one for each exercise."""
     files = [str(file.resolve()) for file in submission.files]
     folders = [str(Path.cwd()) if folder == "" else folder for folder in sys.path]
-    answers: list[dict[str, Any]] = []
-    while len(answers) < len(exercises):
-        rest, keys = exercises[len(answers) :], task["exercises"][len(answers) :]
-        command = json.dumps({**task, "exercises": keys, "files": files, "path": folders})
+    keys = {exercise.name: key for exercise, key in zip(exercises, task["exercises"], strict=True)}
+    answers: dict[str, dict[str, Any]] = {}
+    while rest := [exercise for exercise in exercises if exercise.name not in answers]:
+        names = [keys[exercise.name] for exercise in rest]
+        command = json.dumps({**task, "exercises": names, "files": files, "path": folders})
         limit = _START_SECONDS + 2 * task["seconds"] * sum(len(exercise.checks) + 1 for exercise in rest)
-        done = _output([sys.executable, "-m", "qtab.exercises.classroom.marking", command], limit)
-        finished = [json.loads(line) for line in done.splitlines()]
-        answers += finished
-        if len(finished) < len(rest):  # the next process begins after the exercise that ended this one
-            answers.append({"passed": 0, "report": without_checks(rest[len(finished)], _LOST)})
+        done = running.output([sys.executable, "-m", "qtab.exercises.classroom.marking", command], limit)
+        answers = {**_answers(done), **answers}
+        lost = next((exercise for exercise in rest if exercise.name not in answers), None)
+        if lost is not None:  # the next process begins after the exercise that ended this one
+            answers[lost.name] = {"passed": 0, "report": without_checks(lost, _LOST)}
     return [
-        Mark(submission.student, exercise.name, answer["passed"], len(exercise.checks), answer["report"])
-        for exercise, answer in zip(exercises, answers, strict=True)
+        Mark(submission.student, one.name, answers[one.name]["passed"], len(one.checks), answers[one.name]["report"])
+        for one in exercises
     ]
 
 
-def _output(command: Sequence[str], seconds: float) -> str:
-    """Returns what a process wrote until its end, or until it was killed."""
-    # An unhandled error of the process would be one of the grader: its traceback belongs on the screen.
-    with subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, encoding="utf-8") as process:  # noqa: S603 - our own program
+def _answers(text: str) -> dict[str, dict[str, Any]]:
+    """Returns the answers of a process by exercise.
+
+    A function that calls ``os.fork`` continues in two processes, which both write answers: the first ones count. A line
+    that the end of the process cut off is left out.
+    """
+    found: dict[str, dict[str, Any]] = {}
+    for line in text.splitlines():
         try:
-            return process.communicate(timeout=seconds)[0]
-        except subprocess.TimeoutExpired:
-            process.kill()
-            return process.communicate()[0]
+            answer = json.loads(line)
+            found.setdefault(answer["exercise"], {"passed": int(answer["passed"]), "report": str(answer["report"])})
+        except (ValueError, TypeError, KeyError):
+            continue
+    return found

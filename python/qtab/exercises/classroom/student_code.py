@@ -1,39 +1,42 @@
 """The functions in a student's files, without running the rest of them.
 
 A notebook also has trials, plots and long training runs, and perhaps a cell that fails. Only imports, functions,
-classes, and the assignments of names that functions use are run. Each runs separately, so that one that fails does not
-hide the others.
+classes, and the assignments of names that functions use are run, also those in ``if`` and ``try`` statements. Each runs
+separately, so that one that fails does not hide the others.
 """
 
 import ast
-import json
+import copy
 import linecache
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import Any
 
+from qtab.exercises.classroom.notebook_cells import code_parts
 from qtab.exercises.time_limit import TimeIsUp, call_within
 
 _FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
 _ASSIGNMENTS = (ast.Assign, ast.AnnAssign, ast.AugAssign)
 
 
-def definitions(files: Sequence[Path], seconds: float) -> tuple[dict[str, Any], list[str]]:
+def definitions(files: Sequence[Path], seconds: float, names: Collection[str] = ()) -> tuple[dict[str, Any], list[str]]:
     """Returns what the files define, by name, and a sentence on each part of them that could not be run.
 
     Args:
         files: Python files and notebooks. If several define a name, the last one counts.
         seconds: The time limit of each statement.
+        names: The names of the exercises, which may be assigned, as in ``sarsa = my_function``.
     """
     namespace: dict[str, Any] = {"__name__": "submission"}
     notes: list[str] = []
     statements: list[tuple[str, ast.stmt]] = []
     for path in files:
         try:
-            parts = list(_parts(path))
+            parts, left_out = code_parts(path)
         except (OSError, ValueError, KeyError, TypeError) as error:
             notes.append(f"{path.name} cannot be read: {error}")
             continue
+        notes += left_out
         for name, code in parts:
             linecache.cache[name] = (len(code), None, code.splitlines(keepends=True), name)
             try:
@@ -42,12 +45,13 @@ def definitions(files: Sequence[Path], seconds: float) -> tuple[dict[str, Any], 
                 line = f", line {error.lineno}" if isinstance(error, SyntaxError) else ""
                 notes.append(f"{name}{line} is not Python: {getattr(error, 'msg', error)}")
     future = [node for _, node in statements if isinstance(node, ast.ImportFrom) and node.module == "__future__"]
-    used = _used([node for _, node in statements])
+    used = _used([node for _, node in statements], names)
     for name, node in statements:
-        if not _is_definition(node, used):
+        definition = _definition(node, used)
+        if definition is None:
             continue
-        statement = compile(ast.Module([*future, node], []), name, "exec")
         try:
+            statement = compile(ast.Module([*future, definition], []), name, "exec")
             call_within(seconds, exec, (statement, namespace))
         except TimeIsUp:
             notes.append(f"{name}, line {node.lineno} was stopped after {seconds:g} seconds")
@@ -56,38 +60,40 @@ def definitions(files: Sequence[Path], seconds: float) -> tuple[dict[str, Any], 
     return namespace, notes
 
 
-def _parts(path: Path) -> Iterator[tuple[str, str]]:
-    """Yields the code of a Python file, or of each cell of a notebook, with its name."""
-    text = path.read_text(encoding="utf-8-sig")
-    if path.suffix == ".py":
-        yield path.name, text
-        return
-    for number, cell in enumerate(json.loads(text)["cells"]):
-        source = "".join(cell["source"])
-        if cell["cell_type"] == "code" and not source.lstrip().startswith("%%"):
-            yield f"{path.name}, cell {number + 1}", "\n".join(map(_without_magic, source.splitlines()))
-
-
-def _without_magic(line: str) -> str:
-    """Returns a line of a notebook, or an empty line for IPython's ``%matplotlib``, ``!pip`` and ``name?``."""
-    code = line.strip()
-    return "" if code.startswith(("%", "!", "?")) or code.endswith("?") else line
-
-
-def _is_definition(node: ast.stmt, used: set[str]) -> bool:
+def _definition(node: ast.stmt, used: set[str]) -> ast.stmt | None:
+    """Returns a statement, or the definitions in an ``if`` or ``try`` statement; None if it defines nothing."""
     if isinstance(node, _ASSIGNMENTS):
-        return bool(_assigned(node) & used)
+        return node if _assigned(node) & used else None
     if isinstance(node, ast.ImportFrom) and node.module == "__future__":
-        return False
-    return isinstance(node, (*_FUNCTIONS, ast.Import, ast.ImportFrom))
+        return None
+    if isinstance(node, (ast.If, ast.Try)):
+        return _with_definitions(node, used)
+    return node if isinstance(node, (*_FUNCTIONS, ast.Import, ast.ImportFrom)) else None
 
 
-def _used(nodes: Sequence[ast.stmt]) -> set[str]:
-    """Returns the names that functions and classes use, and those that the assignments of such names use."""
-    used = {name for node in nodes if isinstance(node, _FUNCTIONS) for name in _read(node)}
-    assignments = [node for node in nodes if isinstance(node, _ASSIGNMENTS)]
+def _with_definitions(node: ast.If | ast.Try, used: set[str]) -> ast.stmt | None:
+    """Returns an ``if`` or ``try`` statement that has only its definitions; None if it has none."""
+    handlers = [copy.copy(handler) for handler in getattr(node, "handlers", [])]
+    result = copy.copy(node)
+    if isinstance(result, ast.Try):
+        result.handlers = handlers
+    found = False
+    for block in (result, *handlers):
+        for name in ("body", "orelse", "finalbody"):
+            before: list[ast.stmt] = getattr(block, name, [])
+            if before:
+                after = [kept for inner in before if (kept := _definition(inner, used)) is not None]
+                found = found or bool(after)
+                setattr(block, name, after or [ast.copy_location(ast.Pass(), before[0])])
+    return result if found else None
+
+
+def _used(nodes: Sequence[ast.stmt], names: Collection[str]) -> set[str]:
+    """Returns the names of the exercises, and those that functions, classes and the assignments of such names use."""
+    used = set(names)
     while True:
-        more = {name for node in assignments if _assigned(node) & used for name in _read(node)} - used
+        found = [definition for node in nodes if (definition := _definition(node, used)) is not None]
+        more = {name for definition in found for name in _read(definition)} - used
         if not more:
             return used
         used |= more
@@ -98,4 +104,13 @@ def _read(node: ast.AST) -> set[str]:
 
 
 def _assigned(node: ast.AST) -> set[str]:
-    return {part.id for part in ast.walk(node) if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Store)}
+    """Returns the names to which a statement assigns, or to an item or attribute of which it assigns."""
+    found: set[str] = set()
+    for part in ast.walk(node):
+        target: ast.AST = part
+        if isinstance(getattr(part, "ctx", None), ast.Store):
+            while isinstance(target, (ast.Subscript, ast.Attribute)):
+                target = target.value
+            if isinstance(target, ast.Name):
+                found.add(target.id)
+    return found
