@@ -95,3 +95,9 @@ def test_distances_in_the_plane_are_errors() -> None:
     assert min(apart) > 0.5
     ax = computed("figure-11.3").plot()
     assert {text.get_text() for text in ax.texts} >= set(places)
+
+
+@pytest.mark.parametrize(("name", "states"), [("example-11.2", "A B C"), ("example-11.3", "A1 A2 B C")])
+def test_the_tables_of_the_examples_name_the_states(name: str, states: str) -> None:
+    rows = [row for row in str(computed(name)).splitlines() if row.startswith("true values")]
+    assert [row.split()[2] for row in rows] == states.split()

@@ -64,6 +64,7 @@ EXAMPLE_11_2 = ExactExperiment(
     y_label="value",
     x_ticks=(1, 2, 3),
     x_tick_labels=("A", "B", "C"),
+    x_words={1: "A", 2: "B", 3: "C"},
 )
 EXAMPLE_11_3 = ExactExperiment(
     name="example-11.3",
@@ -78,4 +79,5 @@ EXAMPLE_11_3 = ExactExperiment(
     y_label="value",
     x_ticks=(1, 2, 3, 4),
     x_tick_labels=("A1", "A2", "B", "C"),
+    x_words={1: "A1", 2: "A2", 3: "B", 4: "C"},
 )
