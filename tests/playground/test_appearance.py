@@ -112,3 +112,24 @@ def test_every_environment_and_preset_has_an_example(playground: Playground) -> 
         for example in examples[key]:
             assert len(example["look"]) > 40
             assert example["look"].endswith(".")
+
+
+@pytest.mark.parametrize("width", [1280, 900, 390, 320])
+def test_the_values_of_actions_stay_beside_or_above_the_updates(chromium: Any, page_file: Path, width: int) -> None:
+    context = chromium.new_context(viewport={"width": width, "height": 900}, reduced_motion="reduce")
+    opened = Playground(context, page_file).open("#env=MountainCar-v0&algorithm=double_q_learning")
+    opened.page.evaluate(
+        "() => { const { visits } = playground.view.result.map;"
+        " playground.view.pick(visits.indexOf(Math.max(...visits)), 'key'); }"
+    )
+    opened.settled()
+    edges = """() => {
+      const box = (name) => document.querySelector(name).getBoundingClientRect();
+      const [table, updates, panel] = [".action-values", ".updates", ".inspector"].map(box);
+      return [table.right, table.bottom, updates.left, updates.top, updates.width, panel.right];
+    }"""
+    right, bottom, left, top, wide, border = opened.page.evaluate(edges)
+    context.close()
+    assert right < border
+    assert right < left or bottom < top
+    assert wide > 220
