@@ -278,8 +278,7 @@ def _checking(init: Callable[..., None]) -> Callable[..., None]:
     @wraps(init)
     def checked(self: Config, *args: Any, **settings: Any) -> None:
         check_names(settings, DEFAULTS, "Config")
-        algorithm = settings.get("algorithm")
-        if algorithm in PREFERENCES:
+        if (algorithm := settings.get("algorithm")) in PREFERENCES:
             settings.setdefault("exploration", "softmax")
         settings = {**fixed_settings(algorithm), **settings}
         if settings.get("time_aware"):
