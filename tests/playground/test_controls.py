@@ -149,3 +149,28 @@ def test_impossible_combinations_are_disabled_with_the_reason(playground: Playgr
     tiles = playground.page.locator('#set-discretizer option[value="tiles"]')
     assert tiles.is_disabled()
     assert "not with Dyna-Q" in tiles.inner_text()
+
+
+@pytest.mark.parametrize(
+    ("fragment", "alpha", "epsilon"),
+    [
+        ("example=1", "→ 0", ""),
+        ("learning_rate_schedule=constant&epsilon=0.8&epsilon_schedule=linear&min_epsilon=0.1", "", "→ 0.1"),
+        ("learning_rate=0.5&learning_rate_schedule=linear&min_learning_rate=0.5&epsilon_schedule=constant", "", ""),
+        # 0.5 · 0.9^(20 − 1 − 4), and 0.8 · 0.5^19, which is below the lowest ε
+        (
+            "episodes=20&learning_rate=0.5&learning_rate_schedule=exponential&learning_rate_decay=0.9"
+            "&learning_rate_warm_up=4&epsilon=0.8&epsilon_schedule=exponential&epsilon_decay=0.5&min_epsilon=0.05",
+            "→ 0.103",
+            "→ 0.05",
+        ),
+        ("learning_rate=1&learning_rate_schedule=visits&min_learning_rate=0.05", "/ visits, ≥ 0.05", "→ 0"),
+    ],
+)
+def test_what_a_rate_falls_to_stands_beside_it(playground: Playground, fragment: str, alpha: str, epsilon: str) -> None:
+    playground.open(f"#env=FrozenLake-v1&{fragment}")
+    for name, text in (("learning_rate", alpha), ("epsilon", epsilon)):
+        place = playground.page.locator(f"#falling-{name}")
+        assert place.inner_text() == text
+        assert place.is_visible() == (text != "")
+        assert f"falling-{name} " in str(playground.page.locator(f"#set-{name}").get_attribute("aria-describedby"))

@@ -2,6 +2,7 @@
 // Its controls are a choice, a number with its slider, a number for each component, and the initial values.
 
 import { make, refusalPlace, refuse } from "./elements.js";
+import { fallingText } from "./schedules.js";
 import { highest, positions, readNumber } from "../format.js";
 
 const TITLES = {
@@ -100,7 +101,9 @@ function numberControl(store, name, definition) {
     log: definition.log,
   });
   const field = numberField(parts, id, (text) => readNumber(name, text, limits()), (value) => store.set(name, value));
-  parts.head.append(field.input);
+  const falling = make("span", { className: "falling", id: `falling-${name}` });
+  parts.head.append(field.input, falling);
+  field.input.setAttribute("aria-describedby", `${falling.id} ${field.input.getAttribute("aria-describedby")}`);
   const oninput = () => store.set(name, positions(limits()).value(Number(slider.value)));
   const onkeydown = (event) => {
     const step = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 10, PageDown: -10 }[event.key];
@@ -115,7 +118,9 @@ function numberControl(store, name, definition) {
     const value = store.state.settings[name];
     field.show(value);
     slider.value = positions(limits()).position(value);
-    slider.setAttribute("aria-valuetext", String(value));
+    falling.textContent = fallingText(store.state.settings, name);
+    falling.hidden = falling.textContent === "";
+    slider.setAttribute("aria-valuetext", `${value} ${falling.textContent}`.trim());
   };
   return { element: parts.element, refresh, focus: () => slider.focus() };
 }
