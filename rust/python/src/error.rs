@@ -24,8 +24,8 @@ pub(crate) enum RunError {
     Python(PyErr),
     /// The run's data does not fit into memory, or its construction was stopped.
     Allocation(AllocationError),
-    /// The action values overflowed in this episode, counted from 0.
-    Diverged { episode: usize },
+    /// The action values overflowed in this episode, counted from 0, of a run whose features are `weighted` or not.
+    Diverged { episode: usize, weighted: bool },
     /// The action values have overflowed at the end of the run, whose last episode this was, counted from 0.
     Overflowed { episode: usize },
 }
@@ -48,16 +48,24 @@ impl From<AllocationError> for RunError {
     }
 }
 
+impl RunError {
+    /// The error of a run whose features are `weighted` or not.
+    pub(crate) fn of_training<E: Into<Self>>(error: TrainingError<E>, weighted: bool) -> Self {
+        match error {
+            TrainingError::Task(error) => error.into(),
+            TrainingError::Allocation(error) => error.into(),
+            TrainingError::Diverged { episode } => Self::Diverged { episode, weighted },
+        }
+    }
+}
+
+/// The errors of runs with binary features, and of tasks that record, which do not diverge.
 impl<E> From<TrainingError<E>> for RunError
 where
     RunError: From<E>,
 {
     fn from(error: TrainingError<E>) -> Self {
-        match error {
-            TrainingError::Task(error) => error.into(),
-            TrainingError::Allocation(error) => error.into(),
-            TrainingError::Diverged { episode } => Self::Diverged { episode },
-        }
+        Self::of_training(error, false)
     }
 }
 
@@ -73,10 +81,14 @@ impl From<RunError> for PyErr {
                 "this algorithm supports fewer than 2**32 state-action pairs and fewer than 2**31 outcomes of its \
                  model, but this run needs more; use a table with fewer cells, or train for fewer episodes",
             ),
-            RunError::Diverged { episode } => PyOverflowError::new_err(format!(
-                "the action values overflowed in episode {episode} (counted from 0): the updates grow instead of \
-                 settling; most likely learning_rate is too large, or trace_decay or discount with these traces"
-            )),
+            RunError::Diverged { episode, weighted } => {
+                let cause =
+                    if weighted { ": try a tenth of it" } else { ", or trace_decay or discount with these traces" };
+                PyOverflowError::new_err(format!(
+                    "the action values overflowed in episode {episode} (counted from 0): the updates grow instead of \
+                     settling; most likely learning_rate is too large{cause}"
+                ))
+            }
             RunError::Overflowed { episode } => PyOverflowError::new_err(format!(
                 "the action values overflowed by episode {episode} (counted from 0); most likely the rewards, initial_q \
                  or learning_rate are too large"

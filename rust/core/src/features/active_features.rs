@@ -48,13 +48,18 @@ pub trait ActiveFeatures: AsRef<[u32]> {
     }
 }
 
-/// Checks that features are binary, for a rule that does not multiply by their values. The compiler removes the check.
+/// Checks that features are binary, for code that reads their rows, but does not multiply by their values. The compiler
+/// removes the check.
 ///
 /// # Panics
 /// For weighted features.
 #[inline(always)]
+#[track_caller]
 pub(crate) fn assert_binary<R: ActiveFeatures>() {
-    assert!(!R::WEIGHTED, "this algorithm needs binary features: see AnyAlgorithm::feature_kinds");
+    assert!(
+        !R::WEIGHTED,
+        "this algorithm, policy or task needs binary features: see ActiveFeatures and AnyAlgorithm::feature_kinds"
+    );
 }
 
 impl<F: ActiveFeatures + ?Sized> ActiveFeatures for &F {

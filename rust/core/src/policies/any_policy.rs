@@ -119,6 +119,10 @@ impl Policy for AnyPolicy {
         }
     }
 
+    fn counts_choices(&self) -> bool {
+        matches!(self, Self::Ucb(_))
+    }
+
     fn persist_counts(&mut self, checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
         if let Self::Ucb(ucb) = self { ucb.persist_counts(checkpoint) } else { Ok(()) }
     }

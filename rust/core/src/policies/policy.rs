@@ -1,7 +1,20 @@
 //! The trait of all policies.
 
 use crate::checkpoint::{Checkpoint, CheckpointError};
+use crate::features::{ActiveFeatures, assert_binary};
 use crate::random::Rng;
+
+/// Checks that the policy can choose in a state with these features. The compiler removes the check for binary features.
+///
+/// # Panics
+/// For weighted features, if the policy counts its choices.
+#[inline(always)]
+#[track_caller]
+pub(crate) fn assert_takes<R: ActiveFeatures>(policy: &impl Policy, _rows: &R) {
+    if R::WEIGHTED && policy.counts_choices() {
+        assert_binary::<R>();
+    }
+}
 
 /// A policy π over action values.
 pub trait Policy {
@@ -27,6 +40,11 @@ pub trait Policy {
 
     /// The probability π(a) of an action, for policies that do not count.
     fn probability(&mut self, values: &[f64], action: usize) -> f64;
+
+    /// Whether the policy counts its choices in each row. It then needs binary features.
+    fn counts_choices(&self) -> bool {
+        false
+    }
 
     /// Saves or restores the counts.
     ///

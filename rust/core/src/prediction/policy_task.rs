@@ -69,7 +69,18 @@ impl<R: AsRef<[u32]>> AsRef<[u32]> for WithAction<R> {
     }
 }
 
-impl<R: AsRef<[u32]>> ActiveFeatures for WithAction<R> {}
+impl<R: ActiveFeatures> ActiveFeatures for WithAction<R> {
+    const WEIGHTED: bool = R::WEIGHTED;
+
+    #[inline(always)]
+    fn values(&self) -> &[f64] {
+        self.active.values()
+    }
+
+    fn from_values(values: &[f64]) -> Option<Self> {
+        R::from_values(values).map(Self::none)
+    }
+}
 
 impl<'a, R: TryFrom<&'a [u32]>> TryFrom<&'a [u32]> for WithAction<R> {
     type Error = R::Error;
@@ -165,7 +176,7 @@ where
 mod tests {
     use super::*;
     use crate::envs::classic_control::MountainCar;
-    use crate::features::{OutOfBounds, TileCoding};
+    use crate::features::{FeatureVector, FourierBasis, OutOfBounds, TileCoding};
     use crate::memory::AllocationError;
     use crate::prediction::test_support::rng;
     use crate::prediction::{LinearValues, OfflineLambdaReturn, Predictor, StateFeatures, TdZero};
@@ -214,6 +225,27 @@ mod tests {
         let start = task().task.features.active_rows(&[-0.5_f32, 0.0]).expect("it lies in the box");
         let value: f64 = start.as_ref().iter().map(|&row| run.learner().values.weights[row as usize]).sum();
         assert!((value - mean).abs() < 15.0, "{value} for returns of {mean}");
+    }
+
+    #[test]
+    fn weighted_features_stay_weighted_with_an_action() {
+        type WithFeatures = WithAction<FeatureVector<4>>;
+        let features = FeatureVector::<4>::new(&[1.0, 0.5]).expect("there is room");
+        let with_action = WithAction::new(features, (2, 1.0));
+        assert_eq!([WithFeatures::WEIGHTED, WithAction::<[u32; 1]>::WEIGHTED], [true, false]);
+        assert_eq!(with_action.values(), features.values());
+        assert_eq!(WithFeatures::from_values(features.values()), Some(WithAction::none(features)));
+    }
+
+    #[test]
+    #[should_panic(expected = "needs binary features")]
+    fn values_are_not_predicted_from_the_rows_of_weighted_features() {
+        let basis =
+            FourierBasis::<f32, 16>::try_new(&[-1.2, -0.07], &[0.6, 0.07], 3, true, false).expect("16 features");
+        let task = NativeTask::new(MountainCar::default(), basis, Some(200), rng());
+        let task = PolicyTask { task, policy: WithTheVelocity, rng: rng() };
+        let values = values(None).expect("memory suffices");
+        let _ = Trainer::new(task, Predictor::new(values, ActionFromTask, Box::new(TdZero)), rng()).train(1);
     }
 
     #[test]

@@ -3,6 +3,7 @@
 
 use super::{Next, Task, TimedState, Transition};
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist, RunIdentity};
+use crate::features::{ActiveFeatures, assert_binary};
 
 /// A wrapper around a task with one active row, which is not weighted, with separate rows for each step before the time
 /// limit: the table has `max_episode_steps` times as many rows, beginning with those of an episode's first step.
@@ -35,7 +36,11 @@ impl<T> TimeAware<T> {
     }
 
     /// The row in this table of a row of the task, after `elapsed` steps.
-    fn at(&self, active: impl AsRef<[u32]>, elapsed: u64) -> [u32; 1] {
+    ///
+    /// # Panics
+    /// For weighted features.
+    fn at<R: ActiveFeatures>(&self, active: R, elapsed: u64) -> [u32; 1] {
+        assert_binary::<R>();
         let step = elapsed.min(self.max_episode_steps - 1) as u32;
         [step * self.rows + active.as_ref()[0]]
     }
@@ -107,8 +112,9 @@ impl<T: Task> Task for TimeAware<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::envs::classic_control::MountainCar;
     use crate::envs::tabular::{Outcome, TabularMdp};
-    use crate::features::{Identity, OutOfBounds};
+    use crate::features::{FourierBasis, Identity, OutOfBounds};
     use crate::random::{Pcg64, SeedSequence};
     use crate::tasks::NativeTask;
 
@@ -145,6 +151,15 @@ mod tests {
         resumed.persist(Some(&mut restored), &mut Checkpoint::restore(&bytes)).expect("the bytes are complete");
         assert_eq!(restored, state);
         Ok(())
+    }
+
+    #[test]
+    #[should_panic(expected = "needs binary features")]
+    fn weighted_features_have_no_row_of_their_own_for_a_step() {
+        let basis = FourierBasis::<f32, 4>::try_new(&[-1.2, -0.07], &[0.6, 0.07], 1, true, false).expect("4 features");
+        let rng = Pcg64::new(&SeedSequence::new(&[0]));
+        let task = NativeTask::new(MountainCar::default(), basis, Some(3), rng);
+        let _ = TimeAware::new(task, 4, 3).expect("a small table").reset();
     }
 
     #[test]

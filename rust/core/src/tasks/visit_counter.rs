@@ -3,6 +3,7 @@
 use super::{Next, Task, Transition};
 use crate::StopFlag;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist, RunIdentity};
+use crate::features::assert_binary;
 use crate::memory::{AllocationError, filled};
 
 /// A wrapper around a task that counts how often each action was taken in each row of the table.
@@ -19,7 +20,11 @@ impl<T: Task> VisitCounter<T> {
     ///
     /// # Errors
     /// `OutOfMemory`; `Stopped` after `stop` was set.
+    ///
+    /// # Panics
+    /// For weighted features, all of whose rows are active in every state.
     pub fn new(task: T, rows: usize, num_actions: usize, stop: &StopFlag<'_>) -> Result<Self, AllocationError> {
+        assert_binary::<T::Active>();
         Ok(Self { task, num_actions, visits: filled(&0, rows * num_actions, stop)? })
     }
 }
@@ -106,6 +111,10 @@ impl<T: Task> Task for VisitCounter<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::envs::classic_control::MountainCar;
+    use crate::features::FourierBasis;
+    use crate::random::{Pcg64, SeedSequence};
+    use crate::tasks::NativeTask;
 
     /// Two tilings of three states; the episode ends in the third.
     struct Corridor;
@@ -150,6 +159,15 @@ mod tests {
         let one_tiling = [2, 2, 0, 2, 0, 0];
         assert_eq!(task.visits(), Some([one_tiling, one_tiling].as_flattened()));
         Ok(())
+    }
+
+    #[test]
+    #[should_panic(expected = "needs binary features")]
+    fn visits_to_weighted_features_are_not_counted() {
+        let basis = FourierBasis::<f32, 4>::try_new(&[-1.2, -0.07], &[0.6, 0.07], 1, true, false).expect("4 features");
+        let rng = Pcg64::new(&SeedSequence::new(&[0]));
+        let task = NativeTask::new(MountainCar::default(), basis, Some(3), rng);
+        let _ = VisitCounter::new(task, 4, 3, &StopFlag::new());
     }
 
     #[test]

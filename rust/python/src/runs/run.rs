@@ -2,10 +2,11 @@
 
 use pyo3::prelude::*;
 use qtab_core::checkpoint::{Checkpoint, CheckpointError, EpisodeProgress, Persist};
+use qtab_core::features::ActiveFeatures;
 use qtab_core::memory::MemoryRoom;
 use qtab_core::random::Rng;
 use qtab_core::tasks::{OptimalActions, Recordings};
-use qtab_core::{Budget, EpisodeLog, Learner, Task, Trainer, TrainingError};
+use qtab_core::{Budget, EpisodeLog, Learner, Task, Trainer};
 
 use crate::error::RunError;
 use crate::spec::InitialQSpec;
@@ -63,12 +64,15 @@ where
     D: Rng + Clone + Persist + Send,
 {
     fn advance(&mut self, budget: Budget) -> Result<(), RunError> {
-        Trainer::advance(self, budget).map_err(<RunError as From<TrainingError<W::Error>>>::from)?;
+        Trainer::advance(self, budget).map_err(|error| RunError::of_training(error, W::Active::WEIGHTED))?;
         self.check()
     }
 
     fn check(&self) -> Result<(), RunError> {
-        if self.learner().diverged() { Err(RunError::Diverged { episode: self.last_episode() }) } else { Ok(()) }
+        if self.learner().diverged() {
+            return Err(RunError::Diverged { episode: self.last_episode(), weighted: W::Active::WEIGHTED });
+        }
+        Ok(())
     }
 
     fn episodes(&self) -> &EpisodeLog {

@@ -140,7 +140,7 @@ impl Estimates<'_> {
 /// Converts the error of a run to a Python exception; `finished` episodes were finished before.
 fn as_python(error: RunError, finished: u64) -> PyErr {
     match error {
-        RunError::Diverged { episode } => PyOverflowError::new_err(format!(
+        RunError::Diverged { episode, .. } => PyOverflowError::new_err(format!(
             "the values diverged in episode {} (counted from 0): the updates grow instead of settling; a smaller \
              learning_rate, trace_decay or discount helps",
             episode as u64 + finished

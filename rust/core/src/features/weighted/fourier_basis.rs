@@ -82,11 +82,11 @@ impl<T: Float, const M: usize> FourierBasis<T, M> {
         if !self.scales_step_sizes {
             return Vec::new();
         }
-        self.frequencies().into_iter().map(|length| if length == 0.0 { 1.0 } else { length }).collect()
+        self.frequency_lengths().into_iter().map(|length| if length == 0.0 { 1.0 } else { length }).collect()
     }
 
     /// The Euclidean length of the frequency vector of each feature, in their order.
-    pub fn frequencies(&self) -> Vec<f64> {
+    fn frequency_lengths(&self) -> Vec<f64> {
         let dimensions = self.scaled.dimensions();
         let order = self.order as usize;
         let square = |feature: usize| {
@@ -263,14 +263,14 @@ mod tests {
         let cos = |c: f64, s: f64| (PI * c * s).cos();
         let expected = [1.0, cos(1.0, 0.1), cos(2.0, 0.1), cos(3.0, 0.1), cos(1.0, 0.7), cos(2.0, 0.7), cos(3.0, 0.7)];
         check_close(&values(&basis, &[-0.6, 1.8]), &expected);
-        assert_eq!(basis.frequencies(), [0.0, 1.0, 2.0, 3.0, 1.0, 2.0, 3.0]);
+        assert_eq!(basis.frequency_lengths(), [0.0, 1.0, 2.0, 3.0, 1.0, 2.0, 3.0]);
     }
 
     #[test]
     fn step_sizes_are_divided_by_the_length_of_the_frequency_vector() {
         let basis = basis(2, 2, true);
         let (two, five, eight) = (2.0_f64.sqrt(), 5.0_f64.sqrt(), 8.0_f64.sqrt());
-        assert_eq!(basis.frequencies(), [0.0, 1.0, 2.0, 1.0, two, five, 2.0, five, eight]);
+        assert_eq!(basis.frequency_lengths(), [0.0, 1.0, 2.0, 1.0, two, five, 2.0, five, eight]);
         assert_eq!(basis.divisors()[..2], [1.0, 1.0]);
     }
 

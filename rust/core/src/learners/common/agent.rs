@@ -2,8 +2,8 @@
 
 use super::ActionMasks;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
-use crate::features::ActiveFeatures;
-use crate::policies::{AnyPolicy, Policy, random_available_action};
+use crate::features::{ActiveFeatures, assert_binary};
+use crate::policies::{AnyPolicy, Policy, assert_takes, random_available_action};
 use crate::q_table::{QTable, TerminalUpdate};
 use crate::random::Rng;
 use crate::schedules::{LearningRate, StepSize};
@@ -50,9 +50,13 @@ impl Agent {
 
 impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
     /// Samples an action from the policy in the state with these active rows.
+    ///
+    /// # Panics
+    /// With a policy that counts its choices, for weighted features.
     #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
     #[inline(always)]
     pub fn choose(&mut self, rows: impl ActiveFeatures, rng: &mut impl Rng) -> usize {
+        assert_takes(&self.policy, &rows);
         let values = masked_values::<N>(&mut self.masks, rows.as_ref(), self.table.action_values(&rows));
         self.policy.choose_in(rows.as_ref(), values, rng)
     }
@@ -65,9 +69,13 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
     }
 
     /// The expected value Σₐ π(a) Q(a) of the state with these active rows.
+    ///
+    /// # Panics
+    /// As [`choose`](Self::choose).
     #[expect(clippy::inline_always, reason = "a call per step would take a tenth of its time")]
     #[inline(always)]
     pub fn expected_value(&mut self, rows: impl ActiveFeatures) -> f64 {
+        assert_takes(&self.policy, &rows);
         let values = masked_values::<N>(&mut self.masks, rows.as_ref(), self.table.action_values(&rows));
         self.policy.expected_value_in(rows.as_ref(), values)
     }
@@ -88,9 +96,13 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
     }
 
     /// Records the action mask of a state.
+    ///
+    /// # Panics
+    /// With masks for weighted features.
     #[inline]
-    pub fn set_action_mask(&mut self, rows: impl ActiveFeatures, mask: &[bool]) {
+    pub fn set_action_mask<R: ActiveFeatures>(&mut self, rows: R, mask: &[bool]) {
         if let Some(masks) = &mut self.masks {
+            assert_binary::<R>();
             masks.set(rows.as_ref(), mask);
         }
     }
@@ -185,5 +197,32 @@ pub(in crate::learners) fn masked_values<'a, const N: usize>(
     match masks {
         Some(masks) if N == 0 => masks.masked(rows, values),
         _ => values,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::StopFlag;
+    use crate::learners::test_support::{agent, features, rng};
+    use crate::policies::{TieBreaking, Ucb};
+
+    #[test]
+    #[should_panic(expected = "needs binary features")]
+    fn ucb_does_not_count_choices_with_weighted_features() {
+        let mut agent = agent(&[0.0; 4]);
+        let ucb = Ucb::new(2.0, TieBreaking::First, (2, 2), &StopFlag::new()).expect("a few counts");
+        agent.policy = AnyPolicy::Ucb(ucb);
+        assert_eq!(agent.choose([0], &mut rng()), 0);
+        agent.choose(features(), &mut rng());
+    }
+
+    #[test]
+    #[should_panic(expected = "needs binary features")]
+    fn weighted_features_have_no_action_masks() {
+        let mut agent = agent(&[0.0; 4]);
+        agent.set_action_mask(features(), &[true, false]);
+        agent.masks = Some(Box::new(ActionMasks::known(vec![true; 4], 2)));
+        agent.set_action_mask(features(), &[true, false]);
     }
 }

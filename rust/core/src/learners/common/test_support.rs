@@ -1,6 +1,7 @@
 //! An agent with round numbers, for updates computed by hand.
 
 use super::Agent;
+use crate::features::FeatureVector;
 use crate::policies::{AnyPolicy, TieBreaking};
 use crate::q_table::{QTable, TerminalUpdate};
 use crate::random::{Pcg64, SeedSequence};
@@ -16,6 +17,11 @@ pub(crate) fn agent(values: &[f64]) -> Agent {
         terminal_update: TerminalUpdate::Target,
         masks: None,
     }
+}
+
+/// Two weighted features.
+pub(crate) fn features() -> FeatureVector<2> {
+    FeatureVector::new(&[1.0, 0.5]).expect("there is room")
 }
 
 /// The generator of seed 0.

@@ -4,7 +4,7 @@
 use super::{CountBonus, Learner};
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::delegate_learner;
-use crate::features::ActiveFeatures;
+use crate::features::{ActiveFeatures, assert_binary};
 use crate::random::Rng;
 use crate::tasks::Next;
 
@@ -42,7 +42,10 @@ impl<R: ActiveFeatures, L: Learner<R>> Learner<R> for TransformedSteps<L> {
         let next = self.as_learned(next);
         let reward = match &mut self.bonus {
             None => reward,
-            Some(bonus) => reward + bonus.visit(state.as_ref(), action),
+            Some(bonus) => {
+                assert_binary::<R>();
+                reward + bonus.visit(state.as_ref(), action)
+            }
         };
         self.learner.learn(state, action, reward, next, rng)
     }
@@ -65,9 +68,10 @@ impl<R: ActiveFeatures, L: Learner<R>> Learner<R> for TransformedSteps<L> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::StopFlag;
     use crate::learners::Sarsa;
     use crate::learners::TdLearner;
-    use crate::learners::test_support::{agent, rng};
+    use crate::learners::test_support::{agent, features, rng};
 
     #[test]
     fn treating_truncation_as_termination_ignores_the_next_state() {
@@ -80,5 +84,14 @@ mod tests {
             learner.learn([0], 0, -1.0, Next::Truncated([1]), &mut rng());
             assert_eq!(learner.learner.agent.table.values()[0], value);
         }
+    }
+
+    #[test]
+    #[should_panic(expected = "needs binary features")]
+    fn a_bonus_does_not_count_visits_to_weighted_features() {
+        let learner = TdLearner { agent: agent(&[0.0; 4]), rule: Sarsa };
+        let bonus = CountBonus::new(1.0, (2, 2), &StopFlag::new()).expect("a few counts");
+        let mut learner = TransformedSteps { learner, terminate: false, bonus: Some(bonus) };
+        learner.learn(features(), 0, -1.0, Next::Terminal, &mut rng());
     }
 }

@@ -4,7 +4,7 @@ use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::features::ActiveFeatures;
 use crate::learners::{Agent, UpdateRule, masked_values};
 use crate::numeric::argmax;
-use crate::policies::Policy;
+use crate::policies::{Policy, assert_takes};
 use crate::q_table::QTable;
 use crate::random::Rng;
 use crate::schedules::{LearningRate, StepSize};
@@ -34,6 +34,7 @@ impl DoubleQLearning {
 
     #[inline]
     fn choose<R: ActiveFeatures>(&mut self, agent: &mut Agent, state: &R, rng: &mut impl Rng) -> usize {
+        assert_takes(&agent.policy, state);
         let values = agent.action_values(state).iter().zip(self.second_table.action_values(state));
         for (sum, (first, second)) in self.sums.iter_mut().zip(values) {
             *sum = first + second;
