@@ -1,5 +1,6 @@
 """Abstract values: what is known about an expression before it is run."""
 
+import enum
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
@@ -50,6 +51,19 @@ BOOL, INT, FLOAT, MIXED, INFO = Scalar("bool"), Scalar("int"), Scalar("float"), 
 WIDE = (BOOL, INT, FLOAT, MIXED)
 """The scalars that compute the same in Python, NumPy and compiled code."""
 REAL = (INT, FLOAT, MIXED)
+
+LIBRARIES = ("builtins", "enum", "numpy")
+"""The modules of the numbers and enums whose operators are known."""
+UNUSED = (
+    *("__class__", "__delattr__", "__dir__", "__doc__", "__getnewargs__", "__getstate__", "__hash__", "__init__"),
+    *("__init_subclass__", "__new__", "__reduce__", "__reduce_ex__", "__setattr__", "__sizeof__", "__subclasshook__"),
+)
+OPERATORS = frozenset(
+    name
+    for name in (*dir(int), *dir(float), "__getattr__", "__len__", "__iter__", "__getitem__", "__contains__")
+    if name.startswith("__") and name not in UNUSED
+)
+"""The methods that Python calls for operators, conversions and built-in functions."""
 
 DYNAMIC: Any = type("Dynamic", (), {"__repr__": lambda _: "<known at run time>"})()
 """``Value.fixed`` of a value that is not a constant."""
@@ -104,8 +118,33 @@ def numpy_type(dtype: str) -> str:
     return "np.bool_" if dtype == "bool" else f"np.{dtype}"
 
 
+def own_operator(value: Any) -> str | None:
+    """Returns the name of an operator that a class derived from a number or an enum defines, such as ``__add__``."""
+    if not isinstance(value, int | float | np.generic | enum.Enum):
+        return None
+    for cls in type(value).__mro__:
+        if cls.__module__.partition(".")[0] in LIBRARIES:
+            continue
+        for name, member in vars(cls).items():
+            if name in OPERATORS and not _is_inherited(type(value), name, member):
+                return name
+    return None
+
+
+def _is_inherited(cls: type, name: str, member: Any) -> bool:
+    """Returns whether a member is the library's, as enums repeat some methods in each class."""
+    libraries = [one for one in cls.__mro__ if one.__module__.partition(".")[0] in LIBRARIES]
+    if getattr(member, "__module__", None) == "enum":
+        return True
+    return any(vars(one).get(name) is member for one in libraries) or (
+        issubclass(cls, enum.Enum) and any(member is getattr(one, name, None) for one in (int, float, object))
+    )
+
+
 def kind_of(value: Any) -> Kind | None:
-    """Returns the kind of a Python value; None for what has none, such as a string."""
+    """Returns the kind of a Python value; None for what has none, such as a string or a number with own operators."""
+    if own_operator(value) is not None:
+        return None
     if isinstance(value, bool | np.bool_):
         return BOOL
     if isinstance(value, int):

@@ -7,6 +7,8 @@ import operator
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
+
 from qtab.compilation.rewriting import specials
 from qtab.compilation.rewriting.expressions import calls, containers, members, membership, vectors
 from qtab.compilation.rewriting.expressions.operators import COMPARISONS, SYMBOLS, binary, comparison, unary
@@ -21,6 +23,7 @@ from qtab.compilation.rewriting.values import (
     constant,
     in_words,
     join,
+    own_operator,
 )
 
 
@@ -29,6 +32,21 @@ class Expressions(Scope):
 
     def expression(self, node: ast.expr) -> Value:
         """Returns the value of an expression."""
+        value = self._evaluated(node)
+        if isinstance(value.fixed, int | float | np.generic):
+            self._no_own_operators(node, value.fixed)
+        return value
+
+    def _no_own_operators(self, node: ast.AST, *values: Any) -> None:
+        """Refuses constants whose class defines operators, which compiled code would not call."""
+        for value in values:
+            name = own_operator(value)
+            if name is not None:
+                reason = f"{type(value).__name__} defines {name}, which compiled code does not call"
+                advice = "write .value" if isinstance(value, enum.Enum) else "use int or float"
+                raise self.refuse(node, reason, f"{advice}, or leave the method out")
+
+    def _evaluated(self, node: ast.expr) -> Value:
         method = getattr(self, f"_{type(node).__name__.lower()}", None)
         if method is None:
             names = {
@@ -63,6 +81,7 @@ class Expressions(Scope):
         """Returns the value of a condition."""
         value = self._boolop(node, True) if isinstance(node, ast.BoolOp) else self.expression(node)
         if value.is_fixed and not specials.is_special(value.fixed):
+            self._no_own_operators(node, value.fixed)
             try:
                 return constant(bool(value.fixed))
             except ValueError:
@@ -97,7 +116,7 @@ class Expressions(Scope):
         raise self.refuse(node, f"the name {name} is not defined", "define it before the environment is trained")
 
     def _attribute(self, node: ast.Attribute) -> Value:
-        return self.attribute_of(node, self.expression(node.value))
+        return self.attribute_of(node, self._evaluated(node.value))
 
     def attribute_of(self, node: ast.Attribute, base: Value) -> Value:
         """Returns an attribute of a value."""
@@ -137,6 +156,7 @@ class Expressions(Scope):
 
     def folded(self, node: ast.AST, function: Any, *values: Any) -> Value:
         """Returns the result of a function of constants."""
+        self._no_own_operators(node, *values)
         try:
             return constant(function(*values))
         except Exception as error:

@@ -1,0 +1,170 @@
+"""Code of the user that compiled code would not run, or would run once: it is refused with its line."""
+
+import enum
+import inspect
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import pytest
+from gymnasium import spaces
+
+from qtab.compilation.not_compilable import NotCompilable
+from qtab.compilation.rewriting import rewrite
+
+
+class Counts(gym.Env):
+    """An environment whose reward is the method ``extra``."""
+
+    observation_space = spaces.Discrete(10)
+    action_space = spaces.Discrete(2)
+
+    def __init__(self):
+        self.board = np.zeros(4)
+
+    def reset(self, *, seed=None, options=None):
+        super().reset(seed=seed)
+        self.cell, self.board[:] = 0, 0.0
+        return self.cell, {}
+
+    def extra(self):
+        return 0.0
+
+    def step(self, action):
+        self.cell = (self.cell + action) % 10
+        return self.cell, self.extra(), False, False, {}
+
+
+class Heading(enum.IntEnum):
+    """Adds in a circle."""
+
+    NORTH = 0
+    EAST = 1
+
+    def __add__(self, other):
+        return (int(self) + int(other)) % 2
+
+
+class Access(enum.IntFlag):
+    """Inverts otherwise than integers."""
+
+    READ = 4
+
+    def __invert__(self):
+        return 3
+
+
+class Price(float, enum.Enum):
+    """Multiplies otherwise than floats."""
+
+    LOW = 1.5
+
+    def __mul__(self, other):
+        return 100.0
+
+
+class Meters(int):
+    """Compares otherwise than integers."""
+
+    def __eq__(self, other):
+        return True
+
+    __hash__ = int.__hash__
+
+
+class Plain(enum.IntEnum):
+    """Has a method, but no operators."""
+
+    LEFT = -1
+    RIGHT = 1
+
+    def shown(self):
+        return self.name
+
+
+class AddsEnum(Counts):
+    def extra(self):
+        return float(Heading.EAST + self.cell)  # here
+
+
+class AddsToEnum(Counts):
+    def extra(self):
+        return float(self.cell + Heading.EAST)  # here
+
+
+class AddsConstants(Counts):
+    def extra(self):
+        return float(Heading.EAST + 1)  # here
+
+
+class InvertsFlag(Counts):
+    def extra(self):
+        return float(~Access.READ)  # here
+
+
+class MultipliesFloat(Counts):
+    def extra(self):
+        return Price.LOW * self.board[0]  # here
+
+
+class KeepsEnum(Counts):
+    def reset(self, *, seed=None, options=None):
+        result = super().reset(seed=seed)
+        self.heading = Heading.NORTH  # here
+        return result
+
+    def extra(self):
+        self.heading = Heading.EAST
+        return float(self.heading + 1)
+
+
+class ComparesConstant(Counts):
+    def __init__(self):
+        super().__init__()
+        self.goal = Meters(3)
+
+    def extra(self):
+        return 1.0 if self.cell == self.goal else 0.0  # here
+
+
+class LooksUp(Counts):
+    COSTS = (1.0, 2.0)
+
+    def extra(self):
+        return self.COSTS[Heading.EAST]  # here
+
+
+class ComputesWithPlainEnums(Counts):
+    def extra(self):
+        return float(Plain.RIGHT + self.cell) + Plain.LEFT.value + Heading.EAST.value
+
+
+OPERATORS = [
+    AddsEnum, AddsToEnum, AddsConstants, InvertsFlag, MultipliesFloat, KeepsEnum, ComparesConstant, LooksUp
+]  # fmt: skip
+
+
+def refusal(cls: Any) -> NotCompilable:
+    """Returns the refusal of a class, which names the line with the mark."""
+    lines, first = inspect.getsourcelines(cls)
+    (marked,) = [number for number, line in enumerate(lines, first) if "# here" in line]
+    with pytest.raises(NotCompilable) as caught:
+        rewrite(cls())
+    assert caught.value.line == marked
+    return caught.value
+
+
+@pytest.mark.parametrize("cls", OPERATORS, ids=lambda cls: cls.__name__)
+def test_operators_of_numbers_and_enums_that_a_class_defines_are_refused(cls: Any) -> None:
+    refused = refusal(cls)
+    assert "which compiled code does not call" in refused.reason
+    assert "leave the method out" in refused.advice
+
+
+def test_enums_without_operators_are_numbers() -> None:
+    env = ComputesWithPlainEnums()
+    rewritten = rewrite(env)
+    record, rng = rewritten.initial.copy()[0], np.random.default_rng(0)
+    env.reset(seed=0)
+    rewritten.reset(record, rng)
+    assert rewritten.step(record, 1, rng)[:2] == env.step(1)[:2]
