@@ -8,9 +8,10 @@ import numpy as np
 
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting import specials
-from qtab.compilation.rewriting.infos.dicts import KEY
+from qtab.compilation.rewriting.infos.dicts import KEY, info_of
 from qtab.compilation.rewriting.program import Compiled, Program
 from qtab.compilation.rewriting.source.sources import source_of
+from qtab.compilation.rewriting.statements.effects import effect_of
 from qtab.compilation.rewriting.statements.statements import Statements
 from qtab.compilation.rewriting.user_functions import compiled_function
 from qtab.compilation.rewriting.values import Array, Value, constant, in_words
@@ -28,12 +29,23 @@ def add_action_mask(program: Program) -> bool:
         method = compiled_function(program, source_of(member), owner, {_self_name(member): constant(specials.SELF)})
         _add(program, f"{method.name}(record)", method.result, {method.name}, method)
         return True
+    advice = "write a method action_masks(self)"
+    try:
+        _, first, mask = info_of(program.attributes, alone=False)
+    except NotCompilable as refusal:
+        reason = f"the action mask is not found in the info dicts: {refusal.reason}"
+        raise NotCompilable(reason, refusal.file, refusal.line, advice) from None
+    if mask is None:
+        return False
+    for infos in program.infos.values():
+        for scope, node in infos:
+            _check_later_effects(scope, node)
     found = {role: _mask_of(scope, node) for role, infos in program.infos.items() for scope, node in infos}
     expressions = {role: mask for role, mask in found.items() if mask is not None}
     if not expressions:
-        return False
+        line = getattr(first, "lineno", None)
+        raise NotCompilable("the action mask is not found in the info dicts", None, line, advice)
     scope, node = next(iter(expressions.values()))
-    advice = "write a method action_masks(self)"
     if len({ast.dump(mask) for _, mask in expressions.values()}) > 1 or set(expressions) != {"reset", "step"}:
         raise scope.refuse(node, "the action masks of reset and step are not the same expression", advice)
     own = next(iter(scope.parameters))
@@ -51,6 +63,17 @@ def add_action_mask(program: Program) -> bool:
     _add(program, f"{compiled.name}(record)", value, {compiled.name}, compiled)
     program.mask = program.mask[0], node
     return True
+
+
+def _check_later_effects(scope: Any, node: ast.expr) -> None:
+    """Refuses an info dict in a variable if what is returned with it changes the state that its mask shows."""
+    if isinstance(node, ast.Name):
+        for one in ast.walk(scope.source.node):
+            if isinstance(one, ast.Return) and isinstance(one.value, ast.Tuple) and one.value.elts[-1] is node:
+                effect = effect_of(scope, one.value)
+                if effect is not None:
+                    reason = f"the action mask is computed before the return, in which {effect},"
+                    raise scope.refuse(one, reason, "write a method action_masks(self)")
 
 
 def _self_name(function: FunctionType) -> str:

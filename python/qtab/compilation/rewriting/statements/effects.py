@@ -32,9 +32,14 @@ ADVICE = "compute it without drawing or changing attributes, or leave it out"
 
 def check_pure(scope: "Expressions", node: ast.AST) -> None:
     """Refuses an expression that is left out, such as an info dict, if evaluating it may have effects."""
-    found = _effect(scope, node, scope.source.function, scope.source.node, set())
+    found = effect_of(scope, node)
     if found is not None:
         raise scope.refuse(node, f"this is left out in compiled code, but {found}", ADVICE)
+
+
+def effect_of(scope: "Expressions", node: ast.AST) -> str | None:
+    """Returns the effect of an expression, in words; None if there is none."""
+    return _effect(scope, node, scope.source.function, scope.source.node, set())
 
 
 def _effect(
