@@ -15,6 +15,7 @@ _WITHOUT_ORDER = (len, sorted, min, max, sum, any, all, set, bool)
 """Functions whose results do not depend on the order of a set."""
 _SEARCHES = ("index", "count", "remove")
 _SETS_CHANGE = ("add", "discard", "remove", "clear")
+_SORT = "sort integers, or search in a loop"
 _DICTS_READ = ("get", "keys", "values", "items", "clear")
 
 
@@ -65,13 +66,16 @@ def _converts(code: TypedCode, made: Any, items: list[Any]) -> bool:
 def _operation(code: TypedCode, expression: Any) -> Refusal:
     left, right = (types.unliteral(code.type_of(one)) for one in (expression.lhs, expression.rhs))
     numbers = (types.Integer, types.Float, types.Boolean)
-    if expression.fn in (operator.is_, operator.is_not) and isinstance(left, numbers) and isinstance(right, numbers):
+    are_booleans = isinstance(left, types.Boolean) and isinstance(right, types.Boolean)
+    is_identity = expression.fn in (operator.is_, operator.is_not) and not are_booleans
+    if is_identity and isinstance(left, numbers) and isinstance(right, numbers):
         return "`is` compares objects", "write =="
     if expression.fn is operator.contains:
         return _other_key(left, code, expression.rhs)
     is_comparison = isinstance(left, types.List) and isinstance(right, types.List) and expression.fn is not operator.add
     if is_comparison and (left != right or holds_floats(left)):
-        return "a comparison of lists of floats", "compare the elements in a loop"
+        kinds = "floats" if left == right else f"{left.dtype} and {right.dtype}"
+        return f"a comparison of lists of {kinds}", "compare the elements in a loop"
     return None
 
 
@@ -84,7 +88,7 @@ def _call(code: TypedCode, expression: Any) -> Refusal:
         return _method(name, called.this, given, bool(expression.kws))
     function = called.typing_key if isinstance(called, types.Function) else None
     if function is sorted and (expression.kws or len(given) > 1 or holds_floats(given[0])):
-        return "sorted: equal elements may change their order", "sort integers, or search in a loop"
+        return f"sorted: {_unordered(given[0], len(given) > 1 or bool(expression.kws))}", _SORT
     is_ordered = isinstance(called, types.Function) and function not in _WITHOUT_ORDER
     return _order() if is_ordered and any(isinstance(one, types.Set) for one in given) else None
 
@@ -92,9 +96,10 @@ def _call(code: TypedCode, expression: Any) -> Refusal:
 def _method(name: str, of: Any, given: list[Any], named: bool) -> Refusal:
     if isinstance(of, types.List):
         if name == "sort" and (given or named or holds_floats(of)):
-            return "list.sort: equal elements may change their order", "sort integers, or search in a loop"
+            return f"list.sort: {_unordered(of, bool(given) or named)}", _SORT
         if name in _SEARCHES and (holds_floats(of) or given[:1] != [of.dtype]):
-            return f"list.{name}() of another type than integers", "compare the elements in a loop"
+            what = "of floats" if holds_floats(of) else f"of {given[0] if given else 'nothing'} in a list of {of.dtype}"
+            return f"list.{name}() {what}", "compare the elements in a loop"
     elif isinstance(of, types.Set):
         if name not in _SETS_CHANGE:
             return f"set.{name}()", "use a list, or `in`"
@@ -102,7 +107,8 @@ def _method(name: str, of: Any, given: list[Any], named: bool) -> Refusal:
             return _other(given[0], of)
     elif isinstance(of, types.DictType):
         if name not in _DICTS_READ:
-            return f"dict.{name}()", "write d[key], or `key in d`"
+            advice = "leave the key in the dict, or use an array" if name == "pop" else "write d[key], or `key in d`"
+            return f"dict.{name}()", advice
         if given and given[0] != of.key_type:
             return _other(given[0], of)
         if len(given) > 1 and given[1] != of.value_type:
@@ -119,6 +125,12 @@ def _other_key(of: Any, code: TypedCode, index: Any) -> Refusal:
 
 def _other(given: Any, of: Any) -> Refusal:
     return f"{given} beside {_key(of)} in {_in_words(of)}", "convert it: int(...)"
+
+
+def _unordered(of: Any, has_arguments: bool) -> str:
+    if holds_floats(of) and not has_arguments:
+        return "the signs of zeros, and NaN, may stand in another order"
+    return "equal elements may change their order"
 
 
 def _order() -> Refusal:

@@ -113,7 +113,8 @@ class Repetition:
             code = cls.step.__code__
             _logger.warning(
                 f"%s:%s: {what}, which does not fail where compiled code does: with "
-                "integers of more than 64 bits, integers beyond 2**53 in floats, or an observation outside its space",
+                "integers of more than 64 bits, integers beyond 2**53 in floats, an observation outside its space, or "
+                "a reward that is not finite",
                 *(code.co_filename, code.co_firstlineno, cls.__name__),
             )
 

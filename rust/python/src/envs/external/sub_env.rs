@@ -137,7 +137,9 @@ impl SubEnv {
         }
     }
 
-    /// Takes a step, for which `reserve_action` has made room. The time limit of the library ends no episode whose next state is terminal, `limit` any.
+    /// Takes a step, for which `reserve_action` has made room.
+    ///
+    /// The time limit of the library does not truncate an episode whose next state is terminal; `limit` also does.
     pub(super) fn step(&mut self, action: usize, limit: u64, rng: &mut Pcg64) {
         let position = (rng.words_drawn(), rng.buffered_u32());
         let library_limit = self.episode.environment().max_episode_steps().unwrap_or(u64::MAX);
