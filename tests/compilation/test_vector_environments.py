@@ -222,6 +222,23 @@ def test_stable_baselines3_gets_what_its_own_vector_environment_gives() -> None:
     assert np.array_equal(ours.get_attr("position"), theirs.get_attr("position"))
 
 
+@pytest.mark.parametrize(("inner", "outer"), [(4, 20), (20, 4), (4, None), (None, None)])
+def test_only_wrappers_limit_the_time_each_of_them(inner: int | None, outer: int | None) -> None:
+    class OwnLimit(vectors.DriftEnv):
+        def __init__(self) -> None:
+            super().__init__()
+            self._max_episode_steps = 2  # not a wrapper's
+
+    def made() -> Any:
+        return OwnLimit() if inner is None else gym.wrappers.TimeLimit(OwnLimit(), inner)
+
+    name = f"QtabVec/Limit{inner}{outer}-v0"
+    gym.register(name, made, max_episode_steps=outer)
+    ours, theirs = make(name, 3)
+    assert ours.is_native
+    in_lockstep(ours, theirs, 12, 0)
+
+
 def test_make_vec_compiles() -> None:
     made: Any = gym.make_vec("QtabVec/Drift-v0", 3, autoreset_mode="SameStep")
     assert isinstance(made, qtab.RustVectorEnv)
@@ -235,6 +252,8 @@ def test_make_vec_compiles() -> None:
         (refused_vectors.ClassArray, "NextStep", "a ndarray outside of the environment is changed"),
         (refused_vectors.Random, "NextStep", "two environments that are made differ in self.noise"),
         (refused_vectors.ShowsView, "SameStep", "the observation shares memory with self.position"),
+        (refused_vectors.ShowsViewAtTheEnd, "SameStep", "the observation shares memory with self.position"),
+        (refused_vectors.ShowsParameter, "SameStep", "the observation shares memory with self.position"),
         (refused_vectors.OtherDtype, "NextStep", "reset returns an array of int64 for a space of uint8"),
         (refused_vectors.Doubles, "SameStep", "reset returns an array of int64 for a space of float32"),
         (refused_vectors.Informs, "NextStep", "the info dict has 'speed', which compiled code leaves out"),
@@ -242,6 +261,7 @@ def test_make_vec_compiles() -> None:
         (refused_vectors.PassesInfoOn, "NextStep", "the info dict info is changed or used here"),
         (refused_vectors.OneMask, "NextStep", "this info dict has another action mask than others"),
         (refused_vectors.OtherMask, "NextStep", "is not what action_masks() returns"),
+        (refused_vectors.MaskOfBase, "NextStep", "super().action_masks"),
         (refused_vectors.NoOptions, "NextStep", "reset does not take seed and options"),
         (refused_vectors.DefaultOptions, "NextStep", "options of reset have no default None"),
         (refused_vectors.Prints, "NextStep", "print"),

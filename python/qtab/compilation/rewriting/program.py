@@ -38,6 +38,8 @@ class Compiled:
     """Whether it changes the state."""
     trivial: bool = False
     """Whether it only returns."""
+    returns_parameter: bool = False
+    """Whether an array that it returns may share the memory of a parameter in Python."""
     flow: "Flow" = field(default_factory=lambda: Flow())
     """The attributes that it assigns and reads."""
 
@@ -86,6 +88,8 @@ class Program:
         """Compiles a user's function and returns the value of a call."""
         self.infos: dict[str, list[Any]] = {}
         """The info dicts that ``reset`` and ``step`` return, with their functions."""
+        self.shown_views: list[tuple[frozenset[str], NotCompilable]] = []
+        """The attributes whose memory observations share in Python, and the errors if it is shown that they change."""
         self.mask: tuple[str, ast.expr | None] = "", None
         """The dtype of the compiled action mask, and its expression in the info dicts; None for a method."""
         self.failed: set[Any] = set()

@@ -8,7 +8,7 @@ from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting.program import Compiled, Flow, Program
 from qtab.compilation.rewriting.source.sources import Source
 from qtab.compilation.rewriting.source.syntax import Names
-from qtab.compilation.rewriting.values import INFO, Array, Kind, Value, in_words, join
+from qtab.compilation.rewriting.values import INFO, Array, Kind, Scalar, Value, in_words, join
 
 MAX_SHOWN = 90
 LOCAL = "local variable "
@@ -135,7 +135,7 @@ class Scope:
         """Notes whether an array that is assigned to a local variable has no other name."""
         if isinstance(value.kind, Array):
             version = self.version(name)
-            self.owned[version] = self.owned.get(version, True) and value.fresh
+            self.owned[version] = self.owned.get(version, True) and value.fresh and not value.views
 
     def note_set(self, name: str) -> None:
         """Notes that a local variable is set from here on."""
@@ -171,7 +171,8 @@ class Scope:
         if kind == INFO:
             return Value(INFO)
         position = index - sum(one == INFO for one in items[:index])
-        return Value(kind, f"{value.code}[{position}]")
+        views = frozenset[str]() if isinstance(kind, Scalar) else value.views
+        return Value(kind, f"{value.code}[{position}]", views=views)
 
     def emit(self, text: str, node: ast.AST | None = None) -> None:
         """Adds a line to the function."""

@@ -11,7 +11,7 @@ from qtab.compilation.rewriting.scope import LOCAL, Scope
 from qtab.compilation.rewriting.source.sources import Source
 from qtab.compilation.rewriting.statements.statements import Statements
 from qtab.compilation.rewriting.statements.variables import kept
-from qtab.compilation.rewriting.values import Array, InfoKind, Value, constant
+from qtab.compilation.rewriting.values import Array, InfoKind, Scalar, Value, constant
 
 if TYPE_CHECKING:
     from qtab.compilation.rewriting.expressions.expressions import Expressions
@@ -42,8 +42,10 @@ def called(
     first = ["record", "rng"] if compiled.draws else ["record"]
     code = f"{compiled.name}({', '.join(first + codes)})"
     if not result.is_fixed:
-        fresh = isinstance(result.kind, Array) and not result.views
-        return Value(result.kind, code, fresh=fresh, views=result.views)
+        views = result.views
+        if compiled.returns_parameter:
+            views = views.union(*(value.views for value in given.values()))
+        return Value(result.kind, code, fresh=isinstance(result.kind, Array) and not views, views=views)
     if result.fixed is None:
         return Value(None, code, fixed=None)
     lifted = scope.lift(constant(result.fixed), node)
@@ -139,6 +141,24 @@ def _rewrite(rewriter: Statements, parameters: dict[str, Value]) -> None:
         rewriter.flows_at_return.append(set(rewriter.flow.assigned))
 
 
+def _may_be_parameter(rewriter: Statements, value: Value) -> bool:
+    """Returns whether a value that is returned may share the memory of a parameter."""
+    if value.parts is not None:
+        return any(_may_be_parameter(rewriter, part) for part in value.parts)
+    is_known = value.is_fixed or value.fresh or value.frozen or rewriter.owned.get(value.code, False)
+    return not is_known and not isinstance(value.kind, Scalar | InfoKind)
+
+
+def _note_observations(rewriter: Statements) -> None:
+    """Notes the attributes whose memory the observations share that ``reset`` or ``step`` returns."""
+    for value, node, _ in rewriter.returns:
+        views = value.views if value.parts is None else value.parts[0].views
+        if views:
+            names = " and ".join(f"self.{name}" for name in sorted(views))
+            reason = f"the observation shares memory with {names}, which the next reset changes"
+            rewriter.program.shown_views.append((views, rewriter.refuse(node, reason, "write .copy()")))
+
+
 def _finish(rewriter: Statements, parameters: dict[str, Value]) -> None:
     """Writes the head of a function, once it is known what it uses."""
     compiled = rewriter.compiled
@@ -150,6 +170,9 @@ def _finish(rewriter: Statements, parameters: dict[str, Value]) -> None:
             node, "the function returns None here, and a value elsewhere", "return a value everywhere"
         )
     compiled.result = rewriter.result()
+    compiled.returns_parameter = any(_may_be_parameter(rewriter, value) for value in values)
+    if rewriter.role:
+        _note_observations(rewriter)
     always = set.intersection(*rewriter.flows_at_return)
     compiled.flow = Flow({name for name in always if not name.startswith(LOCAL)}, rewriter.flow.read)
     body = rewriter.lines

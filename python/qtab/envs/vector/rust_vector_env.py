@@ -10,9 +10,11 @@ import numpy as np
 from gymnasium.error import ResetNeeded
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
+from gymnasium.wrappers import TimeLimit
 
 from qtab import _core
 from qtab._utils import checks
+from qtab.envs.in_rust.matching import layers
 from qtab.envs.vector.arguments import (
     MAX_RESET_BOUND,
     check_reset_mask,
@@ -44,8 +46,8 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
 
     An environment of your own also switches to Python stepping when ``np_random`` is accessed, and at a reset with
     options that it reads: ``state`` for a ``FunctionalEnv``, any for an ordinary class. An ordinary class does so as
-    well at a step that fails in compiled code only, and its ``final_obs`` of a Discrete space are Python integers. An
-    exception of a step or a reset is raised as it is in Python.
+    well at a step that fails in compiled code only. The ``final_obs`` of an ordinary class with a Discrete space are
+    Python integers. An exception of a step or a reset is raised as it is in Python.
 
     Args:
         name: The id of an environment that Rust steps: Gymnasium's, one with the prefix ``qtab/``, or one that you
@@ -64,7 +66,8 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
 
     Raises:
         TypeError: for an argument of the wrong type.
-        ValueError: for an argument out of range, or an environment that Rust does not implement or Numba not compile.
+        ValueError: for an argument out of range, or an environment that Rust does not implement and Numba cannot
+            compile.
     """
 
     def __init__(
@@ -108,11 +111,12 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
         can_render = self.render_mode in ("rgb_array", "ansi") and draws_its_state(env)
         if self.render_mode is not None and not can_render:
             return False
-        own, name = self._own, "_max_episode_steps"
+        own = self._own
         native = known_env(self._entry_name, env) if own is None else own.in_rust(self.num_envs, self.copy)
         if native is None:
             return False
-        limit = self.example.get_wrapper_attr(name) if self.example.has_wrapper_attr(name) else None
+        limits = [one._max_episode_steps for one in layers(self.example) if isinstance(one, TimeLimit)]
+        limit = min(limits, default=None)
         return self.start(
             native,
             self.num_envs,

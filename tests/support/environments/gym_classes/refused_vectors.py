@@ -36,6 +36,26 @@ class ShowsView(DriftEnv):
         return self.position, 0.0, bool(self.position[1] > 5.0), False, {}
 
 
+class ShowsViewAtTheEnd(DriftEnv):
+    def _last(self):
+        return np.asarray(self.position)
+
+    def step(self, action):
+        self.position[action] += 1.0
+        if self.position[action] > 3.0:
+            return self._last(), 0.0, True, False, {}
+        return self.position.copy(), 0.0, False, False, {}
+
+
+class ShowsParameter(DriftEnv):
+    def _same(self, given):
+        return given
+
+    def step(self, action):
+        self.position[action] += 1.0
+        return self._same(self.position[:]), 0.0, bool(self.position[1] > 5.0), False, {}
+
+
 class OtherDtype(DriftEnv):
     observation_space = spaces.Box(0, 50, (3,), np.uint8)
 
@@ -79,6 +99,14 @@ class OneMask(LockEnv):
 class OtherMask(LockEnv):
     def _info(self):
         return {"action_mask": np.array([True, self.wheel > 3, True])}
+
+
+class MaskOfBase(LockEnv):
+    def action_masks(self):
+        return np.array([False, True, True])
+
+    def _info(self):
+        return {"action_mask": super().action_masks()}
 
 
 class NoOptions(DriftEnv):

@@ -70,7 +70,8 @@ def subscript(scope: "Expressions", node: ast.Subscript) -> Value:
                 scope.no_effects(one, node)
         return scope.element(base, position)
     if isinstance(base.kind, TupleKind) and key.kind == INT and len(set(base.kind.items)) == 1:
-        return Value(base.kind.items[0], f"{base.code}[{key.code}]")
+        views = frozenset[str]() if isinstance(base.kind.items[0], Scalar) else base.views
+        return Value(base.kind.items[0], f"{base.code}[{key.code}]", views=views)
     raise scope.refuse(node, f"an element of {in_words(base.kind)}", "use a NumPy array indexed by integers")
 
 

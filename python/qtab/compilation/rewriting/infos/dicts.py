@@ -78,7 +78,7 @@ def _info(
     if isinstance(node, ast.Call) and depth < MOST_NESTED and not node.args and not node.keywords:
         function = node.func
         owner = function.value if isinstance(function, ast.Attribute) else None
-        if isinstance(function, ast.Attribute) and isinstance(owner, ast.Name) and owner.id == _own(source):
+        if isinstance(function, ast.Attribute) and isinstance(owner, ast.Name) and owner.id == own_name(source):
             return _of_helper(attributes, source, node, function.attr, alone, depth)
     raise _refused(source, node, "the info dict is not written out here", ADVICE)
 
@@ -153,7 +153,8 @@ def _is_super_call(node: ast.expr | None, role: str) -> bool:
     return is_method and ast.unparse(function.value) == "super()"  # type: ignore[union-attr]
 
 
-def _own(source: Source) -> str | None:
+def own_name(source: Source) -> str | None:
+    """Returns the name of a method's first parameter; None without any."""
     arguments = source.node.args
     return next((one.arg for one in (*arguments.posonlyargs, *arguments.args)), None)
 

@@ -8,7 +8,7 @@ import numpy as np
 from gymnasium import spaces
 
 from qtab.compilation.not_compilable import NotCompilable
-from qtab.compilation.rewriting.infos.dicts import KEY, info_of
+from qtab.compilation.rewriting.infos.dicts import KEY, info_of, own_name
 from qtab.compilation.rewriting.program import Compiled, Program
 from qtab.compilation.rewriting.values import Array, DictKind, Scalar, TupleKind, in_words
 
@@ -24,6 +24,9 @@ class Shown:
     other_dtype: NotCompilable | None = None
     """How observations differ in type from those of the space, to which a vector environment converts all but the last
     ones of episodes; None if they do not."""
+    view: NotCompilable | None = None
+    """Why the last observation of an episode changes at the next reset in Python: it is a view of an attribute that is
+    changed in place. None if it does not."""
 
 
 def shown_of(program: Program, methods: dict[str, Compiled], mask_refusal: NotCompilable | None) -> Shown:
@@ -49,7 +52,9 @@ def shown_of(program: Program, methods: dict[str, Compiled], mask_refusal: NotCo
                 other_dtype = other_dtype or refusal
     except NotCompilable as refusal:
         return Shown(refusal=refusal)
-    return Shown(mask_dtype, None, other_dtype)
+    changed = program.attributes.changed_in_place
+    view = next((refusal for names, refusal in program.shown_views if names & changed), None)
+    return Shown(mask_dtype, None, other_dtype, view)
 
 
 def _mask_dtype(program: Program, mask_refusal: NotCompilable | None) -> str | None:
@@ -59,7 +64,11 @@ def _mask_dtype(program: Program, mask_refusal: NotCompilable | None) -> str | N
     if mask_refusal is not None:
         raise mask_refusal
     dtype, compiled = program.mask
-    is_method = isinstance(mask, ast.Call) and not mask.args and ast.unparse(mask.func).endswith(".action_masks")
+    is_method = (
+        isinstance(mask, ast.Call)
+        and not (mask.args or mask.keywords)
+        and ast.unparse(mask.func) == f"{own_name(source)}.action_masks"
+    )
     if not (is_method if compiled is None else ast.dump(mask) == ast.dump(compiled)):
         advice = "write {'action_mask': self.action_masks()}"
         reason, line = f"info[{KEY!r}] is not what action_masks() returns", getattr(node, "lineno", None)

@@ -38,7 +38,8 @@ def method(scope: "Expressions", node: ast.Call, name: str, base: Value) -> Valu
         return cast(scope, node, base, values[0])
     if name in ("flatten", "ravel") and not values and not named:
         size = None if kind.shape is None else (int(np.prod(kind.shape)),)
-        return Value(Array(kind.dtype, 1, size), f"{base.code}.flatten()", fresh=True)
+        views = base.views if name == "ravel" else frozenset[str]()  # in Python, ravel may return a view
+        return Value(Array(kind.dtype, 1, size), f"{base.code}.flatten()", fresh=True, views=views)
     if name == "tolist" and kind.ndim == 1 and not values:
         return containers.as_tuple(scope, node, base)
     if name == "item" and not values and kind.shape is not None and np.prod(kind.shape) == 1:

@@ -1,6 +1,7 @@
 """Functions of NumPy that make arrays, and ``np.array_equal``."""
 
 import ast
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,10 +14,17 @@ if TYPE_CHECKING:
 
 
 def array(scope: "Expressions", node: ast.Call, values: list[Value], named: dict[str, Value]) -> Value:
-    """``np.array`` and ``np.asarray``: a new array."""
+    """``np.array``: a new array."""
     value, dtype = arguments(scope, node, ("object", "dtype"), values, named)
     name = None if dtype.fixed is None else arrays.dtype_name(scope, node, dtype)
     return arrays.make(scope, node, value, name)
+
+
+def asarray(scope: "Expressions", node: ast.Call, values: list[Value], named: dict[str, Value]) -> Value:
+    """``np.asarray``: a new array in compiled code, but the same one in Python unless its dtype differs."""
+    made = array(scope, node, values, named)
+    given = values[0] if values else named.get("object", made)
+    return replace(made, views=given.views) if made.kind == given.kind else made
 
 
 def filled(function: str) -> Handler:

@@ -175,7 +175,7 @@ REFUSED: tuple[Any, ...] = (np.random.default_rng,)
 TABLE: dict[Any, Handler] = {
     np.clip: _clip,
     np.array: numpy_arrays.array,
-    np.asarray: numpy_arrays.array,
+    np.asarray: numpy_arrays.asarray,
     np.copy: numpy_arrays.like("copy"),
     np.zeros: numpy_arrays.filled("zeros"),
     np.ones: numpy_arrays.filled("ones"),

@@ -266,7 +266,7 @@ class Statements(Displays):
             if isinstance(value.kind.items[-1], InfoKind):
                 return value
             self.emit(f"result = {value.code}", node)
-            named = Value(value.kind, "result")
+            named = Value(value.kind, "result", views=value.views)
             return tuple_value((*[self.element(named, i) for i in range(length - 1)], Value(INFO)))
         what = "observation, info" if length == 2 else "observation, reward, terminated, truncated, info"
         shown = in_words(value.kind) if value.kind is not None else "something else"
