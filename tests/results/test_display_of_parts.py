@@ -13,6 +13,7 @@ from qtab import callbacks, stats
 from qtab._utils import html
 from qtab.discretizers import DISCRETIZERS, Discretizer
 from qtab.discretizers.named import class_at
+from qtab.discretizers.weighted.fourier import FourierBasis
 
 NAME = "<b>&name</b>"
 
