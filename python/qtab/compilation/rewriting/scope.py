@@ -64,6 +64,10 @@ class Scope:
         self.unstable = False
         self.copies_state = False
         """Whether arrays of the record are copied where they are read, as the statement may change them."""
+        self.references: list[tuple[ast.expr, frozenset[str]]] = []
+        """The arrays and lists that the statement reads, which are references in Python, with their attributes."""
+        self.changing: list[ast.AST] = []
+        """The calls in the statement that change the state."""
         self.unknown: set[str] = set()
         """The local variables that statements assign which cannot be compiled."""
         self.whole: ast.expr | None = None

@@ -34,6 +34,8 @@ def called(
     scope.compiled.uses.add(compiled.name)
     scope.compiled.draws |= compiled.draws
     scope.compiled.changes |= compiled.changes
+    if compiled.changes:
+        scope.changing.append(node)
     scope.flow.follow(compiled.flow)
     result = compiled.result
     if compiled.trivial and result.is_fixed:

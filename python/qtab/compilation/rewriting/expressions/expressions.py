@@ -58,6 +58,8 @@ class Expressions(Scope):
             advice = {"JoinedStr": "use numbers: strings cannot be compiled"}.get(type(node).__name__)
             raise self.refuse(node, f"{name} cannot be compiled", advice or "write it with statements and numbers")
         value: Value = method(node)
+        if value.views and not isinstance(value.kind, Scalar):
+            self.references.append((node, value.views))
         if value.is_fixed and node is not self.whole:  # its code would be left out
             self.no_effects(value, node)
         return value

@@ -12,6 +12,7 @@ from qtab.compilation.rewriting.program import tuple_value
 from qtab.compilation.rewriting.source.syntax import calls_own_functions, info_names
 from qtab.compilation.rewriting.statements import assignments, loops
 from qtab.compilation.rewriting.statements.effects import check_pure
+from qtab.compilation.rewriting.statements.order import check_order
 from qtab.compilation.rewriting.statements.variables import kept
 from qtab.compilation.rewriting.values import INFO, Array, InfoKind, TupleKind, Value, constant, in_words, join
 
@@ -88,7 +89,10 @@ class Statements(Displays):
             raise self.refuse(node, f"the statement {kind} cannot be compiled", "write it with if, for and while")
         simple = not isinstance(node, ast.If | ast.For | ast.While | ast.Match)
         self.copies_state = simple and self.may_change_state(node)
+        self.references, self.changing = [], []
         result: bool = method(node)
+        if simple:
+            check_order(self, node)
         return result
 
     def _do_pass(self, _: ast.Pass) -> bool:
@@ -166,6 +170,7 @@ class Statements(Displays):
     def _do_if(self, node: ast.If) -> bool:
         self.copies_state = self.may_change_state(node.test)
         test = self.test(node.test)
+        check_order(self, node.test)
         if test.is_fixed:
             return self.block(node.body if test.fixed else node.orelse)
         self.emit(f"if {test.code}:", node)

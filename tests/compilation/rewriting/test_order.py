@@ -1,0 +1,146 @@
+"""An array that a later call in the same statement changes: Python shows the change, so that it is refused."""
+
+import inspect
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import pytest
+from gymnasium import spaces
+
+from qtab.compilation.not_compilable import NotCompilable
+from qtab.compilation.rewriting import rewrite
+
+
+class Bumps(gym.Env):
+    """Has methods and a property that change an array."""
+
+    observation_space = spaces.Discrete(10)
+    action_space = spaces.Discrete(2)
+
+    def __init__(self):
+        self.board = np.zeros(4)
+
+    def reset(self, *, seed=None, options=None):
+        super().reset(seed=seed)
+        self.cell, self.board[:] = 0, 0.0
+        return self.cell, {}
+
+    def bump(self):
+        self.board[1] += 1.0
+        return self.board[1]
+
+    def index(self):
+        self.board[1] += 1.0
+        return 1
+
+    @property
+    def spot(self):
+        self.board[1] += 1.0
+        return 1
+
+    def ones(self):
+        self.board[1] += 1.0
+        return np.ones(4)
+
+    def inner(self):
+        return self.board
+
+    def first(self, values, factor):
+        return values[1] * factor
+
+    def extra(self):
+        return 0.0
+
+    def step(self, action):
+        self.cell = (self.cell + action) % 10
+        return self.cell, self.extra(), False, False, {}
+
+
+class Indexes(Bumps):
+    def extra(self):
+        return self.board[self.index()]  # here
+
+
+class IndexesByProperty(Bumps):
+    def extra(self):
+        return self.board[self.spot]  # here
+
+
+class Passes(Bumps):
+    def extra(self):
+        return self.first(self.board, self.bump())  # here
+
+
+class Compares(Bumps):
+    def extra(self):
+        if self.first(self.board, self.bump()) > 2.0:  # here
+            return 1.0
+        return 0.0
+
+
+class Adds(Bumps):
+    def extra(self):
+        self.board += self.ones()  # here
+        return 0.0
+
+
+class Multiplies(Bumps):
+    def extra(self):
+        values = self.board * self.bump()  # here
+        return values[1]
+
+
+class Clips(Bumps):
+    def extra(self):
+        return np.minimum(self.board, self.bump())[1]  # here
+
+
+class ReturnsBoth(Bumps):
+    def both(self):
+        return self.board, self.bump()  # here
+
+    def extra(self):
+        values, number = self.both()
+        return values[1] + number
+
+
+class ReturnsInner(Bumps):
+    def both(self):
+        return self.inner(), self.bump()  # here
+
+    def extra(self):
+        values, number = self.both()
+        return values[1] + number
+
+
+class ReadsNumbers(Bumps):
+    def extra(self):
+        total = self.board[1] * self.bump() + self.board[1] + self.board[self.cell % 4]
+        return total + self.bump() * self.board[1]
+
+
+REFUSED = [
+    *(Indexes, IndexesByProperty, Passes, Compares, Adds, Multiplies, Clips),
+    *(ReturnsBoth, ReturnsInner),
+]
+
+
+@pytest.mark.parametrize("cls", REFUSED, ids=lambda cls: cls.__name__)
+def test_an_array_that_a_later_call_changes_is_refused(cls: Any) -> None:
+    lines, first = inspect.getsourcelines(cls)
+    (marked,) = [number for number, line in enumerate(lines, first) if "# here" in line]
+    with pytest.raises(NotCompilable) as caught:
+        rewrite(cls())
+    assert caught.value.line == marked
+    assert "self.board" in caught.value.reason
+
+
+def test_numbers_are_read_in_pythons_order() -> None:
+    env = ReadsNumbers()
+    rewritten = rewrite(env)
+    record, rng = rewritten.initial.copy()[0], np.random.default_rng(0)
+    env.reset(seed=0)
+    rewritten.reset(record, rng)
+    for _ in range(9):
+        assert rewritten.step(record, 1, rng)[:2] == env.step(1)[:2]
