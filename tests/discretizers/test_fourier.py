@@ -168,6 +168,51 @@ def test_pictures_show_the_values_between_the_limits() -> None:
     plt.close("all")
 
 
+@pytest.mark.parametrize("algorithm", ["q_learning", "double_q_learning"])
+def test_the_rendered_agent_plays_the_policy_of_evaluate(algorithm: Any) -> None:
+    from qtab.rendering.agent import agent_of
+
+    settings_of_run = {**FOURIER, "initial_q": (-1.0, 1.0)}
+    run = qtab.train(CAR, episodes=20, algorithm=algorithm, max_episode_steps=40, **settings_of_run)
+    act = agent_of(run).act
+    observations = np.random.default_rng(0).uniform((-1.2, -0.07), (0.6, 0.07), (50, 2)).astype(np.float32)
+    assert [act(one, None, None)[0] for one in observations] == run.predict(observations)[0].tolist()
+    masked = act(observations[0], None, np.arange(3) != act(observations[0], None, None)[0])[0]
+    assert masked != act(observations[0], None, None)[0]
+
+
+def test_a_run_is_played_and_written_as_a_page(tmp_path: Path) -> None:
+    pytest.importorskip("pygame")
+    pytest.importorskip("matplotlib")
+    run = qtab.train(CAR, episodes=20, max_episode_steps=15, **FOURIER)
+    played = qtab.play(run, 1, seed=5, window=False)
+    assert np.array_equal(played.returns, qtab.evaluate(run, 1, seed=5).returns)
+    run.to_html(tmp_path / "run.html")
+    assert (tmp_path / "run.html").stat().st_size > 1000
+
+
+@pytest.mark.parametrize("env", [CAR, "CartPole-v1"])
+def test_the_rates_of_presets_for_cells_are_set_aside(env: str) -> None:
+    def rates(preset: str, **given_settings: Any) -> tuple[Any, ...]:
+        config = resolve(env, {"discretizer": "fourier", "preset": preset, **given_settings}).config
+        return config.learning_rate, config.learning_rate_schedule, config.initial_q, config.min_learning_rate
+
+    for preset in qtab.presets(env):
+        assert rates(preset) == (0.001, "constant", 0.0, None)
+        assert rates(preset, learning_rate=0.01, initial_q=2.0) == (0.01, "constant", 2.0, None)
+        assert rates(preset, learning_rate_schedule="linear") == (0.001, "linear", 0.0, 0.0)
+        assert rates(preset, min_learning_rate=0.0005) == (0.001, "linear", 0.0, 0.0005)
+    config = qtab.Config(env, discretizer="fourier", episodes=2)
+    assert (config.learning_rate, config.initial_q) == (0.001, 0.0)
+    assert qtab.Config(env, discretizer="fourier", learning_rate=0.2).learning_rate == 0.2
+
+
+def test_the_default_rate_learns_cart_pole() -> None:
+    run = qtab.train("CartPole-v1", discretizer="fourier", order=2, episodes=1000, seed=0, progress=False)
+    assert run.episode_returns[-100:].mean() > 300
+    assert np.abs(run.tables).max() < 1000
+
+
 @pytest.mark.parametrize(
     ("given_settings", "message"),
     [

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils import html
+from qtab._utils.comparable import comparable
 from qtab._utils.fields import with_fields
 from qtab.config.choices import (
     Algorithm,
@@ -29,7 +30,7 @@ from qtab.config.choices import (
     Traces,
 )
 from qtab.config.functions import Mask
-from qtab.config.implied import implied_schedules, with_followers
+from qtab.config.implied import implied_schedules, weighted_defaults, with_followers
 from qtab.config.options import PREFERENCES, fixed_settings
 from qtab.config.origin import WithOrigin, copied
 from qtab.config.unknown import check_names
@@ -64,7 +65,8 @@ class Config(WithOrigin):
     """The time limit of an episode, in steps. None uses the environment's own limit, or 10,000 if it has none."""
     time_aware: bool = False
     """Whether the number of steps taken in the episode is part of the state, as in Gymnasium's TimeAwareObservation:
-    with cells for each step before the time limit, it can learn the policy that is optimal under it. It needs cells."""
+    the table has cells for each step before the time limit, and can learn the policy that is optimal under it. Only for
+    discretizers with cells."""
     backend: Backend = "auto"
     """Where to step it: in Rust (rust), in Rust compiled by Numba (numba), in Python (gymnasium, python), or auto."""
 
@@ -85,7 +87,8 @@ class Config(WithOrigin):
     """The learning algorithm."""
     learning_rate: float = 0.2
     """α: the fraction of the error that an update corrects, in [0, 1]. With tile coding it is divided among the
-    tilings, and may be up to 2. For preferences any step size that is not negative."""
+    tilings, and may be up to 2. For preferences any step size that is not negative. Fourier features, among which it
+    is not divided, have a default of 0.001, whatever the preset."""
     discount: float = 0.9
     """γ: the discount factor, in [0, 1]. It is 1 if the average reward is learned, and 0 for the gradient bandit."""
     learning_rate_schedule: LearningRateSchedule = "constant"
@@ -117,7 +120,8 @@ class Config(WithOrigin):
     time_weight: float | None = None
     """κ: Dyna-Q+ plans with a bonus of κ √τ on the reward of an action not tried for τ steps."""
     model: ModelKind | None = None
-    """The model of Dyna-Q: the last outcome of a state and action (deterministic), or a sample of all (stochastic)."""
+    """The model of Dyna-Q: the last outcome of each state and action (deterministic), or a sample of all its outcomes
+    so far (stochastic)."""
     priority_threshold: float | None = None
     """θ: prioritized sweeping plans only updates that would change a value by more than this, before α."""
     reward_learning_rate: float | None = None
@@ -125,12 +129,15 @@ class Config(WithOrigin):
     baseline: bool | None = None
     """Whether the gradient bandit algorithm compares rewards with their average in the state, or with 0."""
     value_learning_rate: float | None = None
-    """α of the state values learned besides a policy: the baseline of REINFORCE, the critic of actor-critic."""
+    """α of the state values that are learned besides a policy: the baseline of REINFORCE, the critic of
+    actor-critic."""
     initial_q: float | tuple[float, float] | NDArray[np.float64] = (-1.0, 1.0)
     """The initial Q table, or preferences: drawn uniformly from a range (low, high), one number everywhere, or an array
-    to continue from. In an array, -inf marks an action that a state does not have; it is never chosen."""
+    to continue from. In an array, -inf marks an action that a state does not have; it is never chosen. For Fourier
+    features these are weights, not values, by default 0: the first one, of the constant feature, is added to all."""
     terminal_update: TerminalUpdate = "target"
-    """The update at a terminal state: towards the reward (target, the textbook), or to it (assign, the article)."""
+    """The update at a terminal state: move the value towards the reward (target, as in the textbook), or set it to the
+    reward (assign, as in the well-known article)."""
     on_truncation: OnTruncation = "bootstrap"
     """The update at the time limit: bootstrap from the next state (correct), or terminate, as if the next state were
     terminal (a common mistake). With time_aware, where the limit is part of the task, terminate is correct, and the
@@ -173,7 +180,8 @@ class Config(WithOrigin):
     """How observations index the Q table: rounded to a grid (round), by bins of equal width (bins) or between given
     edges (edges), by tile coding (tiles), directly (identity), the default for discrete spaces, or by Fourier features
     (fourier), which multiply all rows. Or a function from an observation to its indices within shape; or a mapping from
-    the keys of a Dict or Tuple space to names or options: {"position": {"discretizer": "bins", "bins": 20}}."""
+    the keys of a Dict or Tuple space to the name or the options of a discretizer each:
+    {"position": {"discretizer": "bins", "bins": 20}}."""
     shape: tuple[int, ...] | None = None
     """The shape of the table without its actions, for a function that returns indices within it."""
     max_rows: int | None = None
@@ -186,7 +194,8 @@ class Config(WithOrigin):
     tiles: tuple[int, ...] | None = None
     """The number of tiles along each component of the observation, or one number for all."""
     hashed_rows: int | None = None
-    """The number of rows that all tiles share by hashing, to save memory. None gives each tile its own row."""
+    """The number of rows that all tiles share by hashing, for tilings too large for memory. None gives each tile its
+    own row."""
     bins: tuple[int, ...] | None = None
     """The number of bins along each component of the observation, or one number for all."""
     edges: tuple[tuple[float, ...], ...] | None = None
@@ -194,12 +203,14 @@ class Config(WithOrigin):
     order: int | None = None
     """The order n of a Fourier basis: its frequencies are integers from 0 to n."""
     coupled: bool | None = None
-    """Whether it has all (n + 1)^d combinations of frequencies of d components, or only the d n + 1 single ones."""
+    """Whether a Fourier basis has all (n + 1)^d combinations of the frequencies of d components, or only the d n + 1
+    features of single components."""
     scale_step_sizes: bool | None = None
     """Whether the learning rate of a Fourier feature is divided by the length of its frequency vector, if not 0."""
     low: tuple[float, ...] | None = None
     """The lower limits of bins, tilings or a Fourier basis, one for each component of the observation. None uses those
-    of the observation space. Values outside the limits are clipped: they fall into the outermost bin or tile."""
+    of the observation space. Values outside the limits fall into the outermost bin or tile; for a Fourier basis they
+    are clipped to them."""
     high: tuple[float, ...] | None = None
     """The upper limits of the bins, the tilings or the Fourier basis, like low."""
     actions: int | tuple[float | tuple[float, ...], ...] | None = None
@@ -218,7 +229,7 @@ class Config(WithOrigin):
         """Whether all settings are equal; arrays are compared byte by byte."""
         if not isinstance(other, Config):
             return NotImplemented
-        return all(_comparable(value) == _comparable(getattr(other, name)) for name, value in vars(self).items())
+        return all(comparable(value) == comparable(getattr(other, name)) for name, value in vars(self).items())
 
     def __hash__(self) -> int:
         """The hash of the settings, without those whose values may be unhashable."""
@@ -230,7 +241,10 @@ class Config(WithOrigin):
         given = {name: value for name, value in vars(self).items() if value is not None}
         if not self.env_kwargs:
             del given["env_kwargs"]
-        shown = {name: _short(value) for name, value in given.items()}
+        shown = {
+            name: f"array of shape {value.shape}" if isinstance(value, np.ndarray) else repr(value)
+            for name, value in given.items()
+        }
         return html.summary(f"Config of {self.env}", shown)
 
     def replace(self, **changes: "Unpack[ConfigSettings]") -> "Config":
@@ -255,23 +269,6 @@ DEFAULTS: Mapping[str, Any] = {
 """The default of each field."""
 
 
-def _short(value: Any) -> str:
-    if isinstance(value, np.ndarray):
-        return f"array of shape {value.shape}"
-    return repr(value)
-
-
-def _comparable(value: Any) -> Any:
-    """Returns a form in which equal values of a setting are equal: JSON, the format of saved runs, has no tuples."""
-    if isinstance(value, np.ndarray):
-        return value.dtype.str, value.shape, value.tobytes()
-    if isinstance(value, Mapping):
-        return {name: _comparable(part) for name, part in value.items()}
-    if isinstance(value, list | tuple):
-        return tuple(map(_comparable, value))
-    return value
-
-
 def _checking(init: Callable[..., None]) -> Callable[..., None]:
     """Makes the generated constructor suggest the nearest name, and add the settings that follow from those given."""
 
@@ -280,7 +277,7 @@ def _checking(init: Callable[..., None]) -> Callable[..., None]:
         check_names(settings, DEFAULTS, "Config")
         if (algorithm := settings.get("algorithm")) in PREFERENCES:
             settings.setdefault("exploration", "softmax")
-        settings = {**fixed_settings(algorithm), **settings}
+        settings = {**weighted_defaults(settings), **fixed_settings(algorithm), **settings}
         if settings.get("time_aware"):
             settings.setdefault("on_truncation", "terminate")
         settings.update(implied_schedules(settings, {**DEFAULTS, **settings}))

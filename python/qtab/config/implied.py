@@ -7,7 +7,7 @@ import gymnasium as gym
 
 from qtab.config.options import FIXED, OPTIONS, fixed_settings, freed_settings, is_set
 from qtab.config.origin import Origin
-from qtab.config.validation import mismatch
+from qtab.config.validation import mismatch, uses_weighted
 
 _AVERAGES: Mapping[str, Any] = {"learning_rate": 1.0, "learning_rate_schedule": "visits"}
 """Averages of returns as values."""
@@ -19,6 +19,8 @@ _OF_ALGORITHM: Mapping[str, Mapping[str, Any]] = {
     **{algorithm: fixed.values for algorithm, fixed in FIXED.items()},
 }
 """The settings of each algorithm that differ from those of :class:`qtab.Config`."""
+_OF_WEIGHTED: Mapping[str, Any] = {"learning_rate": 0.001, "initial_q": 0.0}
+"""The same for weighted features: a learning rate is not divided among them, and initial weights are no values."""
 
 
 def algorithm_defaults(preset: Mapping[str, Any], asked: Mapping[str, Any]) -> dict[str, Any]:
@@ -35,6 +37,13 @@ def algorithm_defaults(preset: Mapping[str, Any], asked: Mapping[str, Any]) -> d
         for name in _AVERAGES:
             own.pop(name, None)
     return own
+
+
+def weighted_defaults(asked: Mapping[str, Any]) -> dict[str, Any]:
+    """Returns the settings that come with weighted features, those of the requested discretizer; else none."""
+    if not uses_weighted(asked.get("discretizer")):
+        return {}
+    return {name: value for name, value in _OF_WEIGHTED.items() if not is_set(asked.get(name))}
 
 
 _SCHEDULES: Mapping[str, tuple[str, tuple[str, ...]]] = {

@@ -14,7 +14,7 @@ from gymnasium.envs.registration import EnvSpec
 
 from qtab._utils.shown import shown
 from qtab.config.config import DEFAULTS, Config, replace_checked
-from qtab.config.implied import algorithm_defaults, implied_schedules, without_rates
+from qtab.config.implied import algorithm_defaults, implied_schedules, weighted_defaults, without_rates
 from qtab.config.options import freed_settings, is_set
 from qtab.config.origin import copied
 from qtab.config.presets import preset
@@ -90,7 +90,7 @@ def config_of(env: str, asked: Mapping[str, Any]) -> Config:
     """Returns the config of an environment: the requested settings over those of its preset.
 
     A preset is a starting point: its settings that do not apply to the requested ones are left out, and a requested
-    algorithm brings its own defaults.
+    algorithm brings its own defaults, as does a discretizer with weighted features.
 
     Raises:
         TypeError: for an unknown setting, or one of the wrong type.
@@ -100,9 +100,10 @@ def config_of(env: str, asked: Mapping[str, Any]) -> Config:
     if name is not None and not isinstance(name, str):
         raise TypeError(f"preset must be a name, got {shown(name)}")
     name, start = preset(env, name)
-    own = algorithm_defaults(start, asked)
-    start = without_rates(start, asked)
-    own = {**implied_schedules(asked, {**DEFAULTS, **start, **own, **asked}), **own}
+    weighted = weighted_defaults(asked)
+    own = {**weighted, **algorithm_defaults(start, asked)}
+    start = without_rates(start, {**weighted, **asked})
+    own = {**implied_schedules({**weighted, **asked}, {**DEFAULTS, **start, **own, **asked}), **own}
     start = applicable(start, {**DEFAULTS, **start, **own, **asked})
     own = applicable(own, {**DEFAULTS, **start, **own, **asked})
     try:

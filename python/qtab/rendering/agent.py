@@ -14,7 +14,7 @@ from qtab.config import Config
 from qtab.envs.registry import spec_of
 from qtab.planning.optimum import Optimum
 from qtab.rendering.replay import check_render_mode, make_render_env
-from qtab.results.action_values import greedy_table, summed
+from qtab.results.action_values import greedy_table, summed, weighted_sum
 from qtab.results.run import Run
 from qtab.results.time_steps import rows_of
 from qtab.training.setup.run_env import check_env, check_spaces
@@ -54,7 +54,7 @@ def _greedy(run: Run) -> Callable[[Any, Any, Any], tuple[Any, Any]]:
     def act(observation: Any, state: Any, mask: Any) -> tuple[Any, Any]:
         steps = 0 if state is None else state
         rows = rows_of(run, observation, steps)
-        values = summed(table[row] for row in rows)
+        values = weighted_sum(rows, table) if run.discretizer.is_weighted else summed(table[row] for row in rows)
         if mask is not None:
             values[~mask] = -np.inf
         return run.actions[int(np.argmax(values))], steps + 1

@@ -129,8 +129,8 @@ def _episode(run: Run, env: Any) -> str:
 
 
 def _diagnosis(run: Run, optimum: Optimum | float | None) -> Diagnosis | None:
-    """Returns the diagnosis if it takes about a second, else None."""
-    if run.config.backend in IN_PYTHON or not len(run.episode_returns):
+    """Returns the diagnosis if it takes about a second and the run has rows that it can read, else None."""
+    if run.config.backend in IN_PYTHON or not len(run.episode_returns) or run.discretizer.is_weighted:
         return None
     return diagnose(run, optimum if isinstance(optimum, Optimum) else None)
 
@@ -145,7 +145,10 @@ def _best_known(found: Diagnosis) -> Any:
 
 def _findings(found: Diagnosis | None) -> str:
     if found is None:
-        return paragraph("Not available: the diagnosis needs an environment that Rust steps, and a finished episode.")
+        return paragraph(
+            "Not available: the diagnosis needs an environment that Rust steps, a finished episode, and a discretizer "
+            "other than a Fourier basis."
+        )
     return f'<div class="text wide">{found._repr_html_()}</div>'
 
 
