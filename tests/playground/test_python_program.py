@@ -65,7 +65,7 @@ def test_the_program_learns_the_same_table(playground: Playground, fragment: str
     assert "array" not in printed.getvalue()
     figure = float(printed.getvalue().split("\n")[0])
     # The page sums in another order.
-    assert figure == pytest.approx(page.evaluate("() => playground.view.curve.shown.over.mean.at(-1)"), rel=1e-12)
+    assert figure == pytest.approx(page.evaluate("() => playground.view.curve.shown.atEnds.mean[1]"), rel=1e-12)
     shown = re.search(r"Mean (.+) of the last (\d+) episodes?: ([−\d.,e]+?)(\.$| ±)", playground.text("curve-summary"))
     assert shown is not None
     assert f"the mean {shown[1]} of the last {shown[2]} episode" in program

@@ -107,19 +107,19 @@ def test_a_curve_of_few_episodes_has_an_axis_for_them(playground: Playground) ->
     assert ends == [500, 1, 2, 3, 5]
 
 
-def test_lines_that_coincide_have_one_label(playground: Playground) -> None:
-    playground.open("#env=CliffWalking-v1&example=0")
-    labels = """marks => {
-      const { curve } = playground.view;
-      curve.show([[-20, -15, -14]], 3, marks.map(([name, value]) => ({ name, value, dash: [] })));
-      return curve.labels.map(({ label }) => label);
-    }"""
-    for marks, expected in (
-        ([["threshold", -13], ["optimal", -13]], ["threshold and optimal −13"]),
-        ([["threshold", -13], ["optimal", -13.001]], ["optimal −13, threshold −13"]),
-        ([["threshold", -16], ["optimal", -13]], ["threshold −16", "optimal −13"]),
+def test_the_key_names_the_lines_to_compare_with_and_their_returns(playground: Playground) -> None:
+    threshold, greatest, best = "threshold of a solved task: ", "greatest expected return: ", "best known return: "
+    for fragment, expected in (
+        ("MountainCar-v0&episodes=20", [f"{threshold}−110", f"{best}−97.67"]),
+        ("FrozenLake-v1&episodes=20", [f"{threshold}0.7", f"{greatest}0.7442"]),
+        ("CliffWalking-v1&episodes=20", [f"{greatest}−13"]),
+        ("FrozenLake-v1&episodes=20&max_episode_steps=1", [f"{greatest}0"]),
     ):
-        assert playground.page.evaluate(labels, marks) == expected
+        playground.open(f"#env={fragment}")
+        key = playground.page.locator("#curve-key li").all_inner_texts()
+        assert [text for text in key if ": " in text] == expected
+    playground.page.locator('[data-measure="lengths"]').click()
+    assert not any(": " in text for text in playground.page.locator("#curve-key li").all_inner_texts())
 
 
 def test_the_end_of_a_game_follows_from_its_hand_and_its_return(playground: Playground) -> None:

@@ -2,7 +2,7 @@
 
 import { make } from "./controls/elements.js";
 import { counted } from "./format.js";
-import { windowOf } from "./results/statistics.js";
+import { lastOf } from "./results/statistics.js";
 
 const INDENT = "    ";
 
@@ -30,7 +30,7 @@ function gridLines(grid, asFunction) {
 
 /** The number below the learning curve: the mean of the last episodes. */
 function printedMean({ settings, seeds }, measure) {
-  const width = windowOf(settings.episodes);
+  const width = lastOf(settings.episodes);
   const [array, words] = measure === "lengths" ? ["episode_lengths", "number of steps"] : ["episode_returns", "return"];
   const [mean, of] = seeds > 1 ? [`runs.${array}[:, -${width}:]`, ` of ${seeds} seeds`] : [`run.${array}[-${width}:]`, ""];
   return `print(${mean}.mean())  # the mean ${words} of the last ${counted(width, "episode")}${of}`;

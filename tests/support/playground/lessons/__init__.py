@@ -88,8 +88,7 @@ class Lesson:
 def last(runs: qtab.Runs) -> NDArray[np.float64]:
     """Returns the figure that the page shows for each seed: the mean return of the last episodes."""
     episodes = runs.episode_returns.shape[1]
-    rounded = (episodes + 10) // 20  # halves up, as JavaScript rounds
-    window = 100 if episodes >= 1000 else min(max(rounded, 5), episodes)
+    window = min(max(round(episodes / 5), 5), 100, episodes)
     means: NDArray[np.float64] = runs.episode_returns[:, -window:].mean(axis=1)
     return means
 

@@ -17,8 +17,10 @@ def away_from_the_edge(lesson: Lesson, others: Lessons) -> None:
     assert min(episode.steps for episode in lesson.greedy_of_all(runs)) > 13
     falls, more_falls = ((one.episode_returns[:, -100:] <= -100).mean(axis=1) for one in (runs, of_q_learning))
     assert (falls < more_falls).all()
-    assert (round(last(runs).mean()), round(last(of_q_learning).mean())) == (-24, -45)
-    assert last(runs)[0] < last(of_q_learning)[0]
+    assert (round(last(runs).mean()), round(last(of_q_learning).mean())) == (-26, -47)
+    assert (last(runs) > last(of_q_learning)).all()
+    ends = [each.episode_returns[0, -25:].mean() for each in (runs, of_q_learning)]
+    assert ends[0] < ends[1], "a few episodes of a single seed show the opposite"
 
 
 def solved_cliff(lesson: Lesson, _: Lessons) -> None:

@@ -5,13 +5,10 @@ import { axes, onResize, scale, surface, ticks } from "./surface.js";
 import { onThemeChange, themeColors } from "./theme.js";
 import { make } from "../controls/elements.js";
 import { count, counted, number } from "../format.js";
-import { meanAndInterval, movingMeans, quantile, windowEnds, windowOf } from "../results/statistics.js";
+import { lastOf, meanAndInterval, movingMeans, quantile, windowEnds, windowOf } from "../results/statistics.js";
 
 const POINTS = 400;
 const MAX_DOTS = 6000;
-const LABEL_SPACE = 26;
-/** Lines to compare with that are closer than this many pixels look like one. */
-const SAME_LINE = 2;
 
 /** The end of the axis of episodes: that of the run, or of its beginning as long as only that is finished. */
 function axisEnd(finished, episodes) {
@@ -41,27 +38,27 @@ export class LearningCurve {
   show(returns, episodes, marks, measure = "returns", { names = [], others = null } = {}) {
     const width = windowOf(episodes);
     const word = measure === "lengths" ? "number of steps" : "return";
-    const other = others && movingMeansOf(others, width);
-    this.shown = { ...movingMeansOf(returns, width), episodes, marks, word, width, names, other };
+    const other = others && movingMeansOf(others, width, lastOf(episodes));
+    this.shown = { ...movingMeansOf(returns, width, lastOf(episodes)), episodes, marks, word, names, other };
     this.describe();
     this.draw();
   }
 
   describe() {
-    const { returns, episodes, marks, word, finished, width, ends, over, names, other } = this.shown;
+    const { returns, episodes, marks, word, finished, covered, atEnds, names, other } = this.shown;
     const seeds = returns.length;
     if (!finished) {
       this.canvas.setAttribute("aria-label", "Learning curve: no episode is finished yet.");
       this.summary.textContent = "No episode is finished yet.";
       return;
     }
-    const covered = Math.min(width, finished);
-    const [first, last] = [over.mean.find((_, index) => ends[index] >= covered), over.mean.at(-1)].map((mean) => number(mean));
-    const half = ({ half: all }) => (seeds > 1 ? ` ± ${number(all.at(-1), 3)}` : "");
+    const [first, last] = atEnds.mean.map((mean) => number(mean));
+    const half = ({ half: [, end] }) => (seeds > 1 ? ` ± ${number(end, 3)}` : "");
     const interval = seeds > 1 ? ` (95 % interval of the mean of ${seeds} seeds)` : "";
-    const compared = other?.finished ? `; ${names[1]}: ${number(other.over.mean.at(-1))}${half(other.over)}` : "";
+    const compared = other?.finished ? `; ${names[1]}: ${number(other.atEnds.mean[1])}${half(other.atEnds)}` : "";
+    const lucky = compared && seeds === 1 ? " One seed can be lucky: compare over 16 seeds." : "";
     const name = compared ? `${names[0]}: ` : "";
-    this.summary.textContent = `Mean ${word} of the last ${counted(covered, "episode")}: ${name}${last}${half(over)}${compared}${interval}.`;
+    this.summary.textContent = `Mean ${word} of the last ${counted(covered, "episode")}: ${name}${last}${half(atEnds)}${compared}${interval}.${lucky}`;
     this.canvas.setAttribute(
       "aria-label",
       `Learning curve of ${count(finished)} of ${counted(episodes, "episode")}, ${counted(seeds, "seed")}. ` +
@@ -116,8 +113,7 @@ export class LearningCurve {
       drawAgent(g, this.shown, x, y, { single: colors.accent, mean: colors.warm, seeds: colors.accent });
     }
     g.restore();
-    this.labels = markLabels(marks, y);
-    drawMarks(g, box, this.labels, y, colors);
+    drawMarks(g, box, marks, y, colors);
     this.drawPointer(g, box, x, y, colors);
   }
 
@@ -144,13 +140,18 @@ export class LearningCurve {
   }
 }
 
-/** Moving means of the numbers of each seed, and their mean and interval over the seeds. */
-function movingMeansOf(returns, width) {
+/**
+ * Moving means of the numbers of each seed, and their mean and interval over the seeds. `atEnds` has those of the first
+ * and of the last `covered` episodes: `most`, or all that are finished.
+ */
+function movingMeansOf(returns, width, most) {
   const finished = Math.min(...returns.map((each) => each.length));
   const ends = windowEnds(finished, POINTS);
   const means = returns.map((each) => movingMeans(each, width, ends));
   const over = finished ? meanAndInterval(means) : { mean: [], half: [] };
-  return { returns, finished, ends, means, over };
+  const covered = Math.min(most, finished);
+  const atEnds = meanAndInterval(returns.map((each) => movingMeans(each, covered, [covered, finished])));
+  return { returns, finished, ends, means, over, covered, atEnds };
 }
 
 /** Draws the curve of an agent: with the numbers of its episodes for one seed, and with the interval for several. */
@@ -181,34 +182,13 @@ function drawDots(g, returns, x, y, color) {
   g.globalAlpha = 1;
 }
 
-/** The labels of the lines to compare with, from the lowest: lines that coincide have one label. */
-function markLabels(marks, y) {
-  const labels = [];
-  for (const { name, value, dash } of marks.filter((mark) => Number.isFinite(mark.value)).sort((left, right) => left.value - right.value)) {
-    const last = labels.at(-1);
-    if (!last || y(last.value) - y(value) >= SAME_LINE) labels.push({ value, dash, label: `${name} ${number(value)}` });
-    else last.label = last.value === value ? last.label.replace(" ", ` and ${name} `) : `${last.label}, ${name} ${number(value)}`;
-  }
-  return labels;
-}
-
-/** Draws the lines to compare with. A label that would be too close to the one above is drawn below its line. */
-function drawMarks(g, box, shown, y, colors) {
-  shown.forEach(({ value, dash, label }, index) => {
+/** Draws the lines to compare with, which the key below the curve names. */
+function drawMarks(g, box, marks, y, colors) {
+  for (const { value, dash } of marks.filter((mark) => Number.isFinite(mark.value))) {
     g.setLineDash(dash);
     line(g, [[box.left, y(value)], [box.right, y(value)]], colors.good, 1.5);
-    g.setLineDash([]);
-    const isClose = index + 1 < shown.length && y(value) - y(shown[index + 1].value) < LABEL_SPACE;
-    const at = y(value) + (isClose ? 9 : -9);
-    const wide = g.measureText(label).width;
-    g.fillStyle = colors.card;
-    g.globalAlpha = 0.82;
-    g.fillRect(box.right - wide - 3, at - 7, wide + 6, 14);
-    g.globalAlpha = 1;
-    g.fillStyle = colors.good;
-    g.textAlign = "right";
-    g.fillText(label, box.right, at);
-  });
+  }
+  g.setLineDash([]);
 }
 
 /** The expected return of the best or, for the environment's default time limit, best known policy; null if unknown. */
@@ -220,6 +200,13 @@ export function bestReturn(entry, settings, best) {
 function hasOwnLimit(entry, settings) {
   return settings.max_episode_steps === entry.max_episode_steps;
 }
+
+/** The stroke and the words of the lines to compare with in the key. */
+const MARKS = {
+  threshold: ["2px dotted", "threshold of a solved task"],
+  optimal: ["2px dashed", "greatest expected return"],
+  "best known": ["2px dashed", "best known return"],
+};
 
 /** The threshold and the optimum as lines of the learning curve, and the key below it. */
 export class Marks {
@@ -246,9 +233,10 @@ export class Marks {
       : seeds > 1
         ? [["accent", "1px solid", `each seed, ${mean}`], ["warm", "3px solid", `mean of ${seeds} seeds, with its 95 % interval`]]
         : [["accent", "3px dotted", `${word} of each episode`], ["warm", "3px solid", mean]];
-    if (marks.some(({ name }) => name === "threshold")) lines.push(["good", "2px dotted", "threshold of a solved task"]);
-    const best = marks.find(({ name }) => name !== "threshold");
-    if (best) lines.push(["good", "2px dashed", best.name === "optimal" ? "greatest expected return" : "best known return"]);
+    for (const { name, value } of marks) {
+      const [stroke, text] = MARKS[name];
+      lines.push(["good", stroke, `${text}: ${number(value)}`]);
+    }
     const shown = JSON.stringify(lines);
     if (shown === this.shown) return;
     this.shown = shown;

@@ -11,6 +11,11 @@ export function windowOf(episodes) {
   return episodes >= 1000 ? 100 : Math.min(Math.max(Math.round(episodes / 20), 5), episodes);
 }
 
+/** The number of last episodes whose mean stands below the curve: a fifth of a short run, and 100 of a long one. */
+export function lastOf(episodes) {
+  return Math.min(Math.max(Math.round(episodes / 5), 5), 100, episodes);
+}
+
 /** The mean of the last `width` numbers before each of the ascending ends; of fewer at the start. */
 export function movingMeans(values, width, ends) {
   const sums = new Float64Array(values.length + 1);
