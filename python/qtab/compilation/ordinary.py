@@ -33,7 +33,7 @@ class OrdinaryEnv:
 
     Args:
         env: The environment, without wrappers. It is not changed.
-        name: Its name in messages; None takes its text.
+        name: Its name in messages; None takes that of its class.
         check: Called before the compilation, when the class is rewritten, to refuse it for other reasons.
 
     Raises:
@@ -45,7 +45,7 @@ class OrdinaryEnv:
         self, env: gym.Env, name: str | None = None, check: "Callable[[OrdinaryEnv], None] | None" = None
     ) -> None:
         require_numba()
-        self._name = str(env) if name is None else name
+        self._name = f"<{type(env).__name__} instance>" if name is None else name
         observation = ObservationLayout.of(env.observation_space)
         shared = refuse_effects(env)
         self.env = twin_of(env)

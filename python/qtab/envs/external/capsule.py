@@ -80,7 +80,7 @@ def compiled_class(
         reason = "Numba compiles your own classes, derived from gymnasium.Env or qtab.FunctionalEnv"
         raise NotInRustError(reason, "leave out backend")
     try:
-        compiled = OrdinaryEnv(_unwrapped(env), str(env), check)
+        compiled = OrdinaryEnv(_unwrapped(env), _name_of(env), check)
         if needs_masks and compiled.rewritten.mask_refusal is not None:
             raise compiled.rewritten.mask_refusal
     except NotCompilable as refusal:
@@ -92,6 +92,14 @@ def external_of(env: "OrdinaryEnv") -> _core.ExternalEnv:
     """Returns an ordinary class as Rust steps it."""
     capsule = env.capsule()  # kept here: it must not end while an error is raised
     return _core.ExternalEnv(capsule, env.repeat, repeats_episodes=True)
+
+
+def _name_of(env: gym.Env) -> str:
+    """Returns the text of an environment, without calling a method of the user's class."""
+    cls = type(env.unwrapped)
+    if cls.__str__ is gym.Env.__str__ and cls.__repr__ is gym.Env.__repr__:
+        return str(env)
+    return cls.__name__ if env.spec is None else env.spec.id
 
 
 def _unwrapped(env: gym.Env) -> Any:
