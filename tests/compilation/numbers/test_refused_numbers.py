@@ -26,7 +26,7 @@ REFUSED = {
     "{n: np.float32(x), m: y}[n]": "numbers of several types in a dict",
     "len({x, y})": "a set of floats",
     "[n for n in {n, m}][0]": "the order of a set",
-    "[n, m].count(x)": "another type than integers",
+    "[n, m].count(x)": r"list.count\(\) of float64 in a list of int64",
     "[x] == [y]": "a comparison of lists of floats",
     "sum((n, p))": "a sum of integers and booleans",
     "sorted((x, y))[0]": "equal elements may change their order",
