@@ -2,7 +2,7 @@
 
 import enum
 import inspect
-from typing import Any
+from typing import Any, NamedTuple
 
 import gymnasium as gym
 import numpy as np
@@ -168,3 +168,96 @@ def test_enums_without_operators_are_numbers() -> None:
     env.reset(seed=0)
     rewritten.reset(record, rng)
     assert rewritten.step(record, 1, rng)[:2] == env.step(1)[:2]
+
+
+COUNT = [0]
+
+
+class Lamp(enum.Enum):
+    """Has a property that counts."""
+
+    ON = 1
+
+    @property
+    def bonus(self):
+        COUNT[0] += 1
+        return float(COUNT[0])
+
+
+class Level:
+    """Counts how often it is read."""
+
+    def __get__(self, instance, owner=None):
+        COUNT[0] += 1
+        return float(COUNT[0])
+
+
+class Meta(type):
+    """Has a property that counts."""
+
+    @property
+    def limit(cls):
+        COUNT[0] += 1
+        return float(COUNT[0])
+
+
+class Settings(metaclass=Meta):
+    """Has a number and a descriptor."""
+
+    level = Level()
+    bonus = 2.0
+
+
+class Pair(NamedTuple):
+    """Has fields and a property that counts."""
+
+    first: float
+
+    @property
+    def total(self):
+        COUNT[0] += 1
+        return self.first + COUNT[0]
+
+
+class ReadsProperty(Counts):
+    def extra(self):
+        return Lamp.ON.bonus  # here
+
+
+class ReadsDescriptor(Counts):
+    def extra(self):
+        return Settings.level  # here
+
+
+class ReadsOfMetaclass(Counts):
+    def extra(self):
+        return Settings.limit  # here
+
+
+class ReadsOfTuple(Counts):
+    PAIR = Pair(1.0)
+
+    def extra(self):
+        return self.PAIR.total  # here
+
+
+class ReadsNumbers(Counts):
+    PAIR = Pair(1.0)
+
+    def extra(self):
+        return Lamp.ON.value + Settings.bonus + self.PAIR.first
+
+
+@pytest.mark.parametrize("cls", [ReadsProperty, ReadsDescriptor, ReadsOfMetaclass, ReadsOfTuple])
+def test_attributes_of_constants_that_are_computed_are_refused(cls: Any) -> None:
+    before = COUNT[0]
+    function = cls.__dict__["extra"]
+    scope_env = cls()
+    with pytest.raises(NotCompilable, match="computed by code") as caught:
+        rewrite(scope_env)
+    assert caught.value.line == function.__code__.co_firstlineno + 1
+    assert COUNT[0] == before
+
+
+def test_plain_attributes_of_constants_are_read() -> None:
+    assert rewrite(ReadsNumbers()).source
