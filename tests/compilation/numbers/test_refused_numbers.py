@@ -29,7 +29,7 @@ REFUSED = {
     "[n, m].count(x)": r"list.count\(\) of float64 in a list of int64",
     "[x] == [y]": "a comparison of lists of floats",
     "sum((n, p))": "a sum of integers and booleans",
-    "sorted((x, y))[0]": "equal elements may change their order",
+    "sorted((x, y))[0]": "sorted: the signs of zeros, and NaN",
     "np.sort(np.array([x, y]))[0]": "equal elements may change their order",
     "np.argsort(np.array([n, m]))[0]": "search for the elements in a loop",
     "np.mean(np.array([n, m]))": "may add in another order",
