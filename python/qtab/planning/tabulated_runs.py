@@ -12,6 +12,7 @@ from qtab.config.functions import checked_mask
 from qtab.config.options import OPTIONS
 from qtab.config.origin import Origin, copied, trained_on
 from qtab.discretizers import Discretizer
+from qtab.discretizers.base import check_binary
 from qtab.discretizers.identity import Identity
 from qtab.discretizers.time_aware import TimeAware
 from qtab.envs.origin.describe import describe
@@ -47,6 +48,7 @@ def on_table(run: AnyRun, table: TabulatedEnv) -> AnyRun:
     found = [] if description is None else differences(description, made_of)
     if found:
         raise ValueError(f"run must be on the environment that the table was made of, got another one: {found[0]}")
+    check_binary("run", run.discretizer, "be compared with a table")
     cells: Discretizer = Identity.of_space(table.observation_space, len(run.actions))
     rows = np.array([run.discretizer.active_rows(observation) for observation in table.observations])
     changes: dict[str, Any] = {"tables": None if run.tables is None else _of_states(run, run.tables, rows)}

@@ -63,7 +63,7 @@ def schedule(run: Run, ax: "Axes | None" = None, *, title: str | None = None) ->
         ax.axhspan(rate.minimum, rate.value, color=color(1), alpha=0.25, linewidth=0, label=label)
     else:
         rates = rates_of(run, rate, episodes)
-        shared = run.discretizer.n_active
+        shared = 1 if run.discretizer.is_weighted else run.discretizer.n_active
         label = "learning rate α" if shared == 1 else f"learning rate α, divided among {shared} tilings"
         ax.plot(episodes + 1, rates, color=color(1), linewidth=2, linestyle="--", label=label)
     set_x_limits(ax, 1, max(finished, 2), earlier)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from qtab._spec import ObservationPolicySpec
 from qtab._utils.shown import shown
 from qtab.discretizers import Discretizer
+from qtab.discretizers.base import check_binary
 from qtab.discretizers.box import BoxDiscretizer
 from qtab.envs.actions import Actions
 from qtab.planning.optimum import Optimum
@@ -146,6 +147,7 @@ def observation_policy(name: str, policy: GivenPolicy, cells: Discretizer, actio
 def _of_run(name: str, run: Run, cells: Discretizer, actions: Actions) -> GreedyPolicy:
     refuse_time_aware(name, run)
     theirs = run.discretizer
+    check_binary(name, theirs, "be followed")
     if not isinstance(theirs, BoxDiscretizer) or theirs.spec()["type"] not in ("round", "bins", "tiles"):
         raise ValueError(f"{name} must be a run with a discretizer of Box observations, got {theirs!r}")
     if theirs.low.shape != cells.low.shape or theirs.low.dtype != cells.low.dtype:

@@ -47,10 +47,11 @@ class FourierBasis(BoxDiscretizer):
             ValueError: if the space or an option does not fit, or there would be too many features.
         """
         if not isinstance(space, spaces.Box) or len(space.shape) != 1 or space.dtype not in FLOATS:
+            is_flat = isinstance(space, spaces.Box) and len(space.shape) == 1
+            wrapper = "DtypeObservation(env, np.float32)" if is_flat else "FlattenObservation"
             raise ValueError(
                 "discretizer must be another one for an observation space that is not a Box of floats with one axis, "
-                f"{' '.join(str(space).split())}, got 'fourier'; gymnasium.wrappers.FlattenObservation makes a Box of "
-                "most spaces"
+                f"{' '.join(str(space).split())}, got 'fourier'; gymnasium.wrappers.{wrapper} makes one"
             )
         limits = span(space, config.low, config.high)
         order, coupled = required("order", config.order), required("coupled", config.coupled)
@@ -59,9 +60,10 @@ class FourierBasis(BoxDiscretizer):
         if count > MAX_FEATURES:
             fewer = n_features(dimensions, order, coupled=False)
             instead = f"; coupled=False gives {fewer:,}" if coupled and fewer <= MAX_FEATURES else ""
+            given = f"{count:,}" if count < 10**9 else "more than a billion"
             raise ValueError(
                 f"order must give at most {MAX_FEATURES:,} features, got {order} with {dimensions} components, which "
-                f"gives {count:,}{instead}"
+                f"gives {given}{instead}"
             )
         with np.errstate(over="ignore"):
             if not np.isfinite(limits[1] - limits[0]).all():
