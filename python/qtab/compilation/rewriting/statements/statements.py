@@ -91,8 +91,7 @@ class Statements(Displays):
         self.copies_state = simple and self.may_change_state(node)
         self.references, self.changing = [], []
         result: bool = method(node)
-        if simple:
-            check_order(self, node)
+        check_order(self, node)
         return result
 
     def _do_pass(self, _: ast.Pass) -> bool:
@@ -288,8 +287,7 @@ class Statements(Displays):
         if all(value.is_fixed and value.fixed is None for value, _, _ in self.returns):
             return constant(None)
         if len(self.returns) == 1 and self.returns[0][0].is_fixed and self.returns[0][2] == 0:
-            only: Value = self.returns[0][0]
-            return constant(only.fixed)
+            return constant(self.returns[0][0].fixed)
         kind: Any = None
         for value, node, _ in self.returns:
             lifted = self.lift(value, node)
