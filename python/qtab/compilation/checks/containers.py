@@ -66,9 +66,7 @@ def _converts(code: TypedCode, made: Any, items: list[Any]) -> bool:
 def _operation(code: TypedCode, expression: Any) -> Refusal:
     left, right = (types.unliteral(code.type_of(one)) for one in (expression.lhs, expression.rhs))
     numbers = (types.Integer, types.Float, types.Boolean)
-    are_booleans = isinstance(left, types.Boolean) and isinstance(right, types.Boolean)
-    is_identity = expression.fn in (operator.is_, operator.is_not) and not are_booleans
-    if is_identity and isinstance(left, numbers) and isinstance(right, numbers):
+    if expression.fn in (operator.is_, operator.is_not) and isinstance(left, numbers) and isinstance(right, numbers):
         return "`is` compares objects", "write =="
     if expression.fn is operator.contains:
         return _other_key(left, code, expression.rhs)
