@@ -233,7 +233,8 @@ def test_only_wrappers_limit_the_time_each_of_them(inner: int | None, outer: int
         return OwnLimit() if inner is None else gym.wrappers.TimeLimit(OwnLimit(), inner)
 
     name = f"QtabVec/Limit{inner}{outer}-v0"
-    gym.register(name, made, max_episode_steps=outer)
+    entry_point: Any = made  # without keyword arguments
+    gym.register(name, entry_point, max_episode_steps=outer)
     ours, theirs = make(name, 3)
     assert ours.is_native
     in_lockstep(ours, theirs, 12, 0)

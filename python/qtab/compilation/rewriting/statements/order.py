@@ -1,7 +1,10 @@
 """The order of evaluation: an array that is read, and changed by a call later in the same statement."""
 
 import ast
+from functools import partial
 from typing import TYPE_CHECKING
+
+from qtab.compilation.not_compilable import NotCompilable
 
 if TYPE_CHECKING:
     from qtab.compilation.rewriting.scope import Scope
@@ -28,7 +31,11 @@ def check_order(scope: "Scope", statement: ast.AST) -> None:
                 names = " and ".join(f"self.{name}" for name in sorted(views))
                 reason = f"{names} is read, and may be changed by `{ast.unparse(call)}` before it is used,"
                 error = scope.refuse(node, reason, "assign the call to a variable in a statement before")
-                scope.program.aliases.append((scope.compiled, views, lambda error=error: error))
+                scope.program.aliases.append((scope.compiled, views, partial(_refusal, error)))
+
+
+def _refusal(error: NotCompilable) -> NotCompilable:
+    return error
 
 
 def _augmented(statement: ast.AST) -> list[tuple[ast.expr, frozenset[str]]]:
