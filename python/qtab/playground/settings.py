@@ -81,13 +81,21 @@ _TITLES = {
     "PCG64": "PCG64",
     "MT19937": "MT19937",
 }
-# Sentences that replace those of the config, which mention options that the page omits.
+# Sentences that replace those of the config, which mention options that the page omits, or Python's names of them.
 _SENTENCES = {
     "learning_rate": "α: the fraction of the error that an update corrects, in [0, 1]. With tile coding it is divided "
     "among the tilings, and may be up to 2.",
     "exploration": "The policy: a random action with probability ε, or the softmax of the values.",
     "max_episode_steps": "The time limit of an episode, in steps.",
     "initial_q": "The initial Q table: drawn uniformly from a range (low, high), or one number everywhere.",
+    "discount": "γ: the discount factor, in [0, 1]: how much the value of the next state counts.",
+    "learning_rate_schedule": "The schedule of α: constant, linear or exponential over the episodes, or α / n at the "
+    "n-th visit of a state and action (by visits).",
+    "min_learning_rate": "The lowest α, which is at most α itself. A linear schedule reaches it at the end of the run.",
+    "on_truncation": "The update at the time limit: bootstrap from the next state (correct), or terminate, as if the "
+    "next state were terminal (a common mistake).",
+    "epsilon_schedule": "The schedule of ε over the episodes.",
+    "min_epsilon": "The lowest ε, which is at most ε itself. A linear schedule reaches it at the end of the run.",
     "discretizer": "How observations index the Q table: rounded to a grid, by bins of equal width, or by tile coding.",
 }
 _SYMBOL = re.compile(r"(\w): ")
