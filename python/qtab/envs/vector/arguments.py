@@ -7,13 +7,14 @@ import gymnasium as gym
 import numpy as np
 from gymnasium.envs.registration import EnvSpec
 from gymnasium.error import Error, ResetNeeded
+from gymnasium.wrappers import TimeLimit
 from numpy.typing import NDArray
 
 from qtab import _core
 from qtab._utils import checks
 from qtab._utils.shown import shown
 from qtab.envs.external.capsule import has_capsule
-from qtab.envs.in_rust.matching import NotInRustError, entry_for_env
+from qtab.envs.in_rust.matching import NotInRustError, entry_for_env, layers
 from qtab.envs.in_rust.native import native_env
 from qtab.envs.origin.class_code import is_of_library
 from qtab.envs.registry import ENTRIES, PREFIX, EnvEntry, gymnasium_id
@@ -153,3 +154,10 @@ def reset_bounds(
     env.reset(options=options)
     low, high = (float(options.get(name, default)) for name, default in names)
     return low, high
+
+
+def limit_of_wrappers(env: gym.Env) -> int | None:
+    """Returns the smallest time limit of the wrappers of an environment, in steps; None if they have none."""
+    limits = [layer._max_episode_steps for layer in layers(env) if isinstance(layer, TimeLimit)]
+    # Gymnasium accepts any integer; no episode reaches the largest of 64 bits.
+    return min([*limits, checks.LARGEST_COUNT]) if limits else None

@@ -10,16 +10,15 @@ import numpy as np
 from gymnasium.error import ResetNeeded
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
-from gymnasium.wrappers import TimeLimit
 
 from qtab import _core
 from qtab._utils import checks
-from qtab.envs.in_rust.matching import layers
 from qtab.envs.vector.arguments import (
     MAX_RESET_BOUND,
     check_reset_mask,
     entry_to_step,
     known_env,
+    limit_of_wrappers,
     reset_bounds,
     seeds_of,
     spec_to_step,
@@ -115,17 +114,8 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
         native = known_env(self._entry_name, env) if own is None else own.in_rust(self.num_envs, self.copy)
         if native is None:
             return False
-        limits = [one._max_episode_steps for one in layers(self.example) if isinstance(one, TimeLimit)]
-        limit = min(limits, default=None)
-        return self.start(
-            native,
-            self.num_envs,
-            # Gymnasium accepts any integer; no episode reaches the largest of 64 bits.
-            None if limit is None else min(limit, checks.LARGEST_COUNT),
-            self.autoreset_mode.value,
-            self.copy,
-            self._threads,
-        )
+        limit = limit_of_wrappers(self.example)
+        return self.start(native, self.num_envs, limit, self.autoreset_mode.value, self.copy, self._threads)
 
     def reset(
         self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
