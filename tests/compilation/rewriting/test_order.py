@@ -3,28 +3,16 @@
 import inspect
 from typing import Any
 
-import gymnasium as gym
 import numpy as np
 import pytest
-from gymnasium import spaces
 
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting import rewrite
+from support.environments.gym_classes.extra import ExtraEnv
 
 
-class Bumps(gym.Env):
+class Bumps(ExtraEnv):
     """Has methods and a property that change an array."""
-
-    observation_space = spaces.Discrete(10)
-    action_space = spaces.Discrete(2)
-
-    def __init__(self):
-        self.board = np.zeros(4)
-
-    def reset(self, *, seed=None, options=None):
-        super().reset(seed=seed)
-        self.cell, self.board[:] = 0, 0.0
-        return self.cell, {}
 
     def bump(self):
         self.board[1] += 1.0
@@ -48,13 +36,6 @@ class Bumps(gym.Env):
 
     def first(self, values, factor):
         return values[1] * factor
-
-    def extra(self):
-        return 0.0
-
-    def step(self, action):
-        self.cell = (self.cell + action) % 10
-        return self.cell, self.extra(), False, False, {}
 
 
 class Indexes(Bumps):

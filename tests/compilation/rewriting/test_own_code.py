@@ -4,35 +4,12 @@ import enum
 import inspect
 from typing import Any, NamedTuple
 
-import gymnasium as gym
 import numpy as np
 import pytest
-from gymnasium import spaces
 
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting import rewrite
-
-
-class Counts(gym.Env):
-    """An environment whose reward is the method ``extra``."""
-
-    observation_space = spaces.Discrete(10)
-    action_space = spaces.Discrete(2)
-
-    def __init__(self):
-        self.board = np.zeros(4)
-
-    def reset(self, *, seed=None, options=None):
-        super().reset(seed=seed)
-        self.cell, self.board[:] = 0, 0.0
-        return self.cell, {}
-
-    def extra(self):
-        return 0.0
-
-    def step(self, action):
-        self.cell = (self.cell + action) % 10
-        return self.cell, self.extra(), False, False, {}
+from support.environments.gym_classes.extra import ExtraEnv
 
 
 class Heading(enum.IntEnum):
@@ -82,32 +59,32 @@ class Plain(enum.IntEnum):
         return self.name
 
 
-class AddsEnum(Counts):
+class AddsEnum(ExtraEnv):
     def extra(self):
         return float(Heading.EAST + self.cell)  # here
 
 
-class AddsToEnum(Counts):
+class AddsToEnum(ExtraEnv):
     def extra(self):
         return float(self.cell + Heading.EAST)  # here
 
 
-class AddsConstants(Counts):
+class AddsConstants(ExtraEnv):
     def extra(self):
         return float(Heading.EAST + 1)  # here
 
 
-class InvertsFlag(Counts):
+class InvertsFlag(ExtraEnv):
     def extra(self):
         return float(~Access.READ)  # here
 
 
-class MultipliesFloat(Counts):
+class MultipliesFloat(ExtraEnv):
     def extra(self):
         return Price.LOW * self.board[0]  # here
 
 
-class KeepsEnum(Counts):
+class KeepsEnum(ExtraEnv):
     def reset(self, *, seed=None, options=None):
         result = super().reset(seed=seed)
         self.heading = Heading.NORTH  # here
@@ -118,7 +95,7 @@ class KeepsEnum(Counts):
         return float(self.heading + 1)
 
 
-class ComparesConstant(Counts):
+class ComparesConstant(ExtraEnv):
     def __init__(self):
         super().__init__()
         self.goal = Meters(3)
@@ -127,14 +104,14 @@ class ComparesConstant(Counts):
         return 1.0 if self.cell == self.goal else 0.0  # here
 
 
-class LooksUp(Counts):
+class LooksUp(ExtraEnv):
     COSTS = (1.0, 2.0)
 
     def extra(self):
         return self.COSTS[Heading.EAST]  # here
 
 
-class ComputesWithPlainEnums(Counts):
+class ComputesWithPlainEnums(ExtraEnv):
     def extra(self):
         return float(Plain.RIGHT + self.cell) + Plain.LEFT.value + Heading.EAST.value
 
@@ -219,29 +196,29 @@ class Pair(NamedTuple):
         return self.first + COUNT[0]
 
 
-class ReadsProperty(Counts):
+class ReadsProperty(ExtraEnv):
     def extra(self):
         return Lamp.ON.bonus  # here
 
 
-class ReadsDescriptor(Counts):
+class ReadsDescriptor(ExtraEnv):
     def extra(self):
         return Settings.level  # here
 
 
-class ReadsOfMetaclass(Counts):
+class ReadsOfMetaclass(ExtraEnv):
     def extra(self):
         return Settings.limit  # here
 
 
-class ReadsOfTuple(Counts):
+class ReadsOfTuple(ExtraEnv):
     PAIR = Pair(1.0)
 
     def extra(self):
         return self.PAIR.total  # here
 
 
-class ReadsNumbers(Counts):
+class ReadsNumbers(ExtraEnv):
     PAIR = Pair(1.0)
 
     def extra(self):
