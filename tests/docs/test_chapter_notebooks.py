@@ -37,7 +37,7 @@ def test_each_is_tested_and_the_page_for_teachers_links_it() -> None:
 
 
 def found(pattern: str, text: str) -> list[str]:
-    """Returns the different matches in order: Jupyter repeats a printed line now and then."""
+    """Returns the different matches in order."""
     return list(dict.fromkeys(re.findall(pattern, text)))
 
 

@@ -37,8 +37,16 @@ class Executed:
 
     def shown(self, cell: str, kind: str) -> list[str]:
         """What a cell shows of a MIME type; the text that it prints counts as plain."""
-        printed = [output.text for output in self._cells[cell] if "text" in output and kind == TEXT]
-        return printed + [output.data[kind] for output in self._cells[cell] if kind in output.get("data", {})]
+        printed = self._printed(cell) if kind == TEXT else ""
+        shown = [output.data[kind] for output in self._cells[cell] if kind in output.get("data", {})]
+        return [printed, *shown] if printed else shown
+
+    def _printed(self, cell: str) -> str:
+        """The text that a cell prints.
+
+        On a busy machine it arrives in several messages, each a stream. MyST-NB appends the later ones to the first.
+        """
+        return next((str(output.text) for output in self._cells[cell] if "text" in output), "")
 
     def text(self, cell: str) -> str:
         return "\n".join(self.shown(cell, TEXT))
@@ -74,7 +82,9 @@ def execute(name: str, folder: Path) -> Executed:
         environment.delenv("MPLBACKEND", raising=False)
         environment.setenv("IPYTHONDIR", str(folder / "ipython"))
         # A cell that fails is reported with all others of its notebook.
-        client = nbclient.NotebookClient(notebook, timeout=300, kernel_name="python3", allow_errors=True)
+        client = nbclient.NotebookClient(
+            notebook, timeout=300, kernel_name="python3", allow_errors=True, coalesce_streams=True
+        )
         client.execute(cwd=str(folder))
     return Executed(notebook.cells)
 
