@@ -1,5 +1,6 @@
 """Compiled code is compared with Python for each value of the parameters, since a value may select a branch."""
 
+from pathlib import Path
 from typing import Any
 
 import gymnasium as gym
@@ -56,8 +57,9 @@ class OrdinaryBranch(gym.Env[Any, Any]):
 
 
 @pytest.fixture
-def proofs(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
-    """The proofs that are made, from empty memories."""
+def proofs(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[Any]:
+    """The proofs that are made, from empty memories and an empty folder of files."""
+    monkeypatch.setattr("qtab.compilation.cache.code_files._folders", lambda _: iter([tmp_path / "code"]))
     made: list[Any] = []
     for module in (functional, ordinary):
         prove: Any = module.prove
@@ -80,11 +82,7 @@ def test_another_value_is_compared_as_well(make: Any, compiled: Any, proofs: lis
     compiled(make(0.0))
 
 
-def test_each_value_is_compared_once_by_all_processes(
-    proofs: list[Any], monkeypatch: pytest.MonkeyPatch, tmp_path: Any
-) -> None:
-    monkeypatch.setattr("qtab.compilation.cache.code_files._folders", lambda _: iter([tmp_path / "code"]))
-
+def test_each_value_is_compared_once_by_all_processes(proofs: list[Any], monkeypatch: pytest.MonkeyPatch) -> None:
     def outcomes() -> list[str]:
         found = []
         for slip in (0.0, 0.3, -1.0, 0.3, 0.0):
@@ -129,10 +127,7 @@ def test_states_of_another_shape_need_other_code() -> None:
         assert compiled_env(Bins(n))[0].state_size == 8 * n
 
 
-def test_a_failure_of_numba_is_not_remembered(
-    proofs: list[Any], monkeypatch: pytest.MonkeyPatch, tmp_path: Any
-) -> None:
-    monkeypatch.setattr("qtab.compilation.cache.code_files._folders", lambda _: iter([tmp_path / "code"]))
+def test_a_failure_of_numba_is_not_remembered(proofs: list[Any], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("NUMBA_DISABLE_JIT", "1")
     with pytest.raises(NotCompilable, match=r"^NUMBA_DISABLE_JIT is set$"):
         OrdinaryEnv(OrdinaryBranch())
