@@ -192,15 +192,11 @@ def test_the_optimum_is_drawn_in_learning_curves(found):
 
 
 ENDLESS = """
-import time
-def once_it_plans(then):
-    began = time.monotonic()
-    def wait():
-        time.sleep(0.5)
-        then()
-    threading.Thread(target=wait, daemon=True).start()
+def interrupt():
+    work_for(0.3)
+    ctrl_c()
 mint = qtab.TabularEnv({0: {0: [(1.0, 0, 1.0, False)]}}, [1.0])
-once_it_plans(ctrl_c)
+threading.Thread(target=interrupt, daemon=True).start()
 try:
     qtab.optimum(mint, max_episode_steps=10**15)
 except KeyboardInterrupt:

@@ -78,7 +78,9 @@ def at_work():
 def interrupt():
     while not at_work():
         time.sleep(0.01)
-    time.sleep(0.2)
+    began = time.process_time()
+    while time.process_time() < began + 0.2:
+        time.sleep(0.01)
     os.kill(os.getpid(), signal.SIGINT)
 
 threading.Thread(target=interrupt, daemon=True).start()

@@ -3,8 +3,6 @@
 import copy
 import ctypes
 import pickle
-import signal
-import threading
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +12,9 @@ import pytest
 import qtab
 from qtab.envs.external import library, trial
 from support.native.libraries import SOURCES, capsule_of, compile_c, needs_compiler
+from support.parity import assert_same_run
+from support.processes.posix import posix_only
+from support.processes.timer import stopped_by_a_timer
 
 pytestmark = needs_compiler
 
@@ -23,22 +24,16 @@ def days(folder: Path, **options: object) -> Path:
     return compile_c(SOURCES / "days.c", folder, "days", *given)
 
 
+@posix_only
 def test_a_run_resumes_within_the_planning_after_a_terminal_step(tmp_path: Path) -> None:
     settings: dict[str, Any] = {"algorithm": "dyna_q", "planning_steps": 1_000_000, "action_mask": True, "seed": 0}
+    settings["episodes"] = 10**6
     env = qtab.NativeEnv(days(tmp_path))
-    timer = threading.Timer(0.1, signal.raise_signal, [signal.SIGINT])
-
-    def interrupt_soon(progress: Any) -> bool:
-        if progress.episodes == 1:
-            timer.start()
-        return True
-
-    with pytest.raises(KeyboardInterrupt) as raised:
-        qtab.train(env, episodes=40, callback=interrupt_soon, callback_every=1, **settings)
-    stopped: qtab.Run = raised.value.run  # type: ignore[attr-defined]
-    assert len(stopped.episode_returns) < 40
-    resumed, whole = qtab.resume(stopped, env=env), qtab.train(env, episodes=40, **settings)
-    assert resumed.tables.tobytes() == whole.tables.tobytes()
+    stopped = stopped_by_a_timer(0.1, env, **settings)
+    some_later = len(stopped.episode_returns) + 2
+    resumed = qtab.resume(stopped, env=env, callback=lambda _: False, callback_every=some_later)
+    whole = qtab.train(env, callback=lambda _: False, callback_every=some_later, **settings)
+    assert_same_run(resumed, whole)
 
 
 def test_no_step_is_taken_beyond_the_time_limit(tmp_path: Path) -> None:

@@ -1,4 +1,9 @@
-"""Runs that the signal of a timer stops, most probably in the middle of an episode."""
+"""Runs that the signal of a timer stops, most probably in the middle of an episode.
+
+Where it strikes depends on the machine: the timer counts in ticks of up to 10 ms, and the extension hears a signal
+every 10 ms. Tests assert what holds at any place, such as that a resumed run equals the uninterrupted one, and their
+runs are so long that none is finished before.
+"""
 
 import gc
 import signal

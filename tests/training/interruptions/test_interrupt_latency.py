@@ -32,21 +32,28 @@ P = {s: {a: [(0.5, max(s - 1, 0), -1.0, False), (0.5, (s * 7 + a + 1) % states, 
          for a in range(2)} for s in range(states)}
 corridor = qtab.TabularEnv(P, np.full(states, 1 / states))
 
-def interrupt_after(seconds):
-    # Of CPU time: the work is then under way.
+def interrupt():
     global sent
-    while time.process_time() < seconds:
-        time.sleep(0.005)
+    work_for(0.1)
     sent = time.process_time()
     ctrl_c()
 
-def latency(work):
-    threading.Thread(target=interrupt_after, args=(time.process_time() + 0.1,), daemon=True).start()
+def once(work):
+    threading.Thread(target=interrupt, daemon=True).start()
     try:
         work()
     except KeyboardInterrupt:
         return time.process_time() - sent
     raise AssertionError("the work ended before the signal")
+
+def latency(work):
+    # On a busy machine, the thread that hears the signal may wait for a core while others work. Work that is not asked
+    # to stop often enough is late every time.
+    fastest = once(work)
+    for _ in range(4):
+        if fastest > 0.2:
+            fastest = min(fastest, once(work))
+    return fastest
 """
 
 

@@ -66,7 +66,7 @@ def test_an_uncaught_ctrl_c_ends_the_process_as_python_does():
         [sys.executable, "-c", PRELUDE + "once_it_trains(ctrl_c)\nqtab.train('MountainCar-v0', **ENDLESS)"],
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=600,
     )
     assert done.returncode != 0
     assert done.stderr.rstrip().endswith("KeyboardInterrupt")
@@ -123,7 +123,8 @@ except KeyboardInterrupt as interrupt:
 
 
 def test_a_run_that_was_interrupted_within_a_step_goes_on_to_the_same_table():
-    # Each step plans for 10 ms or more; an alarm interrupts it again and again.
+    # An alarm interrupts the planning of a step again and again. It may also ring just before or after the call, which
+    # is why the timer is set and stopped within the try statement.
     done = in_a_process("""
 from qtab import _core
 from qtab.training.setup.resolve import resolve
@@ -133,17 +134,17 @@ signal.signal(signal.SIGALRM, signal.default_int_handler)
 trainer = _core.Trainer(resolved.spec(), resolved.seed)
 interrupts = 0
 while True:
-    signal.setitimer(signal.ITIMER_REAL, 0.005)
     try:
+        signal.setitimer(signal.ITIMER_REAL, 0.005)
         trainer.advance(2)
+        signal.setitimer(signal.ITIMER_REAL, 0)
         break
     except KeyboardInterrupt:
         interrupts += 1
-signal.setitimer(signal.ITIMER_REAL, 0)
 whole = qtab.train("CliffWalking-v1", **settings)
 print(json.dumps([interrupts, trainer.tables().tobytes() == whole.tables.tobytes(),
                   trainer.episodes()[0].tobytes() == whole.episode_returns.tobytes()]))
 """)
     interrupts, *same = json.loads(done.stdout)
-    assert interrupts > 2
+    assert interrupts > 0
     assert same == [True, True]
