@@ -100,9 +100,12 @@ def test_a_killed_worker_of_a_process_pool_says_how_to_resume(small_chunks, tmp_
     path = tmp_path / "study.db"
     with ProcessPoolExecutor(1, get_context("spawn")) as executor:
         worker = executor.submit(os.getpid).result()
+        killed: list[int] = []
 
         def kill(progress: qtab.SweepProgress) -> None:
-            os.kill(worker, signal.SIGKILL)
+            if not killed:
+                os.kill(worker, signal.SIGKILL)
+                killed.append(worker)
 
         message = r"the executor failed: BrokenProcessPool: .*; run the same call again: \d+ of 30 runs are kept in"
         with pytest.raises(RuntimeError, match=message):

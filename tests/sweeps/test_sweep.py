@@ -4,7 +4,6 @@ import multiprocessing
 import signal
 import subprocess
 import sys
-import textwrap
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from typing import Any
 
@@ -81,16 +80,20 @@ def test_a_finished_store_is_read_without_training(tmp_path, small_chunks):
 
 
 SCRIPT = """
-import sys, qtab
+import sys, time, qtab
 from qtab.sweeps import worker
 worker.MAX_CHUNK_RUNS = 3
-qtab.sweep("MountainCar-v0", {grid}, seeds={seeds}, episodes=40, store=sys.argv[1],
-           callback=lambda progress: print(progress.runs, progress.new, flush=True))
+def report(progress):
+    print(progress.runs, progress.new, flush=True)
+    if progress.runs >= {last}:
+        time.sleep(600)
+qtab.sweep("MountainCar-v0", {grid}, seeds={seeds}, episodes=40, store=sys.argv[1], callback=report)
 """
 
 
-def start(path, seeds=5):
-    script = textwrap.dedent(SCRIPT.format(grid=GRID, seeds=seeds))
+def start(path, seeds, last=10**9):
+    """A sweep in a process, which prints a line after each chunk, and waits to be killed after ``last`` runs."""
+    script = SCRIPT.format(grid=GRID, seeds=seeds, last=last)
     return subprocess.Popen([sys.executable, "-c", script, str(path)], stdout=subprocess.PIPE, text=True)
 
 
@@ -100,12 +103,12 @@ def start(path, seeds=5):
 def test_a_killed_sweep_resumes(tmp_path, small_chunks, chunks):
     path = tmp_path / "study.db"
     many: dict[str, Any] = {"seeds": 120, "episodes": 40}
-    process = start(path, seeds=120)
+    process = start(path, seeds=120, last=600)  # it is not done before it is killed
     for _ in range(chunks):
         process.stdout.readline()
     process.kill()
     rest = process.communicate()[0].split()
-    assert process.returncode == -signal.SIGKILL, "it was done before it was killed"
+    assert process.returncode == -signal.SIGKILL
     seen: list[qtab.SweepProgress] = []
     study = qtab.sweep(CAR, GRID, store=path, callback=seen.append, **many)
     found = seen[0].runs - seen[0].new
@@ -137,7 +140,7 @@ def test_two_processes_share_a_store(tmp_path, small_chunks):
     both = [start(path, seeds=60) for _ in range(2)]
     new = []
     for process in both:
-        lines = process.communicate(timeout=60)[0].splitlines()
+        lines = process.communicate(timeout=300)[0].splitlines()
         assert process.returncode == 0
         new.append(len(lines))
     assert sum(new) >= 120
