@@ -87,21 +87,21 @@ def test_text_has_enough_contrast(window: Playground) -> None:
 def test_the_theme_follows_the_system_and_the_button(window: Playground) -> None:
     window.open("#env=CliffWalking-v1")
     paper = "() => getComputedStyle(document.body).backgroundColor"
-    dark, pixels = window.page.evaluate(paper), window.page.locator("#curve").screenshot()
+    curve = "document.querySelector('#curve').toDataURL()"
+    dark, pixels = window.page.evaluate(paper), window.page.evaluate(curve)
     button = window.page.locator("#theme")
     button.click()
     assert button.inner_text() == "Light colors"
     assert window.page.evaluate(paper) != dark
-    window.page.wait_for_timeout(100)
-    assert window.page.locator("#curve").screenshot() != pixels
+    window.page.wait_for_function(f"pixels => {curve} !== pixels", arg=pixels)
     button.click()
     assert window.page.evaluate(paper) == dark
+    window.page.wait_for_function(f"pixels => {curve} === pixels", arg=pixels)
     button.click()
     assert button.inner_text() == "System colors"
     window.page.emulate_media(color_scheme="light")
     window.page.wait_for_function(f"({paper})() !== '{dark}'")
-    window.page.wait_for_timeout(100)
-    assert window.page.locator("#curve").screenshot() != pixels
+    window.page.wait_for_function(f"pixels => {curve} !== pixels", arg=pixels)
 
 
 def test_every_environment_and_preset_has_an_example(playground: Playground) -> None:

@@ -40,6 +40,7 @@ class Playground:
     def __init__(self, context: Any, file: Path) -> None:
         self.file = file
         self.page = context.new_page()
+        self.page.set_default_timeout(300_000)  # for a busy machine
         self.problems: list[str] = []
         self.requests: list[str] = []
         self.page.on("console", lambda message: self._heard(message.type, message.text))
@@ -58,7 +59,7 @@ class Playground:
 
     def settled(self) -> "Playground":
         """Waits until the result of the newest choices is drawn."""
-        self.page.wait_for_function(SETTLED, polling=20, timeout=60_000)
+        self.page.wait_for_function(SETTLED, polling=20)
         return self
 
     def result(self) -> dict[str, Any]:
