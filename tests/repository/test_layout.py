@@ -272,6 +272,14 @@ def test_no_folder_has_many_entries() -> None:
     assert {folder: count for folder, count in crowded.items() if folder not in CROWDED} == {}
 
 
+def test_the_root_has_documents_and_settings_only() -> None:
+    """A test that writes into the current folder, and not into its temporary one, leaves its file there."""
+    names = [path.name for path in tracked_files("") if path.parent == ROOT]
+    assert len(names) > 10, "the root was not found"
+    expected = {".cff", ".lock", ".md", ".toml", ""}
+    assert [name for name in names if Path(name).suffix not in expected and not name.startswith(".")] == []
+
+
 def test_no_source_file_is_long() -> None:
     lines = {
         str(path.relative_to(ROOT)): len(path.read_bytes().splitlines()) for path in tracked_files(".py", ".pyi", ".rs")
