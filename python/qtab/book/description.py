@@ -30,7 +30,7 @@ class Description:
     x_ticks: tuple[float, ...] | None = None
     """The positions of the labels on the x axis; None lets matplotlib choose."""
     x_tick_labels: tuple[str, ...] | None = None
-    """The labels of ``x_ticks``; None writes the numbers."""
+    """The labels of ``x_ticks``; None writes ``x_words`` and numbers."""
     log_y: bool = False
     """Whether the y axis is logarithmic."""
     x_range: tuple[float, float] | None = None

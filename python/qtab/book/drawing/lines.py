@@ -43,7 +43,8 @@ def draw_lines(result: Result, ax: "Axes | None") -> "Axes":
     if experiment.log_x:
         ax.set_xscale("log")
     if experiment.x_ticks is not None:
-        ax.set_xticks(experiment.x_ticks, experiment.x_tick_labels or [f"{tick:g}" for tick in experiment.x_ticks])
+        words = [experiment.x_words.get(tick, f"{tick:g}") for tick in experiment.x_ticks]
+        ax.set_xticks(experiment.x_ticks, experiment.x_tick_labels or words)
         ax.set_xticks([], minor=True)
     if experiment.log_y:
         ax.set_yscale("log")

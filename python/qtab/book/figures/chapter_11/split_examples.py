@@ -1,12 +1,11 @@
 """Examples 11.2 and 11.3: where the TD error and the Bellman error are smallest, and what the values are."""
 
 import dataclasses
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from qtab.book.drawing import draw_lines
 from qtab.book.experiment import ExactExperiment
 from qtab.book.line import Line, exact_line
 from qtab.envs.tabular import TabularEnv, Transition
@@ -43,41 +42,37 @@ def _lines(geometry: LinearGeometry) -> list[Line]:
     return [dataclasses.replace(lines[0], broad=True), *lines[1:-1], dataclasses.replace(lines[-1], dashed=True)]
 
 
-def _compute_split() -> list[Line]:
-    return _lines(a_split())
+def _example(
+    number: str, title: str, book: str, make: Callable[[], LinearGeometry], states: Sequence[str]
+) -> ExactExperiment:
+    words: dict[float, str] = dict(enumerate(states, start=1))
+    return ExactExperiment(
+        name=f"example-{number}",
+        title=title,
+        book=book,
+        unspecified="",
+        compute=lambda: _lines(make()),
+        names=NAMES,
+        x_label="state",
+        y_label="value",
+        x_ticks=tuple(words),
+        x_words=words,
+    )
 
 
-def _compute_presplit() -> list[Line]:
-    return _lines(a_presplit())
-
-
-EXAMPLE_11_2 = ExactExperiment(
-    name="example-11.2",
-    title="A-split, and the values of the naive residual-gradient algorithm",
-    book="from A to B or C with equal probability, then a reward of 1 from B and 0 from C, and the end; the "
-    "smallest TD error is at the values 1/2, 3/4 and 1/4",
-    unspecified="",
-    compute=_compute_split,
-    draw=draw_lines,
-    names=NAMES,
-    x_label="state",
-    y_label="value",
-    x_ticks=(1, 2, 3),
-    x_tick_labels=("A", "B", "C"),
-    x_words={1: "A", 2: "B", 3: "C"},
+EXAMPLE_11_2 = _example(
+    "11.2",
+    "A-split, and the values of the naive residual-gradient algorithm",
+    "from A to B or C with equal probability, then a reward of 1 from B and 0 from C, and the end; the smallest TD "
+    "error is at the values 1/2, 3/4 and 1/4",
+    a_split,
+    ("A", "B", "C"),
 )
-EXAMPLE_11_3 = ExactExperiment(
-    name="example-11.3",
-    title="A-presplit, and the values of the residual-gradient algorithm",
-    book="from A1 to B or from A2 to C, with equal probability, then as in Example 11.2; A1 and A2 share a feature; "
-    "the smallest Bellman error is at the values 1/2, 3/4 and 1/4",
-    unspecified="",
-    compute=_compute_presplit,
-    draw=draw_lines,
-    names=NAMES,
-    x_label="state",
-    y_label="value",
-    x_ticks=(1, 2, 3, 4),
-    x_tick_labels=("A1", "A2", "B", "C"),
-    x_words={1: "A1", 2: "A2", 3: "B", 4: "C"},
+EXAMPLE_11_3 = _example(
+    "11.3",
+    "A-presplit, and the values of the residual-gradient algorithm",
+    "from A1 to B or from A2 to C, with equal probability, then as in Example 11.2; A1 and A2 share a feature; the "
+    "smallest Bellman error is at the values 1/2, 3/4 and 1/4",
+    a_presplit,
+    ("A1", "A2", "B", "C"),
 )
