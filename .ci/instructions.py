@@ -3,7 +3,7 @@
 Usage: instructions.py [--store] PROGRAM...
 
 Counts do not depend on how busy a machine is, but on the compiler, on the C library and on whether the processor has
-AVX2 and FMA; the file names them. Nothing fails because of a change: who changes the core looks at it.
+AVX2 and FMA; the file names them. Changes never fail the task; whoever edits the core reviews them.
 """
 
 import json

@@ -89,7 +89,7 @@ def _grade(
         names = [keys[exercise.name] for exercise in rest]
         command = json.dumps({**task, "exercises": names, "files": files, "path": folders})
         limit = _START_SECONDS + 2 * task["seconds"] * sum(len(exercise.checks) + 1 for exercise in rest)
-        done = running.output([sys.executable, "-m", "qtab.exercises.classroom.marking", command], limit)
+        done = running.output([sys.executable, "-m", "qtab.exercises.classroom.student_process", command], limit)
         answers = {**_answers(done), **answers}
         lost = next((exercise for exercise in rest if exercise.name not in answers), None)
         if lost is not None:  # the next process begins after the exercise that ended this one

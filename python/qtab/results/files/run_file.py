@@ -1,4 +1,7 @@
-"""The format of saved runs: one uncompressed ``.npz`` file of arrays and a JSON header, never a pickle."""
+"""The format of saved runs: one uncompressed ``.npz`` file of arrays and a JSON header, never a pickle.
+
+``file_parts.write`` composes the header, of settings, actions and versions, and adds the optional arrays.
+"""
 
 import hashlib
 import json

@@ -1,4 +1,4 @@
-"""The process that checks the functions of one student: ``python -m qtab.exercises.classroom.marking TASK``.
+"""The process that checks the functions of one student: ``python -m qtab.exercises.classroom.student_process TASK``.
 
 TASK is a JSON object. For each exercise, the process writes a line of JSON to standard output; what the student's code
 prints is discarded.
