@@ -14,7 +14,7 @@ from qtab.config.origin import trained_on
 from qtab.envs.origin.class_code import LIBRARY
 from qtab.envs.origin.describe import describe
 from qtab.envs.origin.description import EnvironmentDescription, WrapperDescription
-from qtab.envs.origin.values import comparable, same
+from qtab.envs.origin.values import are_comparable, same
 from qtab.envs.registry import UNLIMITED_MAX_EPISODE_STEPS, entry_for_id, gymnasium_id, is_registered, make_env
 
 BEST_KNOWN_MOUNTAIN_CAR = -97.668
@@ -177,7 +177,7 @@ def _changes(ours: EnvironmentDescription, registered: EnvironmentDescription | 
     if registered is None:
         return
     if ours.code != registered.code and (
-        LIBRARY in (ours.code, registered.code) or comparable(ours.code, registered.code)
+        LIBRARY in (ours.code, registered.code) or are_comparable(ours.code, registered.code)
     ):
         yield "the code of its class is different"
     for name in sorted(ours.attributes.keys() | registered.attributes.keys()):

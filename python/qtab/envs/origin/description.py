@@ -10,7 +10,7 @@ from gymnasium.envs.registration import EnvSpec
 
 from qtab._core import parameter_names
 from qtab.envs.origin.class_code import LIBRARY
-from qtab.envs.origin.values import comparable, describe_values, in_words, same, space_text, without_digest
+from qtab.envs.origin.values import are_comparable, describe_values, in_words, same, space_text, without_digest
 from qtab.envs.registry import EnvEntry, gymnasium_id
 
 UNIMPORTANT = ("render_mode", "spec", "metadata")
@@ -173,7 +173,7 @@ def differences(trained_on: EnvironmentDescription, given: EnvironmentDescriptio
 def _edited(ours: EnvironmentDescription, theirs: EnvironmentDescription) -> Iterator[str]:
     pairs: list[tuple[Any, Any]] = [(ours, theirs), *zip(ours.wrappers, theirs.wrappers, strict=False)]
     for one, other in pairs:
-        if _class_name(one) == _class_name(other) and one.code != other.code and comparable(one.code, other.code):
+        if _class_name(one) == _class_name(other) and one.code != other.code and are_comparable(one.code, other.code):
             yield _class_name(one)
 
 

@@ -163,14 +163,14 @@ def same(one: Any, other: Any) -> bool:
     if isinstance(one, dict) and isinstance(other, dict):
         if one.keys() != other.keys():
             return False
-        unknown = one.get(_TAG) == "function" and not comparable(one.get("code"), other.get("code"))
+        unknown = one.get(_TAG) == "function" and not are_comparable(one.get("code"), other.get("code"))
         return all(same(one[name], other[name]) for name in one if not (unknown and name == "code"))
     if isinstance(one, list | tuple) and isinstance(other, list | tuple):
         return len(one) == len(other) and all(map(same, one, other))
     return type(one) is type(other) and bool(one == other)
 
 
-def comparable(one: str | None, other: str | None) -> bool:
+def are_comparable(one: str | None, other: str | None) -> bool:
     """Returns whether two digests of code can be compared: both are known, and were made by the same Python."""
     return one is not None and other is not None and one.partition(":")[0] == other.partition(":")[0]
 
