@@ -29,19 +29,8 @@ def restore(config: Config, arrays: Mapping[str, NDArray[Any]], n_rows: int) -> 
     return named.restore(config, arrays, n_rows)
 
 
-_CLASSES = {
-    "AssignedRows": "assigned_rows:AssignedRows",
-    "Bins": "bins:Bins",
-    "Composite": "composite:Composite",
-    "Edges": "edges:Edges",
-    "FourierBasis": "weighted.fourier:FourierBasis",
-    "Function": "function:Function",
-    "Identity": "identity:Identity",
-    "Rounding": "rounding:Rounding",
-    "Sparse": "assigned_rows:AssignedRows",  # the name of AssignedRows in earlier versions
-    "TileCoding": "tile_coding:TileCoding",
-    "TimeAware": "time_aware:TimeAware",
-}
+_CLASSES = {place.partition(":")[2]: place for place in sorted(named.PLACES)}
+_CLASSES["Sparse"] = _CLASSES["AssignedRows"]  # its name in earlier versions
 
 
 def __getattr__(name: str) -> type[Discretizer]:

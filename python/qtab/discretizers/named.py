@@ -24,8 +24,10 @@ DISCRETIZERS: Mapping[DiscretizerName, str] = {
 }
 """The module and the class for each value of the setting ``discretizer``, for spaces that the extension reads
 directly."""
-_COMPOSITE = "composite:Composite"
+_COMPOSITE, _ASSIGNED_ROWS = "composite:Composite", "assigned_rows:AssignedRows"
 _OTHERS = {FUNCTION: "function:Function", MAPPING: _COMPOSITE}
+PLACES = (*DISCRETIZERS.values(), *_OTHERS.values(), _ASSIGNED_ROWS, "time_aware:TimeAware")
+"""All modules and classes of this package."""
 
 MAX_AXES = 62
 """The maximum number of axes: NumPy arrays have at most 64, of which many runs use one for runs and one for actions."""
@@ -64,7 +66,7 @@ def class_at(place: str) -> type[Discretizer]:
 def _class_of(config: Config, *, plain: bool) -> type[Discretizer]:
     chosen: Any = kind(config.discretizer)
     if config.max_rows is not None:
-        return class_at("assigned_rows:AssignedRows")
+        return class_at(_ASSIGNED_ROWS)
     if chosen in _OTHERS:
         return class_at(_OTHERS[chosen])
     return class_at(DISCRETIZERS[chosen] if plain or uses_weighted(chosen) else _COMPOSITE)
