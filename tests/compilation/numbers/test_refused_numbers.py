@@ -20,6 +20,10 @@ REFUSED = {
     "(np.array([n, m]) * max(0, x))[0]": "sometimes an integer and sometimes a float",
     "-[n, x].pop()": "sometimes an integer and sometimes a float",
     "(p if q else n) + p": "sometimes a boolean",
+    "-([n] + [x])[0]": "a list of int64 and float64",
+    "[n, p][1] + p": "booleans in a list of int64",
+    "([n] + [p])[1] + p": "a list of int64 and bool",
+    "{n: m}.popitem()[1]": r"dict.popitem\(\)",
     "max(n, p)": "max of a boolean and a number",
     # Sets, lists, sums and sorts.
     "x in {1, 2}": "float64 beside int64 in a set",
@@ -43,6 +47,7 @@ REFUSED = {
     "np.linalg.det(np.array([[x, y], [y, x]]))": r"np.det may give another result in compiled code",
     "np.where(p, np.float32(x), y)": "arithmetic of float32",
     "np.cos(p)": "np.cos of booleans",
+    "list(map(abs, [n, m]))[0]": "map is not checked in compiled code",
     "hash(x)": "another result in compiled code",
     "p is True": "write ==",
     "max(n)": "give two numbers or more",
@@ -91,12 +96,19 @@ def test_a_bound_that_is_nan_is_repeated_in_python() -> None:
 
 @pytest.mark.parametrize("expression", ["np.array([max(0, x), y])[0]", "np.full(2, max(0, x), np.float64)[0]",
                                         "sum((p, q))", "(n, m) in {(1, 2), (3, 4)}", "np.sort(np.array([n, m]))[0]",
-                                        "-np.sin(max(0, x))"])  # fmt: skip
+                                        "-np.sin(max(0, x))", "np.array([n, p])[1]", "len([n, p])",
+                                        "{n: m}.pop(n)", "{n: m}.pop(3, 4)"])  # fmt: skip
 def test_numbers_of_known_types_are_compiled(expression: str) -> None:
     compiled, python = in_functional_env(expression), in_python(expression)
     for x in (-0.5, 0.0, 2.5):
         values = (1, 2, x, 1.5, True, False)
         assert bits(compiled(*values)) == bits(python(*values))
+
+
+def test_a_key_that_a_dict_does_not_have_fails_as_in_python() -> None:
+    compiled = in_functional_env("{1: m}.pop(n)")
+    assert compiled(1, 2, 0.5, 1.5, True, False) == 2
+    assert compiled(3, 2, 0.5, 1.5, True, False) == FAILED
 
 
 def test_the_proof_takes_all_nan_as_equal() -> None:

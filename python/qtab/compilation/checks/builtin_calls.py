@@ -47,6 +47,8 @@ def _refused(function: Any, kinds: list[Any], named: bool) -> tuple[str, str] | 
     booleans = [isinstance(kind, types.Boolean) for kind in kinds]
     if function in (pow, divmod):
         return f"{name} can differ", "write products, or a // b and a % b"
+    if function in (map, filter):
+        return f"{name} is not checked in compiled code", "write [f(x) for x in values], or a loop"
     if name not in BUILTINS:
         return f"{name} may give another result in compiled code", "use numbers, tuples and arrays"
     if function is round and len(kinds) > 1:
