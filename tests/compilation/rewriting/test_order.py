@@ -60,6 +60,37 @@ class Compares(Bumps):
         return 0.0
 
 
+class RepeatsWhile(Bumps):
+    def extra(self):
+        while self.first(self.board, self.bump()) < 9.0:  # here
+            self.cell += 1
+        return 0.0
+
+
+class CountsTo(Bumps):
+    def extra(self):
+        total = 0.0
+        for i in range(int(self.first(self.board, self.bump()))):  # here
+            total += i
+        return total
+
+
+class LoopsOver(Bumps):
+    def extra(self):
+        total = 0.0
+        for value in self.board * self.bump():  # here
+            total += value
+        return total
+
+
+class Enumerates(Bumps):
+    def extra(self):
+        total = 0.0
+        for i, value in enumerate(self.board + self.ones()):  # here
+            total += i * value
+        return total
+
+
 class Adds(Bumps):
     def extra(self):
         self.board += self.ones()  # here
@@ -102,8 +133,8 @@ class ReadsNumbers(Bumps):
 
 
 REFUSED = [
-    *(Indexes, IndexesByProperty, Passes, Compares, Adds, Multiplies, Clips),
-    *(ReturnsBoth, ReturnsInner),
+    *(Indexes, IndexesByProperty, Passes, Compares, RepeatsWhile, CountsTo, LoopsOver, Enumerates),
+    *(Adds, Multiplies, Clips, ReturnsBoth, ReturnsInner),
 ]
 
 

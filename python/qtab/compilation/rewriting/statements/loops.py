@@ -8,6 +8,7 @@ from qtab.compilation.rewriting.expressions import containers, membership
 from qtab.compilation.rewriting.program import converted
 from qtab.compilation.rewriting.source.syntax import calls_own_functions, changed_attributes, leaves_loop
 from qtab.compilation.rewriting.statements import assignments
+from qtab.compilation.rewriting.statements.order import check_order
 from qtab.compilation.rewriting.statements.variables import in_variables
 from qtab.compilation.rewriting.values import INT, Array, TupleKind, Value, constant, in_words, scalar_of
 
@@ -25,6 +26,7 @@ def while_loop(scope: "Statements", node: ast.While) -> bool:
     scope.depth += 1
     scope.copies_state = scope.may_change_state(node.test)
     test = scope.test(node.test)
+    check_order(scope, node.test)
     scope.depth -= 1
     if test.is_fixed and not test.fixed:
         return False
@@ -53,6 +55,7 @@ def for_loop(scope: "Statements", node: ast.For) -> bool:
 def _range(scope: "Statements", node: ast.For, call: ast.Call) -> bool:
     scope.copies_state = scope.may_change_state(call)
     values = [scope.lifted(one) for one in call.args]
+    check_order(scope, call)
     if call.keywords or not 1 <= len(values) <= 3 or any(value.kind != INT for value in values):
         raise scope.refuse(call, "range with something other than integers", "write int(...)")
     if all(value.is_fixed for value in values):
@@ -104,6 +107,7 @@ def _head(
 
 
 def _each(scope: "Statements", node: ast.For, iterable: Value, counted: bool) -> bool:
+    check_order(scope, node.iter)
     scope.copies_state = True
     if iterable.is_fixed and not specials.is_special(iterable.fixed):
         items = containers.elements(scope, node.iter, iterable)
