@@ -6,6 +6,8 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from qtab.compilation.twins.own_code import OPERATORS
+
 
 @dataclass(frozen=True)
 class Scalar:
@@ -54,17 +56,6 @@ REAL = (INT, FLOAT, MIXED)
 
 LIBRARIES = ("builtins", "enum", "numpy")
 """The modules of the numbers and enums whose operators are known."""
-UNUSED = (
-    *("__class__", "__delattr__", "__dir__", "__doc__", "__getnewargs__", "__getstate__", "__hash__", "__init__"),
-    *("__init_subclass__", "__new__", "__reduce__", "__reduce_ex__", "__setattr__", "__sizeof__", "__subclasshook__"),
-)
-OPERATORS = frozenset(
-    name
-    for name in (*dir(int), *dir(float), "__getattr__", "__len__", "__iter__", "__getitem__", "__contains__")
-    if name.startswith("__") and name not in UNUSED
-)
-"""The methods that Python calls for operators, conversions and built-in functions."""
-
 DYNAMIC: Any = type("Dynamic", (), {"__repr__": lambda _: "<known at run time>"})()
 """``Value.fixed`` of a value that is not a constant."""
 
@@ -119,7 +110,13 @@ def numpy_type(dtype: str) -> str:
 
 
 def own_operator(value: Any) -> str | None:
-    """Returns the name of an operator that a class derived from a number or an enum defines, such as ``__add__``."""
+    """Returns the name of an operator that a class derived from a number or an enum defines, such as ``__add__``.
+
+    Also that of a number in a collection. None if there is none.
+    """
+    if isinstance(value, tuple | list | set | frozenset | dict):
+        inner = [*value, *value.values()] if isinstance(value, dict) else value
+        return next((name for name in map(own_operator, inner) if name is not None), None)
     if not isinstance(value, int | float | np.generic | enum.Enum):
         return None
     for cls in type(value).__mro__:

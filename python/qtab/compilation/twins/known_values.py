@@ -13,6 +13,8 @@ import gymnasium as gym
 from qtab.compilation.rewriting.attributes import MISSING, Attributes, own_attribute
 from qtab.compilation.rewriting.source.sources import Source
 from qtab.compilation.rewriting.source.syntax import Names
+from qtab.compilation.rewriting.values import own_operator
+from qtab.compilation.twins.own_code import runs_code
 from qtab.compilation.twins.plain_data import is_plain
 
 COMPARISONS: dict[type[ast.cmpop], Callable[[Any, Any], Any]] = {
@@ -76,9 +78,9 @@ class KnownValues:
         owner = self.value(node.value)
         if owner is MISSING:
             return MISSING
-        if isinstance(owner, ModuleType | type):
-            return getattr(owner, node.attr, MISSING)
-        return getattr(owner, node.attr, MISSING) if is_plain(owner) else own_attribute(owner, node.attr)
+        if isinstance(owner, ModuleType | type) or is_plain(owner):
+            return MISSING if runs_code(owner, node.attr) else getattr(owner, node.attr, MISSING)
+        return own_attribute(owner, node.attr)
 
     def known_condition(self, node: ast.expr) -> Any:
         """Returns the truth of a condition that is the same at every step, else ``MISSING``."""
@@ -107,4 +109,5 @@ class KnownValues:
             items = [self._item(one) for one in node.elts]
             return MISSING if MISSING in items else items
         value = self.value(node)
-        return value if isinstance(value, bool | int | float | str | tuple | list | type(None)) else MISSING
+        is_compared = isinstance(value, bool | int | float | str | tuple | list | type(None))
+        return value if is_compared and is_plain(value) and own_operator(value) is None else MISSING

@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 from gymnasium import spaces
 
+from qtab.compilation.twins.own_code import has_own_code, is_computed
+
 _SIMPLE = (bool, int, float, complex, str, bytes, type(None), range, slice)
 _COLLECTIONS = (list, tuple, set, frozenset, deque)
 
@@ -29,15 +31,16 @@ def _is_plain(value: Any, seen: set[int]) -> bool:
     seen.add(id(value))
     if type(value) is np.ndarray:
         return not value.dtype.hasobject
-    if type(value) in _COLLECTIONS or (isinstance(value, tuple) and hasattr(value, "_fields")):
+    is_named = isinstance(value, tuple) and hasattr(value, "_fields")
+    if type(value) in _COLLECTIONS or (is_named and not has_own_code(type(value))):
         return all(_is_plain(item, seen) for item in value)
     if isinstance(value, dict):
         return type(value).__module__ in ("builtins", "collections") and _are_plain(value, seen)
     if isinstance(value, np.random.Generator) or _is_of_gymnasium(value):
         return True
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
-        members = [member for cls in type(value).__mro__[:-1] for member in vars(cls).items()]
-        if any(name == "__deepcopy__" or isinstance(member, property) for name, member in members):
+        members = [member for base in type(value).__mro__[:-1] for member in vars(base).values()]
+        if has_own_code(type(value)) or any(map(is_computed, members)):
             return False
         return _are_plain(_fields_of(value), seen)
     return False

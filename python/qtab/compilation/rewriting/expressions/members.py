@@ -3,7 +3,6 @@
 import ast
 import dataclasses
 import enum
-import inspect
 from types import FunctionType, ModuleType, SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +13,7 @@ from qtab.compilation.rewriting import specials
 from qtab.compilation.rewriting.attributes import MISSING, own_attribute
 from qtab.compilation.rewriting.expressions import calls
 from qtab.compilation.rewriting.values import Array, Value, constant, in_words
+from qtab.compilation.twins.own_code import runs_code
 
 if TYPE_CHECKING:
     from qtab.compilation.rewriting.expressions.expressions import Expressions
@@ -99,7 +99,7 @@ def _of_constant(scope: "Expressions", node: ast.Attribute, value: Any, name: st
         raise scope.refuse(node, "a second random generator", "draw from self.np_random")
     is_tuple = isinstance(value, tuple) and hasattr(value, "_fields")
     if plain or is_tuple or dataclasses.is_dataclass(value):
-        if _runs_code(value, name):
+        if runs_code(value, name):
             reason = f"the attribute {name} of {type(value).__name__} is computed by code, which would run only once"
             raise scope.refuse(node, reason, "write a method of the environment")
         found = getattr(value, name, MISSING)
@@ -111,27 +111,3 @@ def _of_constant(scope: "Expressions", node: ast.Attribute, value: Any, name: st
             node, f"the attribute {name} of an object of type {kind}", "copy the number to self in __init__"
         )
     return constant(found)
-
-
-def _runs_code(value: Any, name: str) -> bool:
-    """Returns whether reading an attribute of a constant calls code of the user, such as that of a property."""
-    owner = value.__name__ if isinstance(value, ModuleType) else getattr(value, "__module__", type(value).__module__)
-    if str(owner).partition(".")[0] in ("builtins", "numpy", "gymnasium"):
-        return False
-    if isinstance(value, ModuleType):
-        return name not in vars(value) and "__getattr__" in vars(value)
-    if isinstance(value, enum.EnumMeta) and name in value.__members__:
-        return False
-    try:
-        found = inspect.getattr_static(value, name)
-    except AttributeError:
-        return hasattr(type(value), "__getattr__")
-    if isinstance(value, type) and any(name in vars(cls) for cls in value.__mro__):
-        known: Any = FunctionType | staticmethod | classmethod | property | type
-    elif getattr(getattr(found, "fget", None), "__module__", None) == "enum":  # its name and value
-        return False
-    else:
-        known = FunctionType | staticmethod | classmethod | type
-    is_field = type(found).__name__ in ("member_descriptor", "_tuplegetter", "getset_descriptor")
-    is_builtin = type(found).__module__ == "builtins" and not isinstance(found, property)
-    return hasattr(type(found), "__get__") and not (isinstance(found, known) or is_field or is_builtin)
