@@ -23,7 +23,7 @@ from qtab.compilation.twins.class_twin import ClassTwin, restored, twin_of
 from qtab.compilation.twins.plain_data import shared_attributes
 from qtab.compilation.twins.repetition import Repetition, Result
 from qtab.compilation.twins.side_effects import refuse_effects
-from qtab.envs.external.positions import Position
+from qtab.envs.external.positions import FailedCall
 
 _store = Store()
 
@@ -71,56 +71,43 @@ class OrdinaryEnv:
         parts = [self.rewritten.source, str(self.record.descr), self.parameters.tobytes().hex()]
         return hashlib.sha256("\n".join(parts).encode()).hexdigest()
 
-    def repeat(
-        self,
-        state: bytes | None,
-        before: Position,
-        action: int | None,
-        seed: int,
-        played: tuple[Position, list[int]] | None,
-    ) -> tuple[Result, Callable[[int], Result]]:
+    def repeat(self, failed: FailedCall, reads_masks: bool = False) -> tuple[Result, Callable[[int], Result]]:
         """Repeats a call in Python that failed in compiled code; it raises the error, if there is one in Python.
 
         Args:
-            state: The bytes of the state before the step; None for a reset.
-            before: The position of the generator before the call.
-            action: The action, counted from 0; None for a reset.
-            seed: The seed of the run.
-            played: The position before the reset of the episode, and the actions since then; None if unknown, for a run
-                that was resumed within an episode.
+            failed: The call.
+            reads_masks: Whether the run reads the action masks, so that a wrong one is an error.
 
         Returns:
             The result, and a function of an action that takes the next step.
         """
-        repetition = Repetition(self.env, self.record, self.compiled.observation, seed, self._name)
-        if state is None or action is None:
-            result = repetition.reset(before)
+        repetition = self._repetition(failed, reads_masks=reads_masks)
+        if failed.action is None:
+            result = repetition.reset(failed.before)
         else:
-            if played is None:
-                repetition.raise_error(state, before, action)
-            else:
-                repetition.play(*played, before)
-            result = repetition.step(action)
+            if failed.played is not None:
+                repetition.play(*failed.played, failed.before)
+            elif failed.state is not None:
+                repetition.raise_error(failed.state, failed.before, failed.action)
+            result = repetition.step(failed.action)
         repetition.log()
         return result, repetition.step
 
-    def repeat_in_vector(
-        self,
-        state: bytes | None,
-        before: Position,
-        action: int | None,
-        seed: int,
-        played: tuple[Position, list[int]] | None,
-    ) -> None:
+    def repeat_in_vector(self, failed: FailedCall) -> None:
         """Repeats a call of a sub-environment in Python; see :meth:`repeat`. It raises the error of Python, if any."""
-        numbers = np.int64  # as Gymnasium's vector environments pass actions
-        repetition = Repetition(self.env, self.record, self.compiled.observation, seed, self._name, numbers)
-        if state is None or action is None or played is None:
-            repetition.begin(before)
+        repetition = self._repetition(failed, np.int64)  # as Gymnasium's vector environments pass actions
+        if failed.action is None or failed.played is None:
+            repetition.begin(failed.before)
         else:
-            repetition.play(*played, before)
-            repetition.take(action)
+            repetition.play(*failed.played, failed.before)
+            repetition.take(failed.action)
         repetition.log("a vector environment of %s is stepped in Python from now on")
+
+    def _repetition(
+        self, failed: FailedCall, number: type[int | np.int64] = int, reads_masks: bool = False
+    ) -> Repetition:
+        twin = ClassTwin(self.env, self.record, self.compiled.observation)
+        return Repetition(twin, failed.seed, self._name, number, reads_masks)
 
     def _compiled(self, observation: ObservationLayout) -> CompiledEnv:
         space: Any = self.env.action_space

@@ -98,11 +98,13 @@ class ClassTwin:
 
     def __init__(self, env: gym.Env, record: np.dtype[Any], observation: ObservationLayout) -> None:
         self.env: Any = twin_of(env)
-        self._record, self._observation = record, observation
+        self.record, self.observation = record, observation
         space: Any = env.action_space
-        self._start = int(space.start)
+        self.num_actions, self._start = int(space.n), int(space.start)
         self.info: Any = None
         """The last info dict."""
+        self.mask: Any = None
+        """The last action mask that was observed, as it was given; None without masks."""
 
     def reset_class(self, rng: np.random.Generator) -> Any:
         """Resets the copy with a generator, and returns the observation."""
@@ -119,26 +121,43 @@ class ClassTwin:
 
     def reset(self, rng: np.random.Generator) -> dict[str, Any]:
         """Resets the copy, and returns the numbers by their names."""
-        return self._numbers(self.reset_class(rng))
+        return self._numbers(self.reset_class(rng), False)
 
     def step(self, action: int, rng: np.random.Generator) -> dict[str, Any]:
         """Takes an action, counted from 0, and returns the numbers by their names."""
         observation, reward, terminated, truncated, _ = self.step_class(action, rng)
         flags = {"terminated": bool(terminated), "truncated": bool(truncated)}
-        return {"reward": float(reward), **flags, **self._numbers(observation)}
+        return {"reward": float(reward), **flags, **self._numbers(observation, any(flags.values()))}
 
     def observed(self, given: Any) -> dict[str, Any]:
         """Returns the numbers of an observation, and the action mask if there is one, by their names."""
-        observation = self._observation.numbers(_in_order(self.env.observation_space, given))
-        mask = self.env.action_masks() if hasattr(self.env, "action_masks") else self.info.get("action_mask")
-        return {
-            "observation": observation,
-            **({} if mask is None else {"action_mask": np.asarray(mask).astype(np.uint8)}),
-        }
+        numbers = {"observation": self.observation.numbers(_in_order(self.env.observation_space, given))}
+        self.mask = self.env.action_masks() if hasattr(self.env, "action_masks") else self.info.get("action_mask")
+        if self.mask is not None:
+            numbers["action_mask"] = np.asarray(self.mask).astype(np.uint8)
+        return numbers
 
-    def _numbers(self, given: Any) -> dict[str, Any]:
+    def _numbers(self, given: Any, ended: bool) -> dict[str, Any]:
         numbers = self.observed(given)
-        return {"state": state_bytes(self._record, self.env, numbers["observation"]), **numbers}
+        if self.mask is not None and (wrong := wrong_mask(self.mask, self.num_actions, ended)) is not None:
+            raise ValueError(f"the action mask must {wrong}, got {self.mask!r}")
+        return {"state": state_bytes(self.record, self.env, numbers["observation"]), **numbers}
+
+
+def wrong_mask(mask: Any, num_actions: int, ended: bool = False) -> str | None:
+    """Returns what an action mask must be and is not, in words; None for a valid one.
+
+    Args:
+        mask: The mask, as the environment gives it.
+        num_actions: The number of actions.
+        ended: Whether the episode has ended, so that no action need be left.
+    """
+    given = np.asarray(mask)
+    if given.shape != (num_actions,):
+        return f"have shape ({num_actions},), with an item for each action"
+    if not np.isin(given, (0, 1)).all():
+        return "hold booleans, or 0 and 1"
+    return None if ended or given.any() else "leave at least one action"
 
 
 def _in_order(space: Any, given: Any) -> Any:

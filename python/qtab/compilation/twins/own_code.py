@@ -65,7 +65,7 @@ def runs_code(value: Any, name: str) -> bool:
     elif getattr(getattr(found, "fget", None), "__module__", None) == "enum":  # its name and value
         return False
     else:
-        known: Any = FunctionType | staticmethod | classmethod | type
+        known = FunctionType | staticmethod | classmethod | type
     is_field = type(found).__name__ in ("member_descriptor", "_tuplegetter", "getset_descriptor")
     is_builtin = type(found).__module__ == "builtins" and not isinstance(found, property)
     return hasattr(type(found), "__get__") and not (isinstance(found, known) or is_field or is_builtin)

@@ -4,13 +4,11 @@ import logging
 import math
 from typing import Any, TypeAlias
 
-import gymnasium as gym
 import numpy as np
 
 from qtab.compilation.interface.qtab_env import TERMINATED, TRUNCATED
 from qtab.compilation.layouts.attribute_record import restore
-from qtab.compilation.layouts.observation_layout import ObservationLayout
-from qtab.compilation.twins.class_twin import ClassTwin
+from qtab.compilation.twins.class_twin import ClassTwin, wrong_mask
 from qtab.envs.external.positions import Position, generator_at, position_of
 
 Result: TypeAlias = tuple[bytes, bytes, float, int, Position]
@@ -28,30 +26,28 @@ class Repetition:
     """An episode that goes on in Python.
 
     Args:
-        env: The environment, which is not changed.
-        record: The record with the observation.
-        observation: The layout of its observations.
+        twin: The copy of the environment that is stepped.
         seed: The seed of the run.
         name: The name of the environment in messages, as Python stepping gives it.
         number: The type of the actions.
+        reads_masks: Whether a wrong action mask is an error.
     """
 
     def __init__(
         self,
-        env: gym.Env,
-        record: np.dtype[Any],
-        observation: ObservationLayout,
+        twin: ClassTwin,
         seed: int,
         name: str,
         number: type[int | np.int64] = int,
+        reads_masks: bool = False,
     ) -> None:
-        self._env, self._record, self._observation, self._seed = env, record, observation, seed
-        self._twin, self._name, self._shown = ClassTwin(env, record, observation), type(env).__name__, name
-        self._rng, self._number = np.random.default_rng(0), number
+        self._twin, self._seed, self._shown, self._number = twin, seed, name, number
+        self._name, self._reads_masks = type(twin.env).__name__, reads_masks
+        self._rng = np.random.default_rng(0)
 
     def reset(self, before: Position) -> Result:
         """Begins an episode, with the generator at a position."""
-        return self._result(self.begin(before), 0.0, 0)
+        return self._result("reset", self.begin(before), 0.0, 0)
 
     def begin(self, before: Position) -> Any:
         """Begins an episode, with the generator at a position, and returns the observation."""
@@ -85,7 +81,7 @@ class Repetition:
             RuntimeError: if the step does not fail in Python.
         """
         self._twin.reset_class(np.random.default_rng(0))
-        restore(self._record, self._twin.env, state)
+        restore(self._twin.record, self._twin.env, state)
         self._rng = generator_at(self._seed, before)
         self.step(action)
         raise RuntimeError(
@@ -103,11 +99,12 @@ class Repetition:
         if not _is_finite(reward):
             expected = "a finite number as the reward, as Gymnasium's API requires"
             raise ValueError(f"step of {self._shown} must return {expected}, got {_shortened(reward)}")
-        return self._result(observation, float(reward), TERMINATED * bool(terminated) + TRUNCATED * bool(truncated))
+        code = TERMINATED * bool(terminated) + TRUNCATED * bool(truncated)
+        return self._result("step", observation, float(reward), code)
 
     def log(self, what: str = "an episode of %s goes on in Python") -> None:
         """Logs once for each class that a call failed in compiled code only, and what follows."""
-        cls = type(self._env)
+        cls = type(self._twin.env)
         if cls not in _logged:
             _logged.add(cls)
             code = cls.step.__code__
@@ -118,16 +115,30 @@ class Repetition:
                 *(code.co_filename, code.co_firstlineno, cls.__name__),
             )
 
-    def _result(self, given: Any, reward: float, code: int) -> Result:
-        numbers = self._twin.observed(given)
+    def _result(self, method: str, given: Any, reward: float, code: int) -> Result:
+        twin = self._twin
+        numbers = twin.observed(given)
+        if self._reads_masks and not code & TERMINATED:
+            self._check_mask(method, given)
         observation = numbers["observation"]
-        num_actions = int(self._env.action_space.n)  # type: ignore[attr-defined]
-        mask = numbers.get("action_mask", np.zeros(num_actions, np.uint8))
-        if len(observation) != self._observation.size or mask.shape != (num_actions,):
+        mask = numbers.get("action_mask", np.zeros(twin.num_actions, np.uint8))
+        if len(observation) != twin.observation.size or mask.shape != (twin.num_actions,):
             raise ValueError(
                 f"{self._name} returned an observation outside its space, or a wrong action mask: {given!r}"
             )
         return observation.tobytes(), mask.tobytes(), reward, code, position_of(self._rng, self._seed)
+
+    def _check_mask(self, method: str, given: Any) -> None:
+        """Raises the error of ``rust/python/src/runs/action_mask.rs`` for a wrong action mask."""
+        wrong = wrong_mask(self._twin.mask, self._twin.num_actions)
+        if wrong is not None:
+            by_method = hasattr(self._twin.env, "action_masks")
+            place = (
+                f"action_mask({_shortened(given)})"
+                if by_method
+                else f"info['action_mask'] of {method} of {self._shown}"
+            )
+            raise ValueError(f"{place} must {wrong}, got {_shortened(self._twin.mask)}")
 
 
 def _is_finite(reward: Any) -> bool:

@@ -1,12 +1,13 @@
 """The capsule of an environment, by which Rust steps it."""
 
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import gymnasium as gym
 
 from qtab import _core
-from qtab.envs.external.positions import Position, generator_at
+from qtab.envs.external.positions import FailedCall, generator_at
 from qtab.envs.in_rust.matching import NotInRustError, layers, overridden, unknown_wrapper
 from qtab.envs.origin.class_code import is_of_library
 
@@ -44,7 +45,8 @@ def external_env(env: gym.Env, backend: str, *, needs_masks: bool = False) -> _c
     if not has_capsule(env):
         if backend != "numba":
             return None
-        return external_of(compiled_class(env, needs_masks))
+        compiled = compiled_class(env, needs_masks)
+        return external_of(compiled, partial(compiled.repeat, reads_masks=needs_masks))
     unwrapped = _unwrapped(env)
     cls = type(unwrapped)
     owner = next(base for base in cls.__mro__ if "__qtab_env__" in vars(base))
@@ -88,10 +90,15 @@ def compiled_class(
     return compiled
 
 
-def external_of(env: "OrdinaryEnv") -> _core.ExternalEnv:
-    """Returns an ordinary class as Rust steps it."""
+def external_of(env: "OrdinaryEnv", repeat: Callable[[FailedCall], Any]) -> _core.ExternalEnv:
+    """Returns an ordinary class as Rust steps it.
+
+    Args:
+        env: The compiled class.
+        repeat: Repeats a call in Python that failed in compiled code.
+    """
     capsule = env.capsule()  # kept here: it must not end while an error is raised
-    return _core.ExternalEnv(capsule, env.repeat, repeats_episodes=True)
+    return _core.ExternalEnv(capsule, lambda *failed: repeat(FailedCall(*failed)), repeats_episodes=True)
 
 
 def _name_of(env: gym.Env) -> str:
@@ -119,8 +126,9 @@ def _unwrapped(env: gym.Env) -> Any:
     return unwrapped
 
 
-def _failure_handler(failed: Callable[..., Any]) -> Callable[[bytes | None, Position, int | None, int, object], None]:
-    def handle(state: bytes | None, before: Position, action: int | None, seed: int, _played: object) -> None:
-        failed(state, action, generator_at(seed, before))
+def _failure_handler(repeat: Callable[..., Any]) -> Callable[..., None]:
+    def handle(*call: Any) -> None:
+        failed = FailedCall(*call)
+        repeat(failed.state, failed.action, generator_at(failed.seed, failed.before))
 
     return handle

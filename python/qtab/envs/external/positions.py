@@ -1,13 +1,30 @@
-"""Positions of the generators of environments: the words drawn since the seed, as Rust counts them."""
+"""Positions of the generators of environments, the words drawn since the seed as Rust counts them, and failed calls."""
 
 from collections.abc import Mapping
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
 Position: TypeAlias = tuple[int, int | None]
 """The number of 64-bit words that a generator has drawn, and the half of the last word that was not used yet; None if
 there is none."""
+
+
+class FailedCall(NamedTuple):
+    """A call of ``reset`` or ``step`` that failed, as Rust passes it to be repeated in Python."""
+
+    state: bytes | None
+    """The bytes of the state before the step; None for a reset."""
+    before: Position
+    """The position of the generator before the call."""
+    action: int | None
+    """The action, counted from 0; None for a reset."""
+    seed: int
+    """The seed of the run."""
+    played: tuple[Position, list[int]] | None
+    """The position before the reset of the episode, and the actions since then; None if they are not kept or not known,
+    as in a run that was resumed within an episode."""
+
 
 _MULTIPLIER, _MASK = 0x2360_ED05_1FC6_5DA4_4385_DF64_9FCC_F645, (1 << 128) - 1
 

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 import gymnasium as gym
 import numpy as np
 
-from qtab import _core
 from qtab.envs.external.capsule import compiled_class
 from qtab.envs.in_rust.matching import NotInRustError
 
@@ -40,12 +39,6 @@ def compiled(make: Callable[[], gym.Env], env: gym.Env, is_same_step: bool) -> "
         _check_copies(env, make, one)
 
     return compiled_class(env, False, check)
-
-
-def external_of(env: "OrdinaryEnv") -> _core.ExternalEnv:
-    """Returns a compiled class as Rust steps it; where a step fails in compiled code only, Python takes over."""
-    capsule = env.capsule()  # kept here: it must not end while an error is raised
-    return _core.ExternalEnv(capsule, env.repeat_in_vector, repeats_episodes=True)
 
 
 def _check_arguments(env: gym.Env) -> None:

@@ -9,11 +9,11 @@ from gymnasium import spaces
 from gymnasium.vector import AutoresetMode
 
 from qtab import _core
-from qtab.envs.external.capsule import external_env, has_capsule
+from qtab.envs.external.capsule import external_env, external_of, has_capsule
 from qtab.envs.external.native_env import NativeEnv, space_of
 from qtab.envs.functional import FunctionalEnv
 from qtab.envs.in_rust.matching import NotInRustError
-from qtab.envs.vector.ordinary_class import compiled, external_of, reads_options
+from qtab.envs.vector.ordinary_class import compiled, reads_options
 from qtab.envs.vector.python_vector_env import Snapshot
 from qtab.envs.vector.spaces import VectorSpaces
 
@@ -66,7 +66,7 @@ class OwnEnv:
         self.code = one.code
         space: Any = self._env.action_space
         mask_dtype = one.rewritten.shown.mask_dtype
-        return external_of(one).native_env(
+        return external_of(one, one.repeat_in_vector).native_env(
             spaces=VectorSpaces(self._env.observation_space, space, num_envs, copy, mask_dtype)
         )
 

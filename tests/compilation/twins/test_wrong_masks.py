@@ -1,0 +1,85 @@
+"""A wrong action mask raises the error of Python stepping, and none in a run that does not read the masks."""
+
+from pathlib import Path
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import pytest
+
+import qtab
+from qtab.compilation.twins.class_twin import wrong_mask
+
+pytest.importorskip("numba")
+
+SETTINGS: dict[str, Any] = {"episodes": 40, "max_episode_steps": 50, "seed": 4, "progress": False}
+
+
+class Method(gym.Env):
+    """Leaves no action from cell 12 on."""
+
+    observation_space = gym.spaces.Discrete(20)
+    action_space = gym.spaces.Discrete(2)
+
+    def action_masks(self):
+        return np.array([self.cell < 12, self.cell < 12])
+
+    def reset(self, *, seed=None, options=None):
+        super().reset(seed=seed)
+        self.cell = 0
+        return self.cell, {}
+
+    def step(self, action):
+        self.cell = min(self.cell + int(action), 19)
+        return self.cell, self.np_random.random(), self.cell == 19, False, {}
+
+
+class Info(gym.Env):
+    """Has a 2 in its mask from cell 12 on."""
+
+    observation_space = gym.spaces.Discrete(20)
+    action_space = gym.spaces.Discrete(2)
+
+    def reset(self, *, seed=None, options=None):
+        super().reset(seed=seed)
+        self.cell = 0
+        return self.cell, {"action_mask": np.array([1, 1 + self.cell // 12])}
+
+    def step(self, action):
+        self.cell = min(self.cell + int(action), 19)
+        return self.cell, 0.0, self.cell == 19, False, {"action_mask": np.array([1, 1 + self.cell // 12])}
+
+
+@pytest.fixture(autouse=True)
+def _files_of_code(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+
+
+@pytest.mark.parametrize(
+    ("cls", "message"),
+    [
+        (Method, r"action_mask\(12\) must leave at least one action, got array\(\[False, False\]\)"),
+        (Info, r"info\['action_mask'\] of step of .*Info.* must hold booleans, or 0 and 1, got array\(\[1, 2\]\)"),
+    ],
+)
+def test_the_error_is_that_of_python(cls: Any, message: str) -> None:
+    errors = []
+    for backend in ("numba", "python"):
+        with pytest.raises(ValueError, match=message) as caught:
+            qtab.train(cls(), action_mask=True, backend=backend, **SETTINGS)
+        errors.append(str(caught.value))
+    assert errors[0] == errors[1]
+
+
+def test_a_run_without_masks_does_not_read_them() -> None:
+    runs = [qtab.train(Method(), action_mask=False, backend=backend, **SETTINGS) for backend in ("numba", "python")]
+    assert runs[0].config.backend == "numba"
+    assert runs[0].tables.tobytes() == runs[1].tables.tobytes()
+    assert runs[0].episode_returns.tobytes() == runs[1].episode_returns.tobytes()
+
+
+def test_what_is_wrong_with_a_mask() -> None:
+    assert wrong_mask(np.ones(3), 2) == "have shape (2,), with an item for each action"
+    assert wrong_mask(np.zeros(2, bool), 2) == "leave at least one action"
+    assert wrong_mask(np.zeros(2, bool), 2, ended=True) is None
+    assert wrong_mask([0, 1], 2) is None
