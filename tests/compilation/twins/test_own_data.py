@@ -97,6 +97,28 @@ class Equal(enum.IntEnum):
     __hash__ = enum.IntEnum.__hash__
 
 
+class Shouting(enum.IntEnum):
+    """Has a text that is counted."""
+
+    ONE = 1
+
+    def __str__(self):
+        return f"{counted()}!"
+
+
+class Turning(enum.IntEnum):
+    """Has an operator and a text without effects."""
+
+    ONE = 1
+    TWO = 2
+
+    def __add__(self, other):
+        return Turning((self.value + other) % 2 + 1)
+
+    def __str__(self):
+        return self.name.lower()
+
+
 module = types.ModuleType("module")
 module.__getattr__ = counted  # type: ignore[method-assign]
 
@@ -150,12 +172,42 @@ class Searches(ExtraEnv):
         return 1.0 if 2 in self.GOALS else 0.0  # here
 
 
+class ShowsInInfo(ExtraEnv):
+    def step(self, action):
+        return self.cell, 0.0, False, False, {"text": f"{Shouting.ONE}"}  # here
+
+
+class ShowsByHelper(ExtraEnv):
+    SHOWN = (Shouting.ONE,)
+
+    def shown(self):
+        return {"text": str(self.SHOWN[0])}
+
+    def step(self, action):
+        return self.cell, 0.0, False, False, self.shown()  # here
+
+
+class ShowsWithoutEffects(ExtraEnv):
+    def step(self, action):
+        return self.cell, 0.0, False, False, {"text": str(Turning.ONE), "next": Turning.ONE + 1}
+
+
 def checked_and_rewritten(env: Any) -> Any:
     refuse_effects(env)
     return rewrite(env)
 
 
-REFUSED = [ReadsElement, ReadsGuessed, AddsData, ReadsModule, ReadsMetaclass, Compares, Searches]
+REFUSED = [
+    ReadsElement,
+    ReadsGuessed,
+    AddsData,
+    ReadsModule,
+    ReadsMetaclass,
+    Compares,
+    Searches,
+    ShowsInInfo,
+    ShowsByHelper,
+]
 
 
 @pytest.mark.parametrize("cls", REFUSED, ids=lambda cls: cls.__name__)
@@ -173,3 +225,7 @@ def test_code_of_data_is_not_run(cls: Any) -> None:
 def test_methods_that_are_generated_or_only_show_data_leave_it_plain() -> None:
     assert [is_plain(one) for one in (Shown(1.0), Fixed(), [Fixed()])] == [True] * 3
     assert [is_plain(one) for one in (Pair(1.0), Guessing(), [Adding()])] == [False] * 3
+
+
+def test_texts_and_operators_without_effects_may_be_left_out() -> None:
+    assert checked_and_rewritten(ShowsWithoutEffects()).source

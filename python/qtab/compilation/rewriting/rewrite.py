@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from qtab.compilation.not_compilable import Follows, NotCompilable, combined
 from qtab.compilation.rewriting import helpers, specials
 from qtab.compilation.rewriting.attributes import Attributes, Restart
+from qtab.compilation.rewriting.infos.changed import check_changed_infos
 from qtab.compilation.rewriting.infos.masks import add_action_mask
 from qtab.compilation.rewriting.infos.shown import Shown, shown_of
 from qtab.compilation.rewriting.observations import observation_code
@@ -148,6 +149,7 @@ def _rewritten(env: gym.Env, attributes: Attributes, program: Program) -> Rewrit
         file, line = reset.file, reset.lines[0][1]
         reason = "the environment draws random numbers, but reset does not seed the generator"
         raise NotCompilable(reason, file, line, "call super().reset(seed=seed) first in reset")
+    check_changed_infos(attributes)
     mask_refusal, tops = None, ["reset", "step"]
     try:
         if add_action_mask(program):

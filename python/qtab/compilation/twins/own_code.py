@@ -2,6 +2,8 @@
 
 import enum
 import inspect
+from collections.abc import Iterator
+from dataclasses import is_dataclass
 from types import FunctionType, ModuleType
 from typing import Any
 
@@ -20,6 +22,7 @@ RUN = (OPERATORS - {"__repr__", "__str__", "__format__"}) | {
 }
 """The methods that run where data is read, compared, computed with or copied."""
 GENERATORS = ("collections", "dataclasses", "typing")
+COLLECTIONS: tuple[type, ...] = (tuple, list, set, frozenset, dict)
 
 
 def has_own_code(cls: type) -> bool:
@@ -36,6 +39,24 @@ def _is_generated(function: FunctionType) -> bool:
     """Returns whether a method was written by ``dataclasses`` or ``namedtuple``."""
     code = function.__code__
     return code.co_filename.startswith("<string>") or function.__globals__.get("__name__") in GENERATORS
+
+
+def own_methods(value: Any) -> Iterator[tuple[str, FunctionType]]:
+    """Yields the methods that Python calls to compute with a number, an enum or data, or to show it, with their names.
+
+    Only those that the user has written; also those of the elements of a collection.
+    """
+    if type(value) in COLLECTIONS:
+        items: Any = [*value, *value.values()] if isinstance(value, dict) else value
+        for one in items:
+            yield from own_methods(one)
+    elif isinstance(value, int | float | tuple | enum.Enum) or is_dataclass(value):
+        cls: Any = type(value)
+        for base in cls.__mro__:
+            for name, member in vars(base).items():
+                is_own = isinstance(member, FunctionType) and member.__module__ != "enum" and not _is_generated(member)
+                if name in OPERATORS and is_own:
+                    yield name, member
 
 
 def is_computed(member: Any) -> bool:

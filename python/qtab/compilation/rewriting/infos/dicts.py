@@ -45,7 +45,7 @@ def _of_method(attributes: Attributes, role: str, after: type | None, alone: boo
     if not isinstance(member, FunctionType) or hasattr(member, "__wrapped__") or owner in (gym.Env, gym.Wrapper):
         raise NotCompilable(f"{attributes.cls.__name__} has no ordinary method {role}", advice=f"define {role}")
     source = source_of(member)
-    returned = list(_returns(source.node))
+    returned = list(returns_of(source.node))
     for node in returned:
         value = node.value
         if isinstance(value, ast.Tuple) and len(value.elts) == LENGTHS[role]:
@@ -116,7 +116,7 @@ def _of_helper(attributes: Attributes, source: Source, node: ast.Call, name: str
     if not isinstance(member, FunctionType) or hasattr(member, "__wrapped__"):
         raise _refused(source, node, f"the info dict comes from {name}, which is no ordinary method", ADVICE)
     inner = source_of(member)
-    returned = list(_returns(inner.node))
+    returned = list(returns_of(inner.node))
     if not isinstance(inner.node.body[-1], ast.Return):
         raise _refused(inner, inner.node, f"{name} may return no info dict", ADVICE)
     infos = []
@@ -129,13 +129,13 @@ def _of_helper(attributes: Attributes, source: Source, node: ast.Call, name: str
     return infos[0]
 
 
-def _returns(node: ast.AST) -> Iterator[ast.Return]:
+def returns_of(node: ast.AST) -> Iterator[ast.Return]:
     """Yields the return statements of a function, not those of functions in it."""
     for one in ast.iter_child_nodes(node):
         if isinstance(one, ast.Return):
             yield one
         elif not isinstance(one, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda | ast.ClassDef):
-            yield from _returns(one)
+            yield from returns_of(one)
 
 
 def _precedes(source: Source, statement: ast.stmt, returned: ast.Return) -> bool:

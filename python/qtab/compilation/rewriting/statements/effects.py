@@ -2,6 +2,7 @@
 
 import ast
 import builtins
+import enum
 import inspect
 from types import FunctionType, ModuleType
 from typing import TYPE_CHECKING, Any
@@ -11,6 +12,7 @@ import numpy as np
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting.attributes import MISSING
 from qtab.compilation.rewriting.source.sources import source_of
+from qtab.compilation.twins.own_code import own_methods, runs_code
 
 if TYPE_CHECKING:
     from qtab.compilation.rewriting.expressions.expressions import Expressions
@@ -57,7 +59,8 @@ def _effect(
             return "it draws random numbers"
         if isinstance(one, ast.Attribute | ast.Subscript) and isinstance(one.ctx, ast.Store):
             base = _root(one)
-            if isinstance(one, ast.Attribute) or base is None or base in parameters or base == own:
+            is_new = base in function.__code__.co_varnames and base not in parameters and base != own
+            if isinstance(one, ast.Attribute) or not is_new:
                 return f"it assigns {ast.unparse(one)}"
         if isinstance(one, ast.Attribute) and isinstance(one.value, ast.Name) and one.value.id == own:
             member, _ = scope.program.attributes.find(one.attr)
@@ -65,10 +68,37 @@ def _effect(
                 inner = _of_function(scope, member.fget, seen)
                 if inner is not None:
                     return inner
+        if isinstance(one, ast.Name | ast.Attribute):
+            found = _of_operators(scope, _constant_of(scope, one, function, own), seen)
+            if found is not None:
+                return found
         if isinstance(one, ast.Call):
             found = _of_call(scope, one, function, own, parameters, seen)
             if found is not None:
                 return found
+    return None
+
+
+def _constant_of(scope: "Expressions", node: ast.expr, function: FunctionType, own: str | None) -> Any:
+    """Returns the constant that a name, or an attribute, stands for; ``MISSING`` if it is none."""
+    if isinstance(node, ast.Name):
+        found = scope.fixed.get(node.id) if function is scope.source.function else None
+        return _resolved(node, function) if found is None else found.fixed
+    if not isinstance(node, ast.Attribute):
+        return MISSING
+    if isinstance(node.value, ast.Name) and node.value.id == own:
+        known = scope.program.attributes
+        return MISSING if node.attr in known.assigned else vars(known.env).get(node.attr, known.find(node.attr)[0])
+    owner = _constant_of(scope, node.value, function, own)
+    return MISSING if owner is MISSING or runs_code(owner, node.attr) else getattr(owner, node.attr, MISSING)
+
+
+def _of_operators(scope: "Expressions", value: Any, seen: set[Any]) -> str | None:
+    """Returns the effect of a method that Python calls to compute with a constant or to show it; None without any."""
+    for name, method in own_methods(value):
+        found = _of_function(scope, method, seen)
+        if found is not None:
+            return f"{type(value).__name__} defines {name}, and {found}"
     return None
 
 
@@ -114,6 +144,9 @@ def _of_call(
         return f"it calls {shown}, whose effects are unknown"
     if isinstance(found, FunctionType) and not _is_numpy(found):
         return _of_function(scope, found, seen)
+    is_enum = isinstance(found, enum.EnumMeta) and "_missing_" not in vars(found)
+    if is_enum or (isinstance(found, type) and found.__module__ == "builtins" and issubclass(found, BaseException)):
+        return None
     name = getattr(found, "__name__", "")
     if name in PURE_BUILTINS and getattr(builtins, name) is found:
         return None

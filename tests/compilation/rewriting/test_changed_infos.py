@@ -1,0 +1,95 @@
+"""Info dicts that a step changes, and that it has not made: other code reads them, so that they are refused."""
+
+import inspect
+from typing import Any
+
+import pytest
+
+from qtab.compilation.not_compilable import NotCompilable
+from qtab.compilation.rewriting import rewrite
+from support.environments.gym_classes.extra import ExtraEnv
+
+TOTALS = {"steps": 0}
+
+
+class OfModule(ExtraEnv):
+    def step(self, action):
+        info = TOTALS  # here
+        if self.cell > 5:
+            info["steps"] += 1
+        return self.cell, float(TOTALS["steps"]), False, False, info
+
+
+class OfObject(ExtraEnv):
+    def __init__(self):
+        super().__init__()
+        self.totals = {"steps": 0}
+
+    def step(self, action):
+        info = self.totals  # here
+        if self.cell > 5:
+            info.update({"steps": 1})
+        return self.cell, float(self.totals["steps"]), False, False, info
+
+
+class OfHelper(ExtraEnv):
+    def totals(self):
+        return TOTALS
+
+    def step(self, action):
+        cell, reward, terminated, truncated, info = super().step(action)
+        info = self.totals()  # here
+        info["steps"] = self.cell
+        return cell, reward, terminated, truncated, info
+
+
+class Shared(ExtraEnv):
+    def step(self, action):
+        return self.cell, float(TOTALS["steps"]), False, False, TOTALS  # here
+
+
+class OfBase(Shared):
+    def step(self, action):
+        cell, reward, terminated, truncated, info = super().step(action)
+        info["cell"] = self.cell
+        return cell, reward, terminated, truncated, info
+
+
+class Own(ExtraEnv):
+    def totals(self, **more):
+        made = dict(TOTALS)
+        made.update(more)
+        return made
+
+    def step(self, action):
+        cell, reward, terminated, truncated, info = super().step(action)
+        info["cell"] = self.cell
+        if self.cell > 5:
+            info = self.totals()
+            info.update(cell=self.cell)
+        else:
+            info = TOTALS.copy()
+        return cell, reward, terminated, truncated, info
+
+
+def refusal(cls: Any) -> NotCompilable:
+    with pytest.raises(NotCompilable, match="an info dict is changed") as caught:
+        rewrite(cls())
+    return caught.value
+
+
+@pytest.mark.parametrize("cls", [OfModule, OfObject, OfHelper], ids=lambda cls: cls.__name__)
+def test_dicts_of_others_are_not_changed(cls: Any) -> None:
+    lines, first = inspect.getsourcelines(cls)
+    (marked,) = [number for number, line in enumerate(lines, first) if "# here" in line]
+    assert refusal(cls).line == marked
+
+
+def test_nor_those_that_a_base_class_returns() -> None:
+    assert "`TOTALS` was not made here" in refusal(OfBase).reason
+
+
+@pytest.mark.parametrize("cls", [Shared, Own], ids=lambda cls: cls.__name__)
+def test_dicts_that_are_made_here_or_not_changed_are_left_out(cls: Any) -> None:
+    assert rewrite(cls()).source
+    assert TOTALS == {"steps": 0}
