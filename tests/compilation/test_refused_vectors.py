@@ -40,6 +40,15 @@ def _unregistered() -> Iterator[None]:
         (refused_vectors.NoOptions, "NextStep", "reset does not take seed and options"),
         (refused_vectors.DefaultOptions, "NextStep", "options of reset have no default None"),
         (refused_vectors.Prints, "NextStep", "print"),
+        (refused_vectors.Resets, "NextStep", "or draws from self.np_random; do not reset in `__init__`"),
+        (
+            refused_vectors.Divides,
+            "NextStep",
+            "an error might be raised here, in a value that compiled code leaves out",
+        ),
+        (refused_vectors.AddsUp, "NextStep", "an error might be raised here, in a value that compiled code leaves out"),
+        (refused_vectors.Keeps, "NextStep", "self.steps keeps its value from one episode to the next"),
+        (refused_vectors.Warns, "NextStep", "a message is logged, which compiled code leaves out"),
     ],
 )
 def test_classes_that_would_differ_are_refused_by_name(made: Any, mode: str, reason: str) -> None:
@@ -58,3 +67,13 @@ def test_views_and_other_dtypes_are_shown_where_no_last_observation_is() -> None
         ours, theirs = make(f"QtabVec/{made.__name__}Next-v0", 3, max_episode_steps=5)
         assert ours.is_native
         in_lockstep(ours, theirs, 12, 0)
+
+
+def test_copies_may_differ_in_what_no_step_reads() -> None:
+    gym.register("QtabVec/Numbered-v0", refused_vectors.Numbered)  # type: ignore[arg-type]
+    ours, theirs = make("QtabVec/Numbered-v0", 2, max_episode_steps=5)
+    assert ours.is_native
+    in_lockstep(ours, theirs, 8, 0)
+    numbers = ours.get_attr("number")
+    assert numbers[0] != numbers[1]
+    assert ours.get_attr("total") == theirs.get_attr("total")

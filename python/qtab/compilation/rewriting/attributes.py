@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting.source.sources import source_of
-from qtab.compilation.rewriting.source.syntax import CHANGING
+from qtab.compilation.rewriting.source.syntax import CHANGING, growing_lists, new_lists
 from qtab.compilation.rewriting.values import Array, Kind, Scalar, TupleKind, in_words, join, kind_of
 
 Refuse = Callable[[str, str], NotCompilable]
@@ -41,6 +41,9 @@ class Attributes:
         self.assigned: set[str] = set()
         self.read: set[str] = set()
         self.changed_in_place: set[str] = set()
+        self.growing: set[str] = set()
+        """The lists to which statements add, and that are always assigned as new lists."""
+        self._not_lists: set[str] = set()
         self.shared: list[tuple[set[str], Callable[[], NotCompilable]]] = []
         """The attributes that share memory after an assignment, and the error if one of them is changed in place."""
         self._scan()
@@ -57,16 +60,25 @@ class Attributes:
                 function = getattr(member, "fget", getattr(member, "__func__", member))
                 if isinstance(function, FunctionType) and not hasattr(function, "__wrapped__"):
                     names += self._scan_function(source_of(function).node, set(names))
+        self.read |= self.growing & self._not_lists
+        self.growing -= self._not_lists
 
     def _scan_function(self, node: ast.FunctionDef, known: set[str]) -> list[str]:
         own = node.args.args[0].arg if node.args.args else ""
         more = set()
+        grown = growing_lists(node, own)
+        self.growing |= {one.attr for one in grown}
+        lists = new_lists(node)
         for one in ast.walk(node):
             if isinstance(one, ast.Attribute) and isinstance(one.value, ast.Name):
-                if one.value.id == own and isinstance(one.ctx, ast.Load):
+                if one.value.id == own and one in grown:
+                    pass
+                elif one.value.id == own and isinstance(one.ctx, ast.Load):
                     self.read.add(one.attr)
                 elif one.value.id == own:
                     self.assigned.add(one.attr)
+                    if one not in lists:
+                        self._not_lists.add(one.attr)
                 more.add(one.attr)
             elif isinstance(one, ast.Attribute):
                 more.add(one.attr)

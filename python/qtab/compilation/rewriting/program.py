@@ -18,6 +18,9 @@ MAX_INLINE = 64
 MAX_BYTES = 1 << 24
 """The most bytes of a constant array."""
 
+UNREAD = "unread "
+"""The beginning of the entries in a flow of attributes that are assigned and never read."""
+
 
 @dataclass
 class Compiled:
@@ -88,6 +91,12 @@ class Program:
         """Compiles a user's function and returns the value of a call."""
         self.infos: dict[str, list[Any]] = {}
         """The info dicts that ``reset`` and ``step`` return, with their functions."""
+        self.left_out: list[NotCompilable] = []
+        """The errors, for vector environments, for code that is left out and that may fail or log messages."""
+        self.unread: dict[str, NotCompilable] = {}
+        """The attributes that are assigned and never read, and the errors for those that reset does not assign."""
+        self.reset_unread: set[str] = set()
+        """Those of them that ``reset`` always assigns."""
         self.shown_views: list[tuple[frozenset[str], NotCompilable]] = []
         """The attributes whose memory observations share in Python, and the errors if it is shown that they change."""
         self.mask: tuple[str, ast.expr | None] = "", None
@@ -96,6 +105,11 @@ class Program:
         """The keys of functions that cannot be compiled."""
         self.problems: list[NotCompilable] = []
         """What cannot be compiled, in ``reset``, ``step`` and the functions that they call."""
+
+    def refused_in_vectors(self) -> NotCompilable | None:
+        """Returns the error for code that is left out, and whose effect a vector environment would show."""
+        kept = [error for name, error in self.unread.items() if name not in self.reset_unread]
+        return next(iter([*self.left_out, *kept]), None)
 
     def key(self, function: FunctionType, owner: type | None, values: dict[str, Value]) -> Any:
         """Returns the key of a function that is called with given constants and kinds."""

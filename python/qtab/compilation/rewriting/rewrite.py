@@ -18,7 +18,7 @@ from qtab.compilation.rewriting.infos.changed import check_changed_infos
 from qtab.compilation.rewriting.infos.masks import add_action_mask
 from qtab.compilation.rewriting.infos.shown import Shown, shown_of
 from qtab.compilation.rewriting.observations import observation_code
-from qtab.compilation.rewriting.program import Compiled, Program, as_float
+from qtab.compilation.rewriting.program import UNREAD, Compiled, Program, as_float
 from qtab.compilation.rewriting.source.sources import Source, source_of
 from qtab.compilation.rewriting.user_functions import called, compiled_function
 from qtab.compilation.rewriting.values import BOOL, INT, Scalar, TupleKind, Value, constant, in_words
@@ -56,6 +56,8 @@ class Rewritten:
     kept_between_episodes: tuple[str, ...]
     """The attributes that change, and that ``reset`` does not assign before it reads them: the first state of an
     episode depends on the episodes before."""
+    used: frozenset[str]
+    """The attributes that ``reset`` or ``step`` may read or assign, and the spaces."""
     changed: frozenset[str]
     """The attributes that ``reset`` or ``step`` assigns or changes in place, and that compiled code needs."""
     changed_in_place: frozenset[str]
@@ -141,6 +143,7 @@ def _rewritten(env: gym.Env, attributes: Attributes, program: Program) -> Rewrit
     except Follows:  # to find the problems of step as well
         _method(program, "step")
         raise
+    program.reset_unread = {name.removeprefix(UNREAD) for name in reset.flow.assigned if name.startswith(UNREAD)}
     step = _method(program, "step")
     _add_top(program, "reset", reset)
     _add_top(program, "step", step)
@@ -175,6 +178,7 @@ def _rewritten(env: gym.Env, attributes: Attributes, program: Program) -> Rewrit
         dtype,
         initial,
         tuple(kept),
+        frozenset(attributes.read | attributes.assigned) | {"action_space", "observation_space"},
         frozenset(program.stored | attributes.changed_in_place),
         frozenset(attributes.changed_in_place),
         lines,

@@ -5,7 +5,7 @@ import functools
 import inspect
 from collections.abc import Callable
 from types import FunctionType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import gymnasium as gym
 import numpy as np
@@ -60,13 +60,21 @@ def _check_arguments(env: gym.Env) -> None:
 
 
 def _check_copies(env: gym.Env, make: Callable[[], gym.Env], one: "OrdinaryEnv") -> None:
-    """Refuses sub-environments that differ from each other, or that share memory in which they write."""
+    """Refuses sub-environments that differ in what steps use, or that share memory in which they write."""
+    other = make()
+    try:
+        _compare(vars(env.unwrapped), vars(other.unwrapped), one)
+    finally:
+        other.close()
+
+
+def _compare(ours: dict[str, Any], theirs: dict[str, Any], one: "OrdinaryEnv") -> None:
     from qtab.compilation.twins.plain_data import is_plain, mutable_parts, same
 
-    other = make()
-    ours, theirs = vars(env.unwrapped), vars(other.unwrapped)
-    other.close()
-    for name in (ours.keys() | theirs.keys()) - {"spec"}:
+    if "_np_random" in ours:
+        reason = "its constructor resets it, or draws from self.np_random"
+        raise NotInRustError(reason, "do not reset in `__init__`, nor draw")
+    for name in sorted(one.rewritten.used & (ours.keys() | theirs.keys())):
         both = [values.get(name) for values in (ours, theirs)]
         is_equal = same if all(map(is_plain, both)) and not isinstance(both[0], gym.Space) else _equal
         if not is_equal(*both) or (name in ours) != (name in theirs):

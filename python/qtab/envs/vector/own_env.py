@@ -77,6 +77,11 @@ class OwnEnv:
         cls: Any = type(self._env.unwrapped)
         return reads_options(cls) if self.is_ordinary else "state" in options and issubclass(cls, FunctionalEnv)
 
+    def log_options(self) -> None:
+        """Logs that Python steps from now on, since only it can begin an episode with options."""
+        message = "a vector environment of %s is stepped in Python from now on, as its reset reads options"
+        _LOGGER.warning(message, type(self._env.unwrapped).__name__)
+
     def in_python(self, snapshots: Sequence[Snapshot], not_reset: Sequence[int]) -> list[Snapshot]:
         """Returns snapshots of sub-environments with the attributes that the environment has in Python.
 

@@ -45,8 +45,8 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
 
     An environment of your own also switches to Python stepping when ``np_random`` is accessed, and at a reset with
     options that it reads: ``state`` for a ``FunctionalEnv``, any for an ordinary class. An ordinary class does so as
-    well at a step that fails in compiled code only. The ``final_obs`` of an ordinary class with a Discrete space are
-    Python integers. An exception of a step or a reset is raised as it is in Python.
+    well at a step that fails in compiled code only. The logger ``qtab`` reports both. The ``final_obs`` of an ordinary
+    class with a Discrete space are Python integers. An exception of a step or a reset is raised as it is in Python.
 
     Args:
         name: The id of an environment that Rust steps: Gymnasium's, one with the prefix ``qtab/``, or one that you
@@ -141,7 +141,8 @@ class RustVectorEnv(_core.VectorEnv, VectorEnv[Any, Any, Any]):
         mask = None
         if options is not None and "reset_mask" in options:
             mask = check_reset_mask(options.pop("reset_mask"), self.num_envs, self.not_reset())
-        if self._own is not None and self._own.needs_python(options):
+        if self._own is not None and self.is_native and self._own.needs_python(options):
+            self._own.log_options()
             self._fall_back_to_python()
         bounds = reset_bounds(self.reset_bounds(), self.example, options) if self.is_native else None
         if bounds is not None and max(map(abs, bounds)) > MAX_RESET_BOUND:

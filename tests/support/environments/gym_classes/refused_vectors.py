@@ -1,11 +1,15 @@
 """Ordinary classes that show more in a vector environment than compiled code gives."""
 
+import itertools
+
+import gymnasium as gym
 import numpy as np
 from gymnasium import spaces
 
 from support.environments.gym_classes.vectors import DriftEnv, LockEnv
 
 SHARED = np.zeros(3)
+NUMBERS = itertools.count()
 
 
 class SharesMemory(DriftEnv):
@@ -125,3 +129,60 @@ class Prints(DriftEnv):
     def step(self, action):
         print(action)  # noqa: T201
         return self.position.copy(), 0.0, False, False, {}
+
+
+class Resets(DriftEnv):
+    def __init__(self, noise: float = 0.5) -> None:
+        super().__init__(noise)
+        self.reset()
+
+
+class Divides(DriftEnv):
+    def step(self, action):
+        self.share = 1.0 / (self.position[1] - 7.0)
+        return super().step(action)
+
+
+class AddsUp(DriftEnv):
+    def __init__(self, noise: float = 0.5) -> None:
+        super().__init__(noise)
+        self.total = 0.0
+
+    def step(self, action):
+        self.total += self.position[7]
+        return super().step(action)
+
+
+class Warns(DriftEnv):
+    def step(self, action):
+        if self.position[1] > 7.0:
+            gym.logger.warn("far away")
+        return super().step(action)
+
+
+class Keeps(DriftEnv):
+    def __init__(self, noise: float = 0.5) -> None:
+        super().__init__(noise)
+        self.steps = 0
+
+    def step(self, action):
+        self.steps += 1
+        return super().step(action)
+
+
+class Numbered(DriftEnv):
+    """Its copies differ in what no step reads, and its steps keep numbers that cannot fail."""
+
+    def __init__(self, noise: float = 0.5) -> None:
+        super().__init__(noise)
+        self.number = next(NUMBERS)
+
+    def reset(self, *, seed=None, options=None):
+        self.total, self.last, self.name = 0.0, None, "none"
+        return super().reset(seed=seed)
+
+    def step(self, action):
+        self.last = (action, action == 1)
+        self.total += 0.5 * float(action)
+        self.name = "right" if action == 1 else "left"
+        return super().step(action)

@@ -16,6 +16,7 @@ from qtab.compilation.rewriting.library import arrays, builtin_functions, draws,
 from qtab.compilation.rewriting.source.sources import source_of
 from qtab.compilation.rewriting.source.syntax import CHANGING
 from qtab.compilation.rewriting.statements.effects import check_pure
+from qtab.compilation.rewriting.statements.left_out import note_message
 from qtab.compilation.rewriting.values import Array, DictKind, InfoKind, TupleKind, Value, constant, in_words
 
 if TYPE_CHECKING:
@@ -64,7 +65,8 @@ def call(scope: "Expressions", node: ast.Call) -> Value:
             return _of_constant(scope, node, name, base.fixed)
         if isinstance(base.kind, DictKind | InfoKind) or (base.kind is not None and not base.is_fixed):
             if isinstance(base.kind, TupleKind) and name in CHANGING:
-                advice = "use numbers and NumPy arrays of fixed size, and leave out a list that only the info dict has"
+                unread = "a list that nothing reads is left out if reset makes it, as in self.path = []"
+                advice = f"use numbers and NumPy arrays of fixed size; {unread}"
                 raise scope.refuse(node, f"the method {name} of a list", advice)
             raise scope.refuse(node, f"the method {name} of {in_words(base.kind)}", "use numbers and NumPy arrays")
         callee = scope.attribute_of(node.func, base)
@@ -110,6 +112,7 @@ def _known(scope: "Expressions", node: ast.Call, callee: Any) -> Value:
     if module == "gymnasium.logger":
         for argument in (*node.args, *[keyword.value for keyword in node.keywords]):
             check_pure(scope, argument)
+        note_message(scope, node)
         return constant(None)
     for table in (builtin_functions.TABLE, math_functions.TABLE, numpy_functions.TABLE):
         handler = table.get(callee) if _hashable(callee) else None

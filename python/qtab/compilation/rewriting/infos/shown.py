@@ -39,6 +39,8 @@ def shown_of(program: Program, methods: dict[str, Compiled], mask_refusal: NotCo
     """
     try:
         mask_dtype = _mask_dtype(program, mask_refusal)
+        if (left_out := program.refused_in_vectors()) is not None:
+            raise left_out
         other_dtype = None
         for name, method in methods.items():
             kind: Any = method.result.kind.items[0]

@@ -143,7 +143,8 @@ def _choice(scope: "Expressions", node: ast.AST, values: list[Value], named: dic
         numbers = list(pool.fixed)
         array = np.asarray(numbers)
         if array.ndim != 1 or array.dtype.kind not in "if":
-            raise scope.refuse(node, "choice from something other than numbers", "draw an index with integers(0, n)")
+            draw = f"integers(0, {count})" if p.is_fixed and p.fixed is None else f"choice({count}, p=...)"
+            raise scope.refuse(node, "choice from something other than numbers", f"draw an index with {draw}")
         return containers.lookup(scope, node, array.tolist(), index)
     lifted = scope.lift(pool, node)
     if lifted.kind.ndim != 1:

@@ -14,6 +14,9 @@ CHANGING = (
 )
 """The methods that change a list, a dict, a set or an array."""
 
+GROWING = ("append", "extend", "clear")
+"""Those that lists have to collect values."""
+
 
 class Names:
     """The local names of a function."""
@@ -133,6 +136,33 @@ def info_names(node: ast.FunctionDef) -> set[str]:
             last = one.value.elts[-1]
             if isinstance(last, ast.Name):
                 found.add(last.id)
+    return found
+
+
+def growing_lists(node: ast.AST, own: str) -> list[ast.Attribute]:
+    """Returns the attributes of the environment in statements such as ``self.path.append(cell)``."""
+    found = []
+    for one in ast.walk(node):
+        call = one.value if isinstance(one, ast.Expr) else None
+        if isinstance(call, ast.Call) and isinstance(call.func, ast.Attribute) and call.func.attr in GROWING:
+            base = call.func.value
+            if isinstance(base, ast.Attribute) and isinstance(base.value, ast.Name) and base.value.id == own:
+                found.append(base)
+    return found
+
+
+def new_lists(node: ast.AST) -> list[ast.expr]:
+    """Returns the targets of assignments of lists that are written out, such as ``self.path = []``."""
+    found: list[ast.expr] = []
+    for one in ast.walk(node):
+        targets = one.targets if isinstance(one, ast.Assign) else [one.target] if isinstance(one, ast.AnnAssign) else []
+        for target in targets:
+            value = one.value  # type: ignore[attr-defined]
+            if isinstance(target, ast.Tuple) and isinstance(value, ast.Tuple) and len(targets) == 1:
+                pairs = list(zip(target.elts, value.elts, strict=False))
+            else:
+                pairs = [(target, value)]
+            found += [part for part, given in pairs if isinstance(given, ast.List) and len(targets) == 1]
     return found
 
 

@@ -12,6 +12,7 @@ from qtab.compilation.rewriting.program import tuple_value
 from qtab.compilation.rewriting.source.syntax import calls_own_functions, info_names
 from qtab.compilation.rewriting.statements import assignments, loops
 from qtab.compilation.rewriting.statements.effects import check_pure
+from qtab.compilation.rewriting.statements.left_out import is_growing_list, is_info_update
 from qtab.compilation.rewriting.statements.order import check_order
 from qtab.compilation.rewriting.statements.variables import kept
 from qtab.compilation.rewriting.values import INFO, Array, InfoKind, TupleKind, Value, constant, in_words, join
@@ -100,22 +101,12 @@ class Statements(Displays):
     def _do_expr(self, node: ast.Expr) -> bool:
         if isinstance(node.value, ast.Constant):
             return False
-        if self._is_info_update(node.value):
+        if is_info_update(self, node.value) or is_growing_list(self, node.value):
             return False
         self.whole = node.value
         value = self.expression(node.value)
         if value.code and (not value.is_fixed or self.has_effects(value)):
             self.emit(value.code, node)
-        return False
-
-    def _is_info_update(self, node: ast.expr) -> bool:
-        """Drops ``info.update(...)``."""
-        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr == "update":
-            base = node.func.value
-            if isinstance(base, ast.Name) and base.id in self.infos:
-                for one in (*node.args, *[keyword.value for keyword in node.keywords]):
-                    check_pure(self, one)
-                return True
         return False
 
     @cached_property

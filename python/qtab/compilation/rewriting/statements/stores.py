@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from qtab.compilation.rewriting import specials
 from qtab.compilation.rewriting.expressions import containers
+from qtab.compilation.rewriting.statements.left_out import note_attribute
 from qtab.compilation.rewriting.statements.variables import in_variables, is_simple
 from qtab.compilation.rewriting.values import (
     BOOL,
@@ -33,6 +34,7 @@ def store(scope: "Statements", node: ast.stmt, name: str, value: Value) -> None:
         raise scope.refuse(node, f"self.{name} is assigned", "assign it in __init__ only, or use another attribute")
     known.note_assigned(name)
     if name not in known.read:
+        note_attribute(scope, node, name)
         if scope.has_effects(value):
             scope.emit(value.code, node)
         return
