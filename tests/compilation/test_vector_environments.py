@@ -15,7 +15,16 @@ from hypothesis import strategies as st
 
 import qtab
 from support.environments.gym_classes import control, vectors
-from support.lockstep.own_vectors import in_lockstep, make, same_streams
+from support.lockstep.own_vectors import (
+    in_lockstep,
+    in_lockstep_with_dummy_vec_env,
+    make,
+    python_continues,
+    reset_error_changes_nothing,
+    same_streams,
+    step_and_reset,
+    step_error_changes_nothing,
+)
 from support.lockstep.vector import MODES, assert_equal
 
 pytest.importorskip("numba")
@@ -62,21 +71,7 @@ def test_compiled_classes_equal_sync_vector_env(
 
 @pytest.mark.parametrize("mode", MODES)
 def test_python_continues_the_episodes(mode: AutoresetMode) -> None:
-    ours, theirs = make("QtabVec/Drift-v0", 5, mode, max_episode_steps=6)
-    actions = np.random.default_rng(0).integers(0, 3, (40, 5))
-    assert_equal(ours.reset(seed=1), theirs.reset(seed=1))
-    for index, row in enumerate(actions):
-        assert_equal(ours.step(row), result := theirs.step(row))
-        if index == 17:
-            assert ours.is_native
-            same = zip(ours.envs, theirs.envs, strict=True)
-            assert all(one.unwrapped.position.tolist() == other.unwrapped.position.tolist() for one, other in same)
-            assert not ours.is_native
-        over = result[2] | result[3]
-        if mode is AutoresetMode.DISABLED and over.any():
-            options = {"reset_mask": over.copy()}
-            assert_equal(ours.reset(options=dict(options)), theirs.reset(options=dict(options)))
-    same_streams(ours, theirs)
+    same_streams(*python_continues("QtabVec/Drift-v0", mode, 3, lambda env: env.position.tolist()))
 
 
 def test_envs_of_which_some_were_never_reset_and_attributes_that_are_set() -> None:
@@ -108,12 +103,7 @@ def test_copies_continue_with_the_same_numbers(mode: AutoresetMode, copied: Any)
     assert_equal(again.call("action_masks"), ours.call("action_masks"))  # Python plays both episodes again
     theirs.step(last)
     for _ in range(12):
-        assert_equal(again.step(last), result := theirs.step(last))
-        over = result[2] | result[3]
-        if mode is AutoresetMode.DISABLED and over.any():
-            assert_equal(
-                again.reset(options={"reset_mask": over.copy()}), theirs.reset(options={"reset_mask": over.copy()})
-            )
+        step_and_reset(again, theirs, last)
 
 
 def test_a_copy_of_other_code_is_refused() -> None:
@@ -126,46 +116,20 @@ def test_a_copy_of_other_code_is_refused() -> None:
 
 @pytest.mark.parametrize("threads", [1, 3])
 def test_the_error_of_a_step_is_that_of_python_and_changes_nothing(threads: int) -> None:
-    ours, theirs = make("QtabVec/Fragile-v0", 6, threads=threads)
-    ours.reset(seed=4)
-    for row in ([0, 1, 0, 1, 0, 1], [1, 0, 0, 0, 1, 0]):
-        ours.step(row)
-    untouched = copy.deepcopy(ours)
-    for _ in range(2):
-        with pytest.raises(KeyError, match="the second action") as raised:
-            ours.step([0, 1, 1, 2, 3, 2])  # compiled code fails in sub-environment 4 as well, where Python does not
+    before = ([0, 1, 0, 1, 0, 1], [1, 0, 0, 0, 1, 0])
+    failing = [0, 1, 1, 2, 3, 2]  # compiled code fails in sub-environment 4 as well, where Python does not
+    name, message = "QtabVec/Fragile-v0", "the second action"
+    raised = step_error_changes_nothing(name, threads, before, failing, [1, 0, 1, 1, 0, 1], message)
     assert any(entry.name == "step" and "vectors.py" in str(entry.path) for entry in raised.traceback)
-    assert ours.is_native
-    for _ in range(5):
-        assert_equal(ours.step([1, 0, 1, 1, 0, 1]), untouched.step([1, 0, 1, 1, 0, 1]))
+    _, theirs = make(name, 6)
     theirs.reset(seed=4)
-    with pytest.raises(KeyError, match="the second action"):
+    with pytest.raises(KeyError, match=message):
         [theirs.step(np.array(row)) for row in ([0] * 6, [0] * 6, [2] * 6)]
 
 
 @pytest.mark.parametrize("mode", [AutoresetMode.SAME_STEP, AutoresetMode.NEXT_STEP])
 def test_the_error_of_a_reset_is_that_of_python_and_changes_nothing(mode: AutoresetMode) -> None:
-    first, _, third = np.random.default_rng(8).random(3)
-    ours, _ = make("QtabVec/Fragile-v0", 3, mode, unlucky=float(first))
-    ours.reset(seed=0)
-    ours.step([1, 0, 1])
-    before = ours.checkpoint()
-    with pytest.raises(ValueError, match="no first state"):
-        ours.reset(seed=[5, None, 8])
-    assert (ours.np_random_seed, ours.checkpoint()) == ((0, 1, 2), before)
-    assert ours.is_native
-
-    # The reset after an episode, which draws the third number of the generator.
-    ours, theirs = make("QtabVec/Fragile-v0", 3, mode, unlucky=float(third), max_episode_steps=1)
-    assert_equal(ours.reset(seed=[0, 8, 1]), theirs.reset(seed=[0, 8, 1]))
-    if mode is AutoresetMode.NEXT_STEP:
-        assert_equal(ours.step([1, 1, 1]), theirs.step([1, 1, 1]))
-    before = ours.checkpoint()
-    for _ in range(2):
-        with pytest.raises(ValueError, match="no first state"):
-            ours.step([1, 1, 1])
-        assert ours.checkpoint() == before
-    assert ours.is_native
+    reset_error_changes_nothing("QtabVec/Fragile-v0", mode)
 
 
 @pytest.mark.parametrize("name", ["Growing", "Fragile"])
@@ -181,17 +145,13 @@ def test_a_step_that_fails_in_compiled_code_only_is_taken_in_python(
         rows = [[0, 1, 0, 0], [0, 0, 0, 3], [0, 0, 0, 0]]
     with np.errstate(all="ignore"):
         for row in rows:
-            assert_equal(ours.step(np.array(row)), result := theirs.step(np.array(row)))
-            over = result[2] | result[3]
-            if mode is AutoresetMode.DISABLED and over.any():
-                options = {"reset_mask": over}
-                assert_equal(ours.reset(options=dict(options)), theirs.reset(options=dict(options)))
+            step_and_reset(ours, theirs, np.array(row))
     assert not ours.is_native
     assert f"a vector environment of {name}Env is stepped in Python from now on" in caplog.text
     same_streams(ours, theirs)
 
 
-def test_options_that_reset_reads_are_given_to_it_in_python() -> None:
+def test_options_that_reset_reads_are_given_to_it_in_python(caplog: pytest.LogCaptureFixture) -> None:
     ours, theirs = make("QtabVec/Drift-v0", 2, AutoresetMode.DISABLED)
     assert_equal(ours.reset(seed=0, options={"other": 1}), theirs.reset(seed=0, options={"other": 1}))
     mask = np.array([True, False])
@@ -200,22 +160,15 @@ def test_options_that_reset_reads_are_given_to_it_in_python() -> None:
     ours, theirs = make("QtabVec/Lock-v0", 2)
     assert_equal(ours.reset(seed=0), theirs.reset(seed=0))
     assert ours.is_native
-    assert_equal(ours.reset(options={"start": 2}), theirs.reset(options={"start": 2}))
+    assert not caplog.text
+    for _ in range(2):
+        assert_equal(ours.reset(options={"start": 2}), theirs.reset(options={"start": 2}))
     assert not ours.is_native
+    assert caplog.text.count("a vector environment of LockEnv is stepped in Python from now on") == 1
 
 
 def test_stable_baselines3_gets_what_its_own_vector_environment_gives() -> None:
-    vec_env = pytest.importorskip("stable_baselines3.common.vec_env")
-    name = "QtabVec/Drift-v0"
-    ours = qtab.sb3.VecEnv(name, 3, seed=1, max_episode_steps=4)
-    theirs = vec_env.DummyVecEnv([lambda: gym.make(name, max_episode_steps=4)] * 3)
-    theirs.seed(1)
-    assert np.array_equal(ours.reset(), theirs.reset())
-    for row in np.random.default_rng(0).integers(0, 3, (40, 3)):
-        one, other = ours.step(row), theirs.step(row)
-        assert [part.tobytes() for part in one[:3]] == [part.tobytes() for part in other[:3]]
-        assert repr(one[3]) == repr(other[3])
-    assert ours.venv.is_native
+    ours, theirs = in_lockstep_with_dummy_vec_env("QtabVec/Drift-v0")
     with pytest.raises(AttributeError, match="has no attribute 'none'"):
         ours.get_attr("none")
     assert ours.venv.is_native

@@ -16,7 +16,15 @@ from hypothesis import strategies as st
 
 import qtab
 from support.environments import own as own_environments
-from support.lockstep.own_vectors import in_lockstep, make, same_streams
+from support.lockstep.own_vectors import (
+    in_lockstep,
+    in_lockstep_with_dummy_vec_env,
+    make,
+    python_continues,
+    reset_error_changes_nothing,
+    same_streams,
+    step_error_changes_nothing,
+)
 from support.lockstep.vector import MODES, assert_equal
 
 pytest.importorskip("numba")
@@ -111,19 +119,7 @@ def test_compiled_environments_equal_sync_vector_env(
 
 @pytest.mark.parametrize("mode", MODES)
 def test_python_continues_the_episodes(mode: AutoresetMode) -> None:
-    ours, theirs = make("QtabOwn/Countdown-v0", 5, mode, max_episode_steps=6)
-    actions = np.random.default_rng(0).integers(0, 2, (40, 5))
-    assert_equal(ours.reset(seed=1), theirs.reset(seed=1))
-    for index, row in enumerate(actions):
-        assert_equal(ours.step(row), result := theirs.step(row))
-        if index == 17:
-            assert ours.is_native
-            assert [env.unwrapped.state for env in ours.envs] == [env.unwrapped.state for env in theirs.envs]
-            assert not ours.is_native
-        over = result[2] | result[3]
-        if mode is AutoresetMode.DISABLED and over.any():
-            options = {"reset_mask": over.copy()}
-            assert_equal(ours.reset(options=dict(options)), theirs.reset(options=dict(options)))
+    python_continues("QtabOwn/Countdown-v0", mode, 2, lambda env: env.state)
 
 
 @pytest.mark.parametrize("mode", MODES)
@@ -143,44 +139,18 @@ def test_copies_continue_with_the_same_numbers(mode: AutoresetMode, copied: Any)
 
 @pytest.mark.parametrize("threads", [1, 3])
 def test_the_error_of_a_step_is_that_of_python_and_changes_nothing(threads: int) -> None:
-    ours, theirs = make("QtabOwn/Countdown-v0", 6, threads=threads)
-    ours.reset(seed=4)
-    ours.step([0, 1, 0, 1, 0, 1])
-    untouched = copy.deepcopy(ours)
-    with pytest.raises(KeyError, match="the third action") as raised:
-        ours.step([0, 1, 1, 3, 0, 3])
+    name, message, failing = "QtabOwn/Countdown-v0", "the third action", [0, 1, 1, 3, 0, 3]
+    raised = step_error_changes_nothing(name, threads, [[0, 1, 0, 1, 0, 1]], failing, [1, 0, 2, 1, 0, 1], message)
     assert any("transition" in str(entry) for entry in raised.traceback)
-    assert ours.is_native
-    for _ in range(5):
-        assert_equal(ours.step([1, 0, 2, 1, 0, 1]), untouched.step([1, 0, 2, 1, 0, 1]))
+    _, theirs = make(name, 6)
     theirs.reset(seed=4)
-    with pytest.raises(KeyError, match="the third action"):
-        theirs.step([0, 1, 1, 3, 0, 3])
+    with pytest.raises(KeyError, match=message):
+        theirs.step(failing)
 
 
 @pytest.mark.parametrize("mode", [AutoresetMode.SAME_STEP, AutoresetMode.NEXT_STEP])
 def test_the_error_of_a_reset_is_that_of_python_and_changes_nothing(mode: AutoresetMode) -> None:
-    first, _, third = np.random.default_rng(8).random(3)
-    ours, _ = make("QtabOwn/Countdown-v0", 3, mode, unlucky=float(first))
-    ours.reset(seed=0)
-    ours.step([1, 0, 1])
-    before = ours.checkpoint()
-    with pytest.raises(ValueError, match="no first state"):
-        ours.reset(seed=[5, None, 8])
-    assert (ours.np_random_seed, ours.checkpoint()) == ((0, 1, 2), before)
-    assert ours.is_native
-
-    # The reset after an episode, which draws the third number of the generator.
-    ours, theirs = make("QtabOwn/Countdown-v0", 3, mode, unlucky=float(third), max_episode_steps=1)
-    assert_equal(ours.reset(seed=[0, 8, 1]), theirs.reset(seed=[0, 8, 1]))
-    if mode is AutoresetMode.NEXT_STEP:
-        assert_equal(ours.step([1, 1, 1]), theirs.step([1, 1, 1]))
-    before = ours.checkpoint()
-    for _ in range(2):
-        with pytest.raises(ValueError, match="no first state"):
-            ours.step([1, 1, 1])
-        assert ours.checkpoint() == before
-    assert ours.is_native
+    reset_error_changes_nothing("QtabOwn/Countdown-v0", mode)
 
 
 def test_a_state_of_the_options_and_the_number_of_an_action() -> None:
@@ -204,17 +174,7 @@ def test_a_state_of_the_options_and_the_number_of_an_action() -> None:
 
 
 def test_stable_baselines3_gets_what_its_own_vector_environment_gives() -> None:
-    vec_env = pytest.importorskip("stable_baselines3.common.vec_env")
-    name = "QtabOwn/Countdown-v0"
-    ours = qtab.sb3.VecEnv(name, 3, seed=1, max_episode_steps=4)
-    theirs = vec_env.DummyVecEnv([lambda: gym.make(name, max_episode_steps=4)] * 3)
-    theirs.seed(1)
-    assert np.array_equal(ours.reset(), theirs.reset())
-    for row in np.random.default_rng(0).integers(0, 3, (40, 3)):
-        one, other = ours.step(row), theirs.step(row)
-        assert [part.tobytes() for part in one[:3]] == [part.tobytes() for part in other[:3]]
-        assert repr(one[3]) == repr(other[3])
-    assert ours.venv.is_native
+    in_lockstep_with_dummy_vec_env("QtabOwn/Countdown-v0")
 
 
 def test_make_vec_steps_in_rust() -> None:
