@@ -33,6 +33,7 @@ from qtab.compilation.checks.known_functions import (
     DRAWS_DIFFERENT,
     MATH_ADVICE,
     MATH_ROUNDED,
+    MATH_TESTS,
     OTHER_MATH,
 )
 from qtab.compilation.checks.lost_numbers import MAKE_ARRAYS, LostNumbers
@@ -204,6 +205,8 @@ class Checks(TypedCode):
             return self._method_call(statement, scope, given)
         if isinstance(function, types.NumberClass):
             of, value = function.instance_type, types.unliteral(given[0]) if given else None
+            if given and not isinstance(value, NUMBERS):
+                return self.refuse(expression, f"{of} of {value}", "convert a number")
             if of == types.int64 and isinstance(value, types.Float):
                 return self.replace(statement, scope, to_int, expression.args, [types.float64])
             if of in FLOAT_RANGE_CHECKS and isinstance(value, types.Float):
@@ -241,6 +244,9 @@ class Checks(TypedCode):
         if key not in MATH:
             advice = MATH_ADVICE.get(name, OTHER_MATH)
             return self.refuse(expression, f"math.{name} may round differently in compiled code", advice)
+        kinds = [types.unliteral(self.type_of(one)) for one in expression.args]
+        if types.float32 in kinds and name not in (*MATH_ROUNDED, *MATH_TESTS):
+            return self.refuse(expression, f"math.{name} of a float32", "convert it: float(...)")
         integer = name in MATH_ROUNDED and isinstance(types.unliteral(self.type_of(expression.args[0])), types.Integer)
         check = self.check(exact_integer, scope, expression.args, expression.loc) if integer else []
         return [*check, *self.replace(statement, scope, MATH[key], expression.args, None)]
