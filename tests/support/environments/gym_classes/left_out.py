@@ -109,7 +109,8 @@ class Assigned(Moves):
         first, second = self.move(), self.move()
         self.nothing()
         values = self.array()
-        return float(any([first, second])) + float([second, first][0]) + len(values)
+        made = np.array([float(self.move()), self.np_random.random()], dtype=np.float64)
+        return float(any([first, second])) + float([second, first][0]) + len(values) + made[0] + made[1]
 
 
 class ShortCircuits(Moves):

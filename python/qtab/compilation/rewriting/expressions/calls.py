@@ -85,7 +85,9 @@ def arguments(scope: "Expressions", node: ast.Call) -> tuple[list[Value], dict[s
         if keyword.arg is None:
             raise scope.refuse(node, "arguments are unpacked from a dict", "write the arguments")
         named[keyword.arg] = scope.expression(keyword.value)
-    if named and len(values) + len(named) > 1:  # compiled code evaluates them in the order of the parameters
+    # Compiled code evaluates them in the order of the parameters, which does not matter for constants, such as a dtype.
+    computed = any(not value.is_fixed or scope.has_effects(value) for value in named.values())
+    if computed and len(values) + len(named) > 1:
         for value in (*values, *named.values()):
             scope.no_effects(value, node, "a call among arguments with names")
     return values, named
