@@ -43,6 +43,13 @@ class OfHelper(ExtraEnv):
         return cell, reward, terminated, truncated, info
 
 
+class OfBaseByIndex(ExtraEnv):
+    def step(self, action):
+        given = super().step(action)[4]  # here
+        given["cell"] = self.cell
+        return self.cell, 0.0, False, False, {}
+
+
 class Shared(ExtraEnv):
     def step(self, action):
         return self.cell, float(TOTALS["steps"]), False, False, TOTALS  # here
@@ -78,7 +85,7 @@ def refusal(cls: Any) -> NotCompilable:
     return caught.value
 
 
-@pytest.mark.parametrize("cls", [OfModule, OfObject, OfHelper], ids=lambda cls: cls.__name__)
+@pytest.mark.parametrize("cls", [OfModule, OfObject, OfHelper, OfBaseByIndex], ids=lambda cls: cls.__name__)
 def test_dicts_of_others_are_not_changed(cls: Any) -> None:
     lines, first = inspect.getsourcelines(cls)
     (marked,) = [number for number, line in enumerate(lines, first) if "# here" in line]

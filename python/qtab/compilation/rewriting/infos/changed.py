@@ -47,17 +47,17 @@ def _methods(attributes: Attributes) -> Iterator[Source]:
 
 def _names(source: Source) -> set[str]:
     """Returns the names of info dicts: those that are returned last, and those that a ``step`` or ``reset`` gives."""
-    targets = [target for one in ast.walk(source.node) if isinstance(one, ast.Assign) for target in one.targets]
-    last = [
-        target.elts[-1]
-        for target in targets
-        if isinstance(target, ast.Tuple | ast.List) and len(target.elts) in LENGTHS.values()
-    ]
-    called = {one.id for one in last if isinstance(one, ast.Name) and any(map(_is_info, _values(source, one.id)))}
-    return info_names(source.node) | called
+    found = info_names(source.node)
+    for one in ast.walk(source.node):
+        if isinstance(one, ast.Assign) and any(map(_is_info, ast.walk(one.value))):
+            for target in one.targets:
+                last = target.elts[-1] if isinstance(target, ast.Tuple | ast.List) else target
+                if isinstance(last, ast.Name):
+                    found.add(last.id)
+    return found
 
 
-def _is_info(node: ast.expr) -> bool:
+def _is_info(node: ast.AST) -> bool:
     return isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in LENGTHS
 
 
