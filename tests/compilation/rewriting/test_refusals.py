@@ -1,6 +1,7 @@
 """What cannot be rewritten is refused by name: the file, the line, the code, and what to write instead."""
 
 import copy
+import enum
 import inspect
 from pathlib import Path
 from typing import Any
@@ -209,3 +210,25 @@ def test_an_attribute_keeps_its_value_until_it_is_assigned() -> None:
 )
 def test_attributes_that_outlive_an_episode_are_named(env: gym.Env, kept: tuple[str, ...]) -> None:
     assert rewrite(env).kept_between_episodes == kept
+
+
+class Heading(enum.Enum):
+    NORTH = 0
+    EAST = 1
+
+
+def test_a_member_of_an_enum_that_changes_is_named_with_its_value() -> None:
+    class Turns(walk.Base):
+        def reset(self, *, seed=None, options=None):
+            self.heading = Heading.EAST
+            self.path = []
+            return super().reset(seed=seed)
+
+        def change(self, action):
+            self.path.append(action)
+            return 1.0 if self.heading == Heading.EAST else 0.0
+
+    with pytest.raises(NotCompilable, match=r"self\.heading is a member of Heading that changes") as caught:
+        rewrite(Turns())
+    assert caught.value.advice == "keep its number, as in self.heading = Heading.EAST.value"
+    assert all("path" not in problem for problem in caught.value.problems)

@@ -1,6 +1,7 @@
 """The attributes of the environment: which are state, which are constant, and the fields of the record."""
 
 import ast
+import enum
 import inspect
 from collections.abc import Callable, Iterator, Mapping
 from types import FunctionType
@@ -227,6 +228,11 @@ def _not_stored(name: str, value: Any) -> tuple[str, str]:
         )
     if isinstance(value, np.random.Generator | np.random.RandomState):
         return f"self.{name} is a second random generator", "draw from self.np_random"
+    if isinstance(value, enum.Enum):
+        return (
+            f"self.{name} is a member of {kind} that changes",
+            f"keep its number, as in self.{name} = {kind}.{value.name}.value",
+        )
     return f"self.{name} is an object of type {kind} that changes", "keep its numbers as attributes of the environment"
 
 

@@ -95,8 +95,8 @@ class Program:
         """The errors, for vector environments, for code that is left out and that may fail or log messages."""
         self.unread: dict[str, NotCompilable] = {}
         """The attributes that are assigned and never read, and the errors for those that reset does not assign."""
-        self.reset_unread: set[str] = set()
-        """Those of them that ``reset`` always assigns."""
+        self.reset_unread: set[str] | None = None
+        """Those of them that ``reset`` always assigns; None before that is known."""
         self.shown_views: list[tuple[frozenset[str], NotCompilable]] = []
         """The attributes whose memory observations share in Python, and the errors if it is shown that they change."""
         self.mask: tuple[str, ast.expr | None] = "", None
@@ -108,7 +108,7 @@ class Program:
 
     def refused_in_vectors(self) -> NotCompilable | None:
         """Returns the error for code that is left out, and whose effect a vector environment would show."""
-        kept = [error for name, error in self.unread.items() if name not in self.reset_unread]
+        kept = [error for name, error in self.unread.items() if name not in (self.reset_unread or ())]
         return next(iter([*self.left_out, *kept]), None)
 
     def key(self, function: FunctionType, owner: type | None, values: dict[str, Value]) -> Any:

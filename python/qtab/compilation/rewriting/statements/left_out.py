@@ -71,7 +71,9 @@ def is_growing_list(scope: "Expressions", node: ast.expr) -> bool:
             known = program.attributes
             base = scope.fixed.get(own)
             is_left_out = name in known.growing and method in GROWING and name not in known.read
-            is_made = name in program.reset_unread or f"{UNREAD}{name}" in scope.flow.assigned
+            is_made = f"{UNREAD}{name}" in scope.flow.assigned
+            if program.phase == "step":  # unknown if reset cannot be compiled
+                is_made = program.reset_unread is None or name in program.reset_unread
             if base is None or base.fixed is not specials.SELF or not (is_left_out and is_made):
                 return False
             values = [*node.args, *[keyword.value for keyword in node.keywords]]
