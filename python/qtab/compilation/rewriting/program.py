@@ -18,7 +18,7 @@ MAX_INLINE = 64
 MAX_BYTES = 1 << 24
 """The most bytes of a constant array."""
 
-UNREAD = "unread "
+STALE = "stale attribute "
 """The beginning of the entries in a flow of attributes that are assigned and never read."""
 
 
@@ -93,9 +93,9 @@ class Program:
         """The info dicts that ``reset`` and ``step`` return, with their functions."""
         self.left_out: list[NotCompilable] = []
         """The errors, for vector environments, for code that is left out and that may fail or log messages."""
-        self.unread: dict[str, NotCompilable] = {}
+        self.stale: dict[str, NotCompilable] = {}
         """The attributes that are assigned and never read, and the errors for those that reset does not assign."""
-        self.reset_unread: set[str] | None = None
+        self.stale_in_reset: set[str] | None = None
         """Those of them that ``reset`` always assigns; None before that is known."""
         self.shown_views: list[tuple[frozenset[str], NotCompilable]] = []
         """The attributes whose memory observations share in Python, and the errors if it is shown that they change."""
@@ -108,7 +108,7 @@ class Program:
 
     def refused_in_vectors(self) -> NotCompilable | None:
         """Returns the error for code that is left out, and whose effect a vector environment would show."""
-        kept = [error for name, error in self.unread.items() if name not in (self.reset_unread or ())]
+        kept = [error for name, error in self.stale.items() if name not in (self.stale_in_reset or ())]
         return next(iter([*self.left_out, *kept]), None)
 
     def key(self, function: FunctionType, owner: type | None, values: dict[str, Value]) -> Any:

@@ -18,7 +18,7 @@ from qtab.compilation.rewriting.infos.changed import check_changed_infos
 from qtab.compilation.rewriting.infos.masks import add_action_mask
 from qtab.compilation.rewriting.infos.shown import Shown, shown_of
 from qtab.compilation.rewriting.observations import observation_code
-from qtab.compilation.rewriting.program import UNREAD, Compiled, Program, as_float
+from qtab.compilation.rewriting.program import STALE, Compiled, Program, as_float
 from qtab.compilation.rewriting.source.sources import Source, source_of
 from qtab.compilation.rewriting.user_functions import called, compiled_function
 from qtab.compilation.rewriting.values import BOOL, INT, Scalar, TupleKind, Value, constant, in_words
@@ -143,7 +143,7 @@ def _rewritten(env: gym.Env, attributes: Attributes, program: Program) -> Rewrit
     except Follows:  # to find the problems of step as well
         _method(program, "step")
         raise
-    program.reset_unread = {name.removeprefix(UNREAD) for name in reset.flow.assigned if name.startswith(UNREAD)}
+    program.stale_in_reset = {name.removeprefix(STALE) for name in reset.flow.assigned if name.startswith(STALE)}
     step = _method(program, "step")
     _add_top(program, "reset", reset)
     _add_top(program, "step", step)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from qtab.compilation.rewriting import specials
 from qtab.compilation.rewriting.attributes import MISSING
-from qtab.compilation.rewriting.program import UNREAD
+from qtab.compilation.rewriting.program import STALE
 from qtab.compilation.rewriting.source.syntax import GROWING
 from qtab.compilation.rewriting.statements.effects import check_pure
 from qtab.compilation.rewriting.values import Scalar, kind_of
@@ -48,9 +48,9 @@ def note_attribute(scope: "Expressions", node: ast.AST, name: str, is_changed: b
         is_changed: Whether its value before is used, as in an augmented assignment.
     """
     if not is_changed:
-        scope.flow.assigned.add(f"{UNREAD}{name}")
+        scope.flow.assigned.add(f"{STALE}{name}")
     reason = f"self.{name} keeps its value from one episode to the next, and compiled code leaves it out,"
-    scope.program.unread.setdefault(name, scope.refuse(node, reason, f"assign self.{name} in reset"))
+    scope.program.stale.setdefault(name, scope.refuse(node, reason, f"assign self.{name} in reset"))
 
 
 def is_info_update(scope: "Statements", node: ast.expr) -> bool:
@@ -71,9 +71,9 @@ def is_growing_list(scope: "Expressions", node: ast.expr) -> bool:
             known = program.attributes
             base = scope.fixed.get(own)
             is_left_out = name in known.growing and method in GROWING and name not in known.read
-            is_made = f"{UNREAD}{name}" in scope.flow.assigned
+            is_made = f"{STALE}{name}" in scope.flow.assigned
             if program.phase == "step":  # unknown if reset cannot be compiled
-                is_made = program.reset_unread is None or name in program.reset_unread
+                is_made = program.stale_in_reset is None or name in program.stale_in_reset
             if base is None or base.fixed is not specials.SELF or not (is_left_out and is_made):
                 return False
             values = [*node.args, *[keyword.value for keyword in node.keywords]]
