@@ -106,7 +106,7 @@ class OrdinaryEnv:
     def _repetition(
         self, failed: FailedCall, number: type[int | np.int64] = int, reads_masks: bool = False
     ) -> Repetition:
-        twin = ClassTwin(self.env, self.record, self.compiled.observation)
+        twin = ClassTwin(self.env, self.record, self.compiled.observation, self.compiled.has_action_mask)
         return Repetition(twin, failed.seed, self._name, number, reads_masks)
 
     def _compiled(self, observation: ObservationLayout) -> CompiledEnv:
@@ -150,7 +150,7 @@ class OrdinaryEnv:
             raise _of_users_line(rewritten.lines, refusal) from None
 
     def _prove(self, compiled: CompiledEnv) -> None:
-        twin = ClassTwin(self.env, self.record, compiled.observation)
+        twin = ClassTwin(self.env, self.record, compiled.observation, compiled.has_action_mask)
         try:
             functions: list[Any] = [type(self.env).step, type(self.env).reset]
             prove(twin, compiled, self.parameters, functions)

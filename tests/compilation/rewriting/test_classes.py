@@ -10,6 +10,25 @@ from qtab.compilation.rewriting import rewrite
 from support.environments.gym_classes import control, games, grids, operations
 from support.lockstep.rewriting import assert_equal_steps, assert_nothing_refused, compiled_with_checks
 
+
+class ConstantDictEnv(gym.Env):
+    """Its first observation is a dict of constants."""
+
+    observation_space = gym.spaces.Dict({"cell": gym.spaces.Discrete(5), "found": gym.spaces.Discrete(2)})
+    action_space = gym.spaces.Discrete(2)
+
+    def reset(self, *, seed=None, options=None):
+        super().reset(seed=seed)
+        self.cell = 0
+        return {"cell": 0, "found": 0}, {}
+
+    def step(self, action):
+        self.cell = min(self.cell + action, 4)
+        if self.cell == 4 and self.np_random.random() < 0.5:
+            return {"cell": 4, "found": 1}, 1.0, True, False, {}
+        return {"cell": self.cell, "found": 0}, 0.0, False, False, {}
+
+
 CLASSES: dict[str, Callable[[], gym.Env]] = {
     "grid world of the documentation": grids.GridWorldEnv,
     "cliff with tuples and a set": grids.CliffEnv,
@@ -33,6 +52,7 @@ CLASSES: dict[str, Callable[[], gym.Env]] = {
     "base class of the user": games.BaseGame,
     "inheritance": games.RunningGame,
     "gambler": games.GamblerEnv,
+    "observation of constants": ConstantDictEnv,
 }
 MASKS: dict[str, Callable[[Any], Any]] = {"tic-tac-toe": lambda env: env.action_masks()}
 EPISODES_END = {name for name in CLASSES if not name.startswith(("pendulum", "subclass of Gym", "cliff"))}

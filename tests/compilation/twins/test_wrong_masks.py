@@ -12,6 +12,7 @@ from qtab.compilation.twins.class_twin import wrong_mask
 
 pytest.importorskip("numba")
 
+CALLS: list[int] = []
 SETTINGS: dict[str, Any] = {"episodes": 40, "max_episode_steps": 50, "seed": 4, "progress": False}
 
 
@@ -50,6 +51,14 @@ class Info(gym.Env):
         return self.cell, 0.0, self.cell == 19, False, {"action_mask": np.array([1, 1 + self.cell // 12])}
 
 
+class Counts(Method):
+    """Its mask has an effect, so that it is not compiled."""
+
+    def action_masks(self):
+        CALLS.append(self.cell)
+        return np.array([True, True])
+
+
 @pytest.fixture(autouse=True)
 def _files_of_code(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
@@ -76,6 +85,13 @@ def test_a_run_without_masks_does_not_read_them() -> None:
     assert runs[0].config.backend == "numba"
     assert runs[0].tables.tobytes() == runs[1].tables.tobytes()
     assert runs[0].episode_returns.tobytes() == runs[1].episode_returns.tobytes()
+
+
+def test_masks_that_are_not_compiled_are_not_computed() -> None:
+    with pytest.raises(ValueError, match=r"a list is changed in `CALLS\.append"):
+        qtab.train(Counts(), action_mask=True, backend="numba", **SETTINGS)
+    assert qtab.train(Counts(), action_mask=False, backend="numba", **SETTINGS).config.backend == "numba"
+    assert CALLS == []
 
 
 def test_what_is_wrong_with_a_mask() -> None:

@@ -11,7 +11,7 @@ import numpy as np
 
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting.attributes import Attributes
-from qtab.compilation.rewriting.values import Array, Scalar, TupleKind, Value, kind_of
+from qtab.compilation.rewriting.values import Array, DictKind, Scalar, TupleKind, Value, kind_of
 
 MAX_INLINE = 64
 """The most elements of a constant array that are written as numbers; larger ones are bytes."""
@@ -174,6 +174,9 @@ class Program:
         if isinstance(fixed, tuple | list):
             parts = tuple(self.lift(Value(fixed=part), refuse) for part in fixed)
             return tuple_value(parts)
+        if type(fixed) is dict and fixed and all(isinstance(key, str) for key in fixed):
+            made = tuple_value(tuple(self.lift(Value(fixed=part), refuse) for part in fixed.values()))
+            return Value(DictKind(tuple(fixed), made.kind.items), made.code, parts=made.parts)
         if fixed is None:
             raise refuse("None is used as a value", "use a number for 'none', such as -1 or math.nan")
         if isinstance(fixed, str | bytes):

@@ -94,13 +94,17 @@ class ClassTwin:
         env: The environment.
         record: The record with the observation.
         observation: The layout of its observations.
+        has_masks: Whether its action masks are compiled. They are not computed otherwise.
     """
 
-    def __init__(self, env: gym.Env, record: np.dtype[Any], observation: ObservationLayout) -> None:
+    def __init__(
+        self, env: gym.Env, record: np.dtype[Any], observation: ObservationLayout, has_masks: bool = True
+    ) -> None:
         self.env: Any = twin_of(env)
         self.record, self.observation = record, observation
         space: Any = env.action_space
         self.num_actions, self._start = int(space.n), int(space.start)
+        self._has_masks = has_masks
         self.info: Any = None
         """The last info dict."""
         self.mask: Any = None
@@ -132,7 +136,8 @@ class ClassTwin:
     def observed(self, given: Any) -> dict[str, Any]:
         """Returns the numbers of an observation, and the action mask if there is one, by their names."""
         numbers = {"observation": self.observation.numbers(_in_order(self.env.observation_space, given))}
-        self.mask = self.env.action_masks() if hasattr(self.env, "action_masks") else self.info.get("action_mask")
+        if self._has_masks:
+            self.mask = self.env.action_masks() if hasattr(self.env, "action_masks") else self.info.get("action_mask")
         if self.mask is not None:
             numbers["action_mask"] = np.asarray(self.mask).astype(np.uint8)
         return numbers

@@ -81,13 +81,17 @@ def compiled_class(
     if is_of_library(type(env.unwrapped)):
         reason = "Numba compiles your own classes, derived from gymnasium.Env or qtab.FunctionalEnv"
         raise NotInRustError(reason, "leave out backend")
+
+    def checked(one: "OrdinaryEnv") -> None:
+        if needs_masks and one.rewritten.mask_refusal is not None:
+            raise one.rewritten.mask_refusal
+        if check is not None:
+            check(one)
+
     try:
-        compiled = OrdinaryEnv(_unwrapped(env), _name_of(env), check)
-        if needs_masks and compiled.rewritten.mask_refusal is not None:
-            raise compiled.rewritten.mask_refusal
+        return OrdinaryEnv(_unwrapped(env), _name_of(env), checked)
     except NotCompilable as refusal:
         raise NotInRustError(refusal.place_and_reason, refusal.advice, refusal.problems) from None
-    return compiled
 
 
 def external_of(env: "OrdinaryEnv", repeat: Callable[[FailedCall], Any]) -> _core.ExternalEnv:
