@@ -71,7 +71,7 @@ def _check_copies(env: gym.Env, make: Callable[[], gym.Env], one: "OrdinaryEnv")
 def _compare(ours: dict[str, Any], theirs: dict[str, Any], one: "OrdinaryEnv") -> None:
     from qtab.compilation.twins.plain_data import is_plain, mutable_parts, same
 
-    if "_np_random" in ours:
+    if ours.get("_np_random") is not None:
         reason = "its constructor resets it, or draws from self.np_random"
         raise NotInRustError(reason, "do not reset in `__init__`, nor draw")
     for name in sorted(one.rewritten.used & (ours.keys() | theirs.keys())):

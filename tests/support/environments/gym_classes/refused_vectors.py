@@ -178,11 +178,12 @@ class Numbered(DriftEnv):
         self.number = next(NUMBERS)
 
     def reset(self, *, seed=None, options=None):
-        self.total, self.last, self.name = 0.0, None, "none"
+        self.total, self.last, self.name, self.before = 0.0, None, "none", None
         return super().reset(seed=seed)
 
     def step(self, action):
         self.last = (action, action == 1)
         self.total += 0.5 * float(action)
         self.name = "right" if action == 1 else "left"
+        self.before = self.position.copy()
         return super().step(action)

@@ -69,7 +69,7 @@ def _effect(
                 if inner is not None:
                     return inner
         if isinstance(one, ast.Name | ast.Attribute):
-            found = _of_operators(scope, _constant_of(scope, one, function, own), seen)
+            found = _of_operators(scope, constant_of(scope, one, function, own), seen)
             if found is not None:
                 return found
         if isinstance(one, ast.Call):
@@ -79,7 +79,7 @@ def _effect(
     return None
 
 
-def _constant_of(scope: "Expressions", node: ast.expr, function: FunctionType, own: str | None) -> Any:
+def constant_of(scope: "Expressions", node: ast.expr, function: FunctionType, own: str | None) -> Any:
     """Returns the constant that a name, or an attribute, stands for; ``MISSING`` if it is none."""
     if isinstance(node, ast.Name):
         found = scope.fixed.get(node.id) if function is scope.source.function else None
@@ -89,7 +89,7 @@ def _constant_of(scope: "Expressions", node: ast.expr, function: FunctionType, o
     if isinstance(node.value, ast.Name) and node.value.id == own:
         known = scope.program.attributes
         return MISSING if node.attr in known.assigned else vars(known.env).get(node.attr, known.find(node.attr)[0])
-    owner = _constant_of(scope, node.value, function, own)
+    owner = constant_of(scope, node.value, function, own)
     return MISSING if owner is MISSING or runs_code(owner, node.attr) else getattr(owner, node.attr, MISSING)
 
 

@@ -8,8 +8,8 @@ from qtab.compilation.rewriting import specials
 from qtab.compilation.rewriting.attributes import MISSING
 from qtab.compilation.rewriting.program import STALE
 from qtab.compilation.rewriting.source.syntax import GROWING
-from qtab.compilation.rewriting.statements.effects import check_pure
-from qtab.compilation.rewriting.values import Scalar, kind_of
+from qtab.compilation.rewriting.statements.effects import check_pure, constant_of
+from qtab.compilation.rewriting.values import Array, Scalar, kind_of
 
 if TYPE_CHECKING:
     from qtab.compilation.rewriting.expressions.expressions import Expressions
@@ -103,7 +103,11 @@ def _is_safe(scope: "Expressions", node: ast.expr) -> bool:
         case ast.Name(id=name):
             return name in scope.fixed or scope.is_set(name) or not scope.names.is_local(name)
         case ast.Attribute():
-            return _known(scope, node) is not MISSING
+            own = next(iter(scope.parameters), None)
+            is_constant = constant_of(scope, node, scope.source.function, own) is not MISSING
+            return is_constant or _known(scope, node) is not MISSING
+        case ast.Call(func=ast.Attribute(value=value, attr="copy"), args=[], keywords=[]):
+            return isinstance(kind_of(_known(scope, value)), Array)
         case ast.Tuple(elts=parts) | ast.List(elts=parts) | ast.BoolOp(values=parts):
             return all_safe(parts)
         case ast.IfExp(test=test, body=body, orelse=other):
