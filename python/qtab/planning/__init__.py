@@ -1,7 +1,8 @@
-"""The best policy of an environment, exact or the best known; the values of policies; dynamic programming."""
+"""The best policy of an environment; the values of policies; dynamic programming; least-squares policy iteration."""
 
 from qtab.planning.expected_updates import ExpectedUpdates
 from qtab.planning.gap import Gap
+from qtab.planning.least_squares import LeastSquaresPolicy, Transitions, lspi, lstdq
 from qtab.planning.optimum import Optimum
 from qtab.planning.policy_values import PolicyValues, policy_values
 from qtab.planning.solve import optimum
@@ -12,9 +13,13 @@ __all__ = [
     "ExpectedUpdates",
     "Gap",
     "Improvement",
+    "LeastSquaresPolicy",
     "Optimum",
     "PolicyValues",
     "StationaryPolicy",
+    "Transitions",
+    "lspi",
+    "lstdq",
     "optimum",
     "policy_evaluation",
     "policy_iteration",

@@ -11,9 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 from qtab._utils import checks, html
 from qtab._utils.arrays import numbers
 from qtab._utils.fields import with_fields
+from qtab._utils.linear_algebra import dependent_columns
 from qtab._utils.shown import counted
 from qtab.prediction.linear.chain import Chain
-from qtab.prediction.linear.features import dependent_features
 
 FloatArray: TypeAlias = NDArray[np.float64]
 Objective: TypeAlias = Literal["value_error", "bellman_error", "projected_bellman_error", "td_error"]
@@ -88,7 +88,7 @@ class LinearGeometry:
             ValueError: if the features are linearly dependent, or A is singular.
         """
         self._check_independent(self.features, "features")
-        if len(dependent_features(self.A)):
+        if len(dependent_columns(self.A)):
             raise ValueError(
                 "the expected update of TD must have one fixed point: with this distribution, A is singular"
             )
@@ -196,7 +196,7 @@ class LinearGeometry:
 
     def _check_independent(self, matrix: FloatArray, name: str) -> None:
         weighted = np.sqrt(self.distribution)[:, None] * matrix
-        dependent = dependent_features(weighted)
+        dependent = dependent_columns(weighted)
         if dependent:
             zero = [column for column in dependent if not weighted[:, column].any()]
             fault = f"{_listed(zero)} are zero there" if zero else f"{_listed(dependent)} are linearly dependent"

@@ -1,0 +1,233 @@
+"""LSTDQ: the linear action values of a policy, from a batch of transitions of any other policy."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from qtab._utils import checks
+from qtab._utils.arrays import numbers
+from qtab._utils.linear_algebra import dependent_columns
+from qtab._utils.shown import shown
+from qtab.planning.least_squares.transitions import Transitions
+
+FloatArray: TypeAlias = NDArray[np.float64]
+GivenFeatures: TypeAlias = ArrayLike | Callable[[Any], ArrayLike]
+"""The accepted forms of features; see :func:`feature_vectors`."""
+GivenActions: TypeAlias = ArrayLike | Callable[[Any], Any]
+"""The accepted forms of a policy; see :func:`chosen_actions`."""
+
+
+@dataclass(frozen=True, eq=False)
+class Batch:
+    """Transitions with their feature vectors."""
+
+    transitions: Transitions
+    x: FloatArray
+    """(n, d): the features of the states."""
+    next_x: FloatArray
+    """(n, d): the features of the next states, zero where these are terminal."""
+
+    def solve(self, next_actions: NDArray[np.int64], discount: float, epsilon: float) -> FloatArray:
+        """Returns w = A⁻¹ b as (d, actions), for the action of the policy in each next state.
+
+        Raises:
+            ValueError: if A is singular, or numbers overflowed.
+        """
+        batch, d, k = self.transitions, self.x.shape[1], self.transitions.n_actions
+        # φ(s, a) is x(s) in the block of the action, so that A consists of a block for each pair of actions.
+        A = np.zeros((k, d, k, d))  # noqa: N806 - the paper's symbol
+        b, squares = np.zeros((2, k, d))
+        with np.errstate(over="ignore", invalid="ignore"):
+            for action in range(k):
+                taken = batch.actions == action
+                x, next_x = self.x[taken], self.next_x[taken]
+                z = batch.weights[taken, None] * x
+                b[action], squares[action] = z.T @ batch.rewards[taken], (z * x).sum(axis=0)
+                A[action, :, action] += z.T @ x
+                for following in range(k):
+                    chosen = next_actions[taken] == following
+                    A[action, :, following] -= discount * (z[chosen].T @ next_x[chosen])
+        matrix = A.reshape(k * d, k * d) + epsilon * np.eye(k * d)
+        return self._solved(matrix, b.ravel(), np.sqrt(squares.ravel() + epsilon)).reshape(k, d).T
+
+    def _solved(self, matrix: FloatArray, b: FloatArray, sizes: FloatArray) -> FloatArray:
+        """Returns the solution of A w = b, where the features have given sizes.
+
+        Raises:
+            ValueError: if A is singular up to rounding errors, or numbers overflowed.
+        """
+        if not all(np.isfinite(array).all() for array in (matrix, b, sizes)):
+            raise ValueError("features and rewards must be smaller: their products exceed the range of float64")
+        # Scaled, since features of different sizes do not make A singular.
+        scale = np.where(sizes > 0.0, sizes, 1.0)
+        scaled = matrix / scale / scale[:, None]
+        try:
+            condition = np.linalg.norm(scaled, 1) * np.linalg.norm(np.linalg.inv(scaled), 1)
+        except np.linalg.LinAlgError:
+            condition = np.float64(np.inf)
+        if not condition * len(b) * np.finfo(np.float64).eps < 1.0:
+            raise ValueError(
+                "features must determine all weights, but A is singular: the transitions leave open "
+                f"{self._undetermined(dependent_columns(scaled))}; epsilon= makes A regular, as do more transitions or "
+                "fewer features"
+            )
+        weights: FloatArray = np.linalg.solve(scaled, b / scale) / scale
+        return weights
+
+    def _undetermined(self, columns: Sequence[int]) -> str:
+        """Describes the weights in given columns of A."""
+        d = self.x.shape[1]
+        never = [action for action in range(self.transitions.n_actions) if action not in self.transitions.actions]
+        if never:
+            return f"the weights of action {never[0]}, which is never taken"
+        if not columns:
+            return "all weights"
+        action = columns[0] // d
+        of_action = [column - action * d for column in columns if column // d == action]
+        listed = ", ".join(map(str, of_action[:8])) + (", ..." if len(of_action) > 8 else "")
+        return f"the weights of features {listed} of action {action}"
+
+
+def lstdq(
+    transitions: Transitions,
+    features: GivenFeatures,
+    policy: GivenActions,
+    discount: float,
+    *,
+    epsilon: float = 0.0,
+) -> FloatArray:
+    """Returns the weights of a policy's action values q(s, a) = x(s) · w_a, (d, actions) float64.
+
+    They are the fixed point of TD on the transitions, which can come from any other policy: w = A⁻¹ b with
+    A = εI + Σ φ(S, a) (φ(S, a) - γ φ(S', π(S')))ᵀ and b = Σ R φ(S, a), where φ(s, a) is x(s) in the block of the action
+    a, and zero elsewhere. M. Lagoudakis and R. Parr, "Least-squares policy iteration", Journal of Machine Learning
+    Research 4, 2003. It runs in NumPy.
+
+    Args:
+        transitions: The transitions.
+        features: x(s): (states, d) or (*cells, d) numbers, the feature vector of each observation that is an integer or
+            a few of them, counted from 0; or a function from an observation to (d,) numbers, such as
+            ``run.discretizer.feature_values`` of a run with a Fourier basis.
+        policy: The action in each state, counted from 0: a single one; (states,) or (*cells,) integers; or a function
+            from an observation to an action.
+        discount: The discount γ, in [0, 1].
+        epsilon: ε, at least 0: A begins as ε times the identity, which makes it regular, with values closer to zero.
+
+    Raises:
+        TypeError: for an argument of the wrong type.
+        ValueError: for an argument out of range, features or a policy that do not fit the observations, or if A is
+            singular, with the features whose weights are not determined.
+    """
+    discount, epsilon = checks.real("discount", discount, 0.0, 1.0), checked_epsilon(epsilon)
+    batch = batch_of(transitions, features)
+    return batch.solve(chosen_actions("policy", policy, transitions), discount, epsilon)
+
+
+def checked_epsilon(epsilon: float) -> float:
+    """Returns ε as a float.
+
+    Raises:
+        TypeError: if it is not a number.
+        ValueError: if it is negative or not finite.
+    """
+    checked = checks.finite("epsilon", epsilon)
+    if checked < 0.0:
+        raise ValueError(f"epsilon must be at least 0, got {checked:g}")
+    return checked
+
+
+def batch_of(transitions: Transitions, features: GivenFeatures) -> Batch:
+    """Returns transitions with their feature vectors.
+
+    Raises:
+        TypeError: for an argument of the wrong type.
+        ValueError: for features that do not fit the observations.
+    """
+    checks.instance("transitions", transitions, Transitions)
+    x = feature_vectors(features, transitions.observations)
+    next_x = np.zeros_like(x)
+    goes_on = ~transitions.terminated
+    if goes_on.any():
+        following = feature_vectors(features, transitions.next_observations[goes_on])
+        if following.shape[1:] != x.shape[1:]:
+            raise ValueError(f"features must return as many numbers each time, got {x.shape[1]} and {len(following.T)}")
+        next_x[goes_on] = following
+    return Batch(transitions, x, next_x)
+
+
+def feature_vectors(features: GivenFeatures, observations: NDArray[Any]) -> FloatArray:
+    """Returns the feature vectors of observations, (n, d) float64; see :func:`lstdq`.
+
+    Raises:
+        TypeError: if the features are not numbers, or an array is given for observations that are not integers.
+        ValueError: for another shape, or a number that is not finite.
+    """
+    if callable(features):
+        try:
+            given: Any = np.array([features(one) for one in _each(observations)])
+        except ValueError as error:
+            if "inhomogeneous" not in str(error):
+                raise
+            raise ValueError("features must return as many numbers each time") from None
+        vectors = numbers("features", given)
+        if vectors.ndim != 2:
+            raise ValueError(f"features must return a vector (d,), got shape {vectors.shape[1:]}")
+        return vectors
+    vectors = _looked_up("features", numbers("features", features), observations, axes=1)
+    return np.ascontiguousarray(vectors)
+
+
+def chosen_actions(name: str, policy: GivenActions, transitions: Transitions) -> NDArray[np.int64]:
+    """Returns the action of a policy in each next state, (n,); 0 in terminal states, whose values are zero.
+
+    Raises:
+        TypeError: if the actions are not integers.
+        ValueError: for a policy that does not fit the observations, or an action that does not exist.
+    """
+    goes_on, count = ~transitions.terminated, transitions.n_actions
+    chosen = np.zeros(len(transitions), np.int64)
+    following = transitions.next_observations[goes_on]
+    if callable(policy):
+        found = np.array([policy(one) for one in _each(following)] or [0])
+    elif np.ndim(policy) == 0:
+        found = np.array(policy)
+    else:
+        found = _looked_up(name, np.asarray(policy), following, axes=0)
+    if found.dtype.kind not in "iu":
+        raise TypeError(f"{name} must be the number of an action in each state, got {shown(policy)}")
+    wrong = (found < 0) | (found >= count)
+    if wrong.any():
+        raise ValueError(
+            f"{name} must be actions from 0 to {count - 1}, got {np.atleast_1d(found)[np.atleast_1d(wrong)][0]}"
+        )
+    chosen[goes_on] = found[: len(following)] if found.ndim else found
+    return chosen
+
+
+def _each(observations: NDArray[Any]) -> Sequence[Any]:
+    """Returns observations one by one: Python's numbers, or arrays."""
+    return observations.tolist() if observations.ndim == 1 else list(observations)
+
+
+def _looked_up(name: str, table: NDArray[Any], observations: NDArray[Any], axes: int) -> NDArray[Any]:
+    """Returns the items of a table for observations, which are its indices.
+
+    Raises:
+        TypeError: if observations are not integers.
+        ValueError: if the table has another number of axes, or lacks an observation.
+    """
+    if observations.dtype.kind not in "iu":
+        raise TypeError(f"{name} must be a function of the observation for observations that are not integers")
+    index = observations.reshape(len(observations), -1).T
+    if table.ndim != len(index) + axes:
+        expected = "(states" if len(index) == 1 else "(*cells"
+        raise ValueError(f"{name} must have the shape {expected}{', d' if axes else ','}), got {table.shape}")
+    for numbers_of, size in zip(index, table.shape, strict=False):
+        outside = numbers_of[(numbers_of < 0) | (numbers_of >= size)]
+        if len(outside):
+            raise ValueError(f"{name} must have an item for each observation, got {size} and observation {outside[0]}")
+    items: NDArray[Any] = table[tuple(index)]
+    return items
