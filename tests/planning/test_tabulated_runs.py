@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import qtab
+from qtab.planning.tabulated_runs import on_table
 from support.environments.errand import SETTINGS, Errand, ErrandClass
 from support.environments.own.gymnasium_class import Corridor
 
@@ -87,6 +88,51 @@ def test_the_picture_of_the_difference_has_the_costs_of_the_run(best: qtab.Optim
     ax = qtab.plots.difference(run, best)
     assert ax.get_title(loc="left").startswith("Errand: cost against an optimal policy")
     plt.close("all")
+
+
+class BoxCorridor(Corridor):
+    """A corridor without chance or coins, whose observation is the place as a Box."""
+
+    def __init__(self) -> None:
+        super().__init__(slip=0.0)
+        self.observation_space: Any = gym.spaces.Box(0.0, 4.0, (1,), np.float64)
+
+    def reset(self, **given: Any) -> Any:
+        _, info = super().reset(**given)
+        self.coins = []
+        return np.array([float(self.place)]), info
+
+    def step(self, action: int) -> Any:
+        place, *others = super().step(action)
+        return np.array([float(place)]), *others
+
+
+@pytest.mark.parametrize("initial_q", [0.0, 1.0])
+@pytest.mark.parametrize("algorithm", ["q_learning", "double_q_learning"])
+def test_the_values_of_fourier_features_are_sums_over_all_weights(algorithm: Any, initial_q: float) -> None:
+    settings: Any = {"discretizer": "fourier", "learning_rate": 0.05, "discount": 1.0, "initial_q": initial_q}
+    runs = [
+        qtab.train(limited(BoxCorridor()), algorithm=algorithm, seed=1, episodes=episodes, progress=False, **settings)
+        for episodes in (1, 300)
+    ]
+    table = qtab.tabulate(limited(BoxCorridor()))
+    best = qtab.optimum(table)
+    for run in runs:
+        [played] = qtab.evaluate(run, 1, seed=0, env=limited(BoxCorridor())).returns
+        assert best.gap(run).greedy_return == pytest.approx(played)
+        on_states = on_table(run, table)
+        observations = np.array([[float(place[0])] for place in table.observations])
+        assert np.array_equal(on_states.tables.sum(axis=0), run.q_values(observations))
+    assert best.gap(runs[1]).greedy_return == best.expected_return == pytest.approx(-4.0)
+    values = qtab.policy_values(table, runs[1])
+    assert values.expected_return == pytest.approx(-4.0)
+    many = qtab.train_many(
+        lambda: limited(BoxCorridor()), algorithm=algorithm, seeds=2, episodes=50, tables=True, threads=1, **settings
+    )
+    assert best.gap(many).greedy_return.tolist() == [best.gap(run).greedy_return for run in many]
+    matplotlib = pytest.importorskip("matplotlib.pyplot")
+    qtab.plots.difference(runs[1], best)
+    matplotlib.close("all")
 
 
 def test_a_diagnosis_knows_the_goal_from_the_table(best: qtab.Optimum) -> None:

@@ -12,13 +12,13 @@ from qtab.config.functions import checked_mask
 from qtab.config.options import OPTIONS
 from qtab.config.origin import Origin, copied, trained_on
 from qtab.discretizers import Discretizer
-from qtab.discretizers.base import check_binary
 from qtab.discretizers.identity import Identity
 from qtab.discretizers.time_aware import TimeAware
 from qtab.envs.origin.describe import describe
 from qtab.envs.origin.description import differences
 from qtab.envs.registry import gymnasium_id
 from qtab.envs.tabulation.tabulated_env import TabulatedEnv
+from qtab.results.action_values import weighted_sum
 from qtab.results.run import Run
 from qtab.results.runs import Runs
 
@@ -48,9 +48,8 @@ def on_table(run: AnyRun, table: TabulatedEnv) -> AnyRun:
     found = [] if description is None else differences(description, made_of)
     if found:
         raise ValueError(f"run must be on the environment that the table was made of, got another one: {found[0]}")
-    check_binary("run", run.discretizer, "be compared with a table")
     cells: Discretizer = Identity.of_space(table.observation_space, len(run.actions))
-    rows = np.array([run.discretizer.active_rows(observation) for observation in table.observations])
+    rows = np.array([run.discretizer.active_features(observation) for observation in table.observations])
     changes: dict[str, Any] = {"tables": None if run.tables is None else _of_states(run, run.tables, rows)}
     masks = _masks(run, table, rows)
     if isinstance(run.discretizer, TimeAware):
@@ -67,8 +66,11 @@ def on_table(run: AnyRun, table: TabulatedEnv) -> AnyRun:
     return replace(run, config=config, discretizer=cells, actions=run.actions, **changes)
 
 
-def _of_states(run: Run | Runs, tables: NDArray[np.float64], rows: NDArray[np.int64]) -> NDArray[np.float64]:
-    """Returns (..., k, states, actions): the values of the states, added from left to right as a run adds them."""
+def _of_states(run: Run | Runs, tables: NDArray[np.float64], rows: NDArray[Any]) -> NDArray[np.float64]:
+    """Returns (..., k, states, actions): the values of the states, added in the order in which a run adds them."""
+    if run.discretizer.is_weighted:
+        values = [weighted_sum(rows, table) for table in tables.reshape(-1, *tables.shape[-2:])]
+        return np.reshape(values, (*tables.shape[:-2], len(rows), tables.shape[-1]))
     if isinstance(run.discretizer, TimeAware):
         # (..., steps, cells, actions): each step has a table of its own.
         steps = run.discretizer.max_episode_steps
@@ -81,7 +83,7 @@ def _of_states(run: Run | Runs, tables: NDArray[np.float64], rows: NDArray[np.in
     return total
 
 
-def _masks(run: Run | Runs, table: TabulatedEnv, rows: NDArray[np.int64]) -> NDArray[np.bool_] | None:
+def _masks(run: Run | Runs, table: TabulatedEnv, rows: NDArray[Any]) -> NDArray[np.bool_] | None:
     """Returns (..., states, actions): the mask of each state; None without masks."""
     function, count = run.config.action_mask, len(run.actions)
     if callable(function):
@@ -110,7 +112,9 @@ def _entered(table: TabulatedEnv) -> set[int]:
     return found
 
 
-def _initial(run: Run | Runs, rows: NDArray[np.int64]) -> Any:
+def _initial(run: Run | Runs, rows: NDArray[Any]) -> Any:
     """Returns the initial value of every state, as far as it is one number; otherwise the setting of the run."""
     initial = run.config.initial_q
-    return initial * rows.shape[1] if isinstance(initial, int | float) else (-1.0, 1.0)
+    if not isinstance(initial, int | float) or (initial and run.discretizer.is_weighted):
+        return (-1.0, 1.0)
+    return initial * rows.shape[1]
