@@ -60,6 +60,10 @@ PARTS: dict[str, tuple[Any, str]] = {
         "<Actions: 3, [-2.0, 0.0, 2.0]>",
     ),
     "axis": (lambda: run().axes[0], "<Axis position (m): 19 cells from -1.2 to 0.6>"),
+    "axis without cells": (
+        lambda: qtab.train("MountainCar-v0", discretizer="fourier", seed=0, episodes=1).axes[0],
+        "<Axis position (m): from -1.2 to 0.6>",
+    ),
     "state": (lambda: run().state, "<RunState of "),
     "recording": (lambda: run().recordings[0], "<Recording of episode 119: 200 actions>"),
     "snapshots": (lambda: run().snapshots, "<2 Snapshots, after episodes 60 to 120>"),

@@ -37,9 +37,12 @@ class Axis:
     """The unit; empty if there is none or it is unknown."""
     edges: NDArray[np.float64]
     """(cells + 1,): the ascending edges of the cells. With tile coding, the edges of an unshifted tiling; for integers,
-    the midpoints. The outermost edges are those of the space or of the discretizer; they can be infinite."""
+    the midpoints. The outermost edges are those of the space or of the discretizer; they can be infinite. With weighted
+    features, which have no cells, (2,): the limits."""
     values: tuple[str, ...] = ()
     """The names of the cells, if they have any, such as ``("no", "yes")``."""
+    has_cells: bool = True
+    """Whether the component is divided into cells or tiles."""
 
     @property
     def label(self) -> str:
@@ -50,7 +53,8 @@ class Axis:
         """Returns one line, without the edges."""
         cells = len(self.edges) - 1
         within = f"from {self.edges[0]:.6g} to {self.edges[-1]:.6g}" if cells else "of one value"
-        return f"<Axis {self.label}: {counted(cells, 'cell')} {within}>"
+        divided = f"{counted(cells, 'cell')} " if self.has_cells else ""
+        return f"<Axis {self.label}: {divided}{within}>"
 
 
 def run_quantities(config: Config, discretizer: "Discretizer") -> Quantities:
@@ -83,7 +87,10 @@ def axes_of(known: Quantities, discretizer: "Discretizer") -> tuple[Axis, ...]:
         return (Axis("steps taken", "", edges[0]), *axes_of(known, time_aware.cells))
     named = tuple(map(Quantity, discretizer.component_names))
     quantities = named or observation_quantities(known, len(edges))
-    return tuple(Axis(one.name, one.unit, found, one.values) for one, found in zip(quantities, edges, strict=True))
+    has_cells = not discretizer.is_weighted
+    return tuple(
+        Axis(one.name, one.unit, found, one.values, has_cells) for one, found in zip(quantities, edges, strict=True)
+    )
 
 
 def action_names(known: Quantities, actions: Actions) -> tuple[str, ...]:
