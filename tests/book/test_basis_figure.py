@@ -1,4 +1,7 @@
-"""Figure 9.5: its walks and its updates are those of estimate_values to the bit, and the Fourier basis is better."""
+"""Figure 9.5: its walks and its updates are those of estimate_values to the bit, and the Fourier basis is better.
+
+Section 9.5.2: the Fourier basis learns faster than tile coding on Mountain Car.
+"""
 
 import dataclasses
 from typing import Any
@@ -68,3 +71,12 @@ def test_the_fourier_basis_learns_faster() -> None:
         assert one.mean[-1] < one.mean[0]
         assert one.mean[-1] < other.mean[-1]
     assert len(result.plot().lines) == 6
+
+
+def test_the_fourier_basis_learns_faster_than_tile_coding_on_mountain_car() -> None:
+    *fourier, tiles = qtab.book.run("9.5.2", runs=4, seed=300).lines
+    assert [line.name.partition(",")[0] for line in fourier] == ["Fourier basis"] * 3
+    for line in fourier:
+        assert line.mean[:10].sum() < 0.7 * tiles.mean[:10].sum()
+        assert 120 < line.mean[-20:].mean() < 200
+    assert 120 < tiles.mean[-20:].mean() < 200
