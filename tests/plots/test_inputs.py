@@ -69,7 +69,7 @@ def test_short_runs_have_a_mean_line_whose_label_tells_the_block(episodes: int, 
     [line] = [line for line in qtab.plot(run).lines if line.get_label() == f"mean of {block} episode{plural}"]
     assert len(line.get_xdata()) == points  # type: ignore[arg-type]
     ax = plots.learning_curves(run)
-    assert ax.get_ylabel() == f"Return, mean of {block} episode{plural}"
+    assert ax.get_ylabel() == f"return, mean of {block} episode{plural}"
     assert len(ax.collections) == 0  # a single run has no interval
     assert labels(ax) == ["1 run"]
 

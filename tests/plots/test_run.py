@@ -32,7 +32,7 @@ def test_every_episode_is_a_dot_and_the_title_lists_the_settings() -> None:
     assert dots.tolist() == run.episode_returns.tolist()
     assert ax.get_title("left") == "MountainCar-v0"
     assert ax.get_title("right") == "α = 0.2, γ = 0.9, ε = 0.8 → 0, seed 7"
-    assert (ax.get_xlabel(), ax.get_ylabel()) == ("Episode", "Return")
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("episode", "return")
 
 
 def test_an_axis_is_drawn_on_and_returned() -> None:

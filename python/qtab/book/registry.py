@@ -90,11 +90,13 @@ EXPERIMENTS: Mapping[str, Experiment] = {
 
 
 def find(name: str) -> Experiment:
-    """Returns an experiment by its name ("figure-10.4"), or by its number ("10.4") if that is unique.
+    """Returns an experiment by its name ("figure-10.4") or by its number ("10.4").
+
+    A number that a figure and an example share is that of the figure.
 
     Raises:
         TypeError: if the name is not a string.
-        ValueError: if no experiment or more than one matches; the message lists the choices.
+        ValueError: if no experiment matches; the message lists the choices.
     """
     if not isinstance(name, str):
         raise TypeError(f"name must be one of {', '.join(EXPERIMENTS)}, got {name!r}")
@@ -102,12 +104,19 @@ def find(name: str) -> Experiment:
     if wanted in EXPERIMENTS:
         return EXPERIMENTS[wanted]
     matches = [experiment for experiment in EXPERIMENTS.values() if experiment.number == wanted]
-    if len(matches) > 1:
-        raise ValueError(f"name must be {' or '.join(match.name for match in matches)}, got {name!r}, which is both")
     if not matches:
         suggestion = did_you_mean(wanted, EXPERIMENTS)
         raise ValueError(f"name must be {_choices(wanted)}, got {name!r}{suggestion}")
-    return matches[0]
+    return max(matches, key=_is_figure)
+
+
+def same_number(experiment: Experiment) -> Sequence[Experiment]:
+    """Returns the other experiments with the number of an experiment: an example with that of a figure."""
+    return [one for one in EXPERIMENTS.values() if one.number == experiment.number and one is not experiment]
+
+
+def _is_figure(experiment: Experiment) -> bool:
+    return experiment.name.startswith("figure-")
 
 
 def _choices(wanted: str) -> str:
@@ -127,7 +136,7 @@ def run(
     """Runs an experiment of the book.
 
     Args:
-        name: Its name ("figure-10.4"), or its number ("10.4") if that is unique.
+        name: Its name ("figure-10.4") or its number ("10.4"), which is that of the figure if an example shares it.
         runs: The number of runs of each setting; None means that of the full figure.
         seed: The seed of the first run of each setting; the other runs have the seeds after it.
         threads: The number of threads; None means one per core. It does not change the results.

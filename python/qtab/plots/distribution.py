@@ -73,7 +73,7 @@ def distribution(
         ax.axvline(middle, color=hue, linewidth=2, linestyle=style)
     mark_threshold(ax, threshold, only_threshold(drawn), "x")
     ax.locator_params(axis="y", integer=True)
-    return finish(ax, "Final return", "Runs", title, legend_title=note)
+    return finish(ax, "final return", "runs", title, legend_title=note)
 
 
 def _edges(samples: list[NDArray[np.float64]], bins: int | None) -> list[float]:

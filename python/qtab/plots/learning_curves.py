@@ -108,7 +108,7 @@ def learning_curves(
     mark_threshold(ax, threshold, only_threshold(drawn))
     episode_ticks(ax)
     return finish(
-        ax, "Episode", f"Return, mean of {counted(block, 'episode')}", title, legend_title=joined(note, heading)
+        ax, "episode", f"return, mean of {counted(block, 'episode')}", title, legend_title=joined(note, heading)
     )
 
 

@@ -92,7 +92,7 @@ def profile(
     ax.yaxis.set_major_formatter("{x:.0%}")
     if has_band:
         note = joined(note, f"{100 * confidence:.4g}% intervals")
-    return finish(ax, "Score τ", "Proportion of runs with a score above τ", title, legend_title=note)
+    return finish(ax, "score τ", "proportion of runs with a score above τ", title, legend_title=note)
 
 
 def _by_setting(scores: Any, settings: Sequence[int] | None) -> tuple[list[str], list[Any], list[Environments], str]:

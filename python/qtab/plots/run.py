@@ -91,7 +91,7 @@ def plot(
     mark_optimum(ax, optimum)
     mark_threshold(ax, threshold, threshold_of(run.config))
     episode_ticks(ax)
-    return finish(ax, "Episode", "Return", run.config.env, note=_settings_note(run))
+    return finish(ax, "episode", "return", run.config.env, note=_settings_note(run))
 
 
 def _draw_means(ax: "Axes", means: NDArray[np.float64], block: int, hue: Any) -> None:

@@ -70,4 +70,4 @@ def schedule(run: Run, ax: "Axes | None" = None, *, title: str | None = None) ->
     ax.set_ylim(bottom=0)
     ax.margins(y=0.08)
     ax.xaxis.set_major_formatter("{x:,.0f}")
-    return finish(ax, "Episode", "Rate", config.env if title is None else title)
+    return finish(ax, "episode", "rate", config.env if title is None else title)

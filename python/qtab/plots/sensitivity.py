@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 RESAMPLES = 999
 _LARGER_IS_BETTER = ("final_return", "mean_return", "best_return", "terminated_rate")
 _STATISTICS = ("mean", "median", "iqm")
+_WORDS = {"mean": "mean", "median": "median", "iqm": "interquartile mean of the"}
+"""What the y axis calls the statistic."""
 
 
 @dataclass(frozen=True)
@@ -218,7 +220,8 @@ def sensitivity(
     mark_optimum(ax, optimum)
     mark_threshold(ax, threshold, sweep_threshold(sweep) if column == "final_return" else None)
     shown = f"{100 * confidence:.4g}% intervals over seeds"
-    return finish(ax, parameter, f"{statistic} {column}", title, legend_title=joined(note, shown))
+    measured = f"{_WORDS[statistic]} {column.replace('_', ' ')}"
+    return finish(ax, parameter, measured, title, legend_title=joined(note, shown))
 
 
 def _draw_line(ax: "Axes", points: list[Point], categories: list[Any] | None, hue: Any, label: str, line: Any) -> None:

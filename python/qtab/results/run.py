@@ -244,7 +244,9 @@ class Run(WithPage):
         return np.random.default_rng(np.random.SeedSequence(self.config.seed).spawn(2)[1])
 
     def mean_returns(self, block: int = 100) -> NDArray[np.float64]:
-        """Returns the average return of each whole block of episodes, as plotted in the article; empty for short runs.
+        """Returns (blocks,): the average return of each whole block of episodes, as plotted in the article.
+
+        Episodes after the last whole block do not count: with fewer episodes than ``block``, the result is empty.
 
         Raises:
             TypeError: if ``block`` is not an integer.

@@ -169,6 +169,8 @@ class Runs:
     def mean_returns(self, block: int = 100) -> NDArray[np.float64]:
         """Returns (runs, blocks): the average return of each whole block of episodes, run by run.
 
+        Episodes after the last whole block do not count: with fewer episodes than ``block``, there are no blocks.
+
         Raises:
             TypeError: if ``block`` is not an integer.
             ValueError: if ``block`` is less than one.

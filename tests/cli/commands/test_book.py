@@ -38,6 +38,14 @@ def test_a_complete_figure_prints_its_number_of_runs(tmp_path):
     assert "FEWER" not in done.stdout
 
 
+def test_a_number_that_two_experiments_share_is_that_of_the_figure(tmp_path):
+    done = qtab_here("book", "11.2", cwd=tmp_path)
+    first, second = done.stdout.splitlines()[:2]
+    assert first == "11.2 is figure-11.2; qtab book example-11.2 runs the example"
+    assert second.startswith("Figure 11.2: ")
+    assert qtab_here("book", "figure-11.2", cwd=tmp_path).stdout.startswith("Figure 11.2: ")
+
+
 CHAPTER_6 = "example-6.2, figure-6.2, example-6.5, example-6.6, figure-6.3, figure-6.5 for chapter 6"
 
 
@@ -48,7 +56,6 @@ CHAPTER_6 = "example-6.2, figure-6.2, example-6.5, example-6.6, figure-6.3, figu
         (["6.9"], f"qtab book: error: NAME must be one of {CHAPTER_6}, got '6.9'"),
         (["chapter_7"], "qtab book: error: NAME must be figure-7.2 for chapter 7, got 'chapter_7'"),
         (["figure-6.9"], f"qtab book: error: NAME must be one of {CHAPTER_6}, got 'figure-6.9'"),
-        (["6.5"], "qtab book: error: NAME must be example-6.5 or figure-6.5, got '6.5', which is both"),
         (["8.2", "--runs", "0"], "qtab book: error: --runs must be an integer of at least 1, got 0"),
         (["8.2", "--runs", "many"], "many"),
         (["8.2", "--seed", "-1"], "seed must be an integer of at least 0, got -1"),

@@ -6,6 +6,7 @@ from pathlib import Path
 from qtab import book
 from qtab._utils.files import check_writable
 from qtab._utils.progress import print_above
+from qtab.book.registry import same_number
 from qtab.cli.errors import UsageError, usage_errors
 from qtab.cli.parser import Parser
 from qtab.cli.values import integer
@@ -16,7 +17,7 @@ ALL = "all"
 
 def add_arguments(parser: Parser) -> None:
     """Adds the arguments of the command."""
-    name = "figure-10.4, or 10.4 if no example has the same number, or all; without a name, the experiments are listed."
+    name = "figure-10.4; 10.4, which is the figure if an example has this number; or all. Without a name, lists them."
     parser.positional("experiment", name, str, default=None, metavar="NAME")
     parser.option("runs", integer, "The number of runs of each setting; by default that of the full figure.")
     parser.option("seed", integer, "The seed of the first run; the other runs have the seeds after it.", 0)
@@ -47,6 +48,10 @@ def run(options: Namespace) -> int:
         if options.save is not None:
             check_writable("save", options.save)
         experiment.check_arguments(options.runs, options.seed, options.threads)
+    if options.experiment.strip() == experiment.number:
+        for other in same_number(experiment):
+            kind = other.name.partition("-")[0]
+            print_above(f"{experiment.number} is {experiment.name}; qtab book {other.name} runs the {kind}")
     result = experiment.run(options.runs, options.seed, threads=options.threads)
     print_above(str(result))
     if options.save is not None:
