@@ -1,6 +1,6 @@
 """Figure 9.5: its walks and its updates are those of estimate_values to the bit, and the Fourier basis is better.
 
-Section 9.5.2: the Fourier basis learns faster than tile coding on Mountain Car.
+Section 9.5.2: the Fourier basis learns faster than tile coding on Mountain Car. Figure 9.8: broad features generalize.
 """
 
 import dataclasses
@@ -11,6 +11,7 @@ import pytest
 
 import qtab
 from qtab.book.figures.chapter_09.figure_9_5 import BasisComparison, basis_features
+from qtab.book.figures.chapter_09.figure_9_8 import POINTS, WIDTHS, interval_features, learned, square_wave
 from qtab.book.figures.chapter_09.long_walk import Steps, gradient_monte_carlo, simulate
 from qtab.book.problems import thousand_states
 
@@ -80,3 +81,26 @@ def test_the_fourier_basis_learns_faster_than_tile_coding_on_mountain_car() -> N
         assert line.mean[:10].sum() < 0.7 * tiles.mean[:10].sum()
         assert 120 < line.mean[-20:].mean() < 200
     assert 120 < tiles.mean[-20:].mean() < 200
+
+
+def test_as_many_intervals_contain_each_place() -> None:
+    for width, count in zip(WIDTHS.values(), (5, 10, 25), strict=True):
+        features = interval_features(POINTS, width)
+        assert set(features.sum(axis=1)) <= {count, count + 1.0}
+        # An example changes the function as far as its features reach, and by a fifth of the error where it is.
+        [after] = learned(width, np.array([0.5025]), [1])
+        assert after[np.argmin(np.abs(POINTS - 0.5025))] == pytest.approx(0.2)
+        assert (after > 0.0).mean() == pytest.approx(2 * width, abs=0.05)
+
+
+def test_the_width_of_features_matters_at_first_and_hardly_in_the_end() -> None:
+    result = qtab.book.run("figure-9.8", seed=1)
+    assert (result.runs, len(result.lines)) == (1, 19)
+    wave, *found = (line.mean for line in result.lines)
+    assert np.array_equal(wave, square_wave(POINTS))
+    errors = np.sqrt(np.mean((np.array(found) - wave) ** 2, axis=1)).reshape(3, 6)
+    assert (np.diff(errors, axis=1) < 0.0).all()
+    assert errors[0, 0] > errors[1, 0] > errors[2, 0] > 0.3
+    assert errors[:, -1].max() < 0.06
+    assert f"{errors[2, 1]:.3f}" in str(result)
+    assert len(result.plot().figure.axes) == 18

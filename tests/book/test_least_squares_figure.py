@@ -12,7 +12,7 @@ from qtab.book.figures.chapter_09.section_9_8 import BoyanChain
 
 @pytest.fixture(scope="module")
 def result() -> Any:
-    experiment = qtab.book.find("9.8")
+    experiment = qtab.book.find("section-9.8")
     assert isinstance(experiment, BoyanChain)
     return dataclasses.replace(experiment, episodes=20).run(4, seed=3)
 

@@ -14,7 +14,15 @@ from qtab.book.figures.chapter_04 import figure_4_1, figure_4_2, figure_4_3
 from qtab.book.figures.chapter_05 import figure_5_1, figure_5_2, figure_5_3, figure_5_4
 from qtab.book.figures.chapter_06 import cliff, example_6_2, example_6_5, figure_6_2, figure_6_5
 from qtab.book.figures.chapter_08 import changing_mazes, example_8_4, figure_8_2, figure_8_7, figure_8_8
-from qtab.book.figures.chapter_09 import figure_9_1, figure_9_2, figure_9_5, figure_9_10, section_9_5_2, section_9_8
+from qtab.book.figures.chapter_09 import (
+    figure_9_1,
+    figure_9_2,
+    figure_9_5,
+    figure_9_8,
+    figure_9_10,
+    section_9_5_2,
+    section_9_8,
+)
 from qtab.book.figures.chapter_10 import figure_10_1, figure_10_5
 from qtab.book.figures.chapter_11 import baird, figure_11_3, split_examples
 from qtab.book.figures.chapter_13 import short_corridor
@@ -54,7 +62,7 @@ CHAPTERS: Sequence[Chapter] = (
     _chapter(
         9,
         "On-policy prediction with approximation",
-        *(figure_9_1, figure_9_2, figure_9_5, section_9_5_2, section_9_8, figure_9_10),
+        *(figure_9_1, figure_9_2, figure_9_5, section_9_5_2, figure_9_8, section_9_8, figure_9_10),
     ),
     _chapter(
         10,
