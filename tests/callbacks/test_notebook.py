@@ -178,7 +178,9 @@ def test_a_kernel_shows_every_figure_once_and_a_widget_for_every_long_call(tmp_p
     with pytest.MonkeyPatch.context() as environment:
         environment.delenv("MPLBACKEND", raising=False)
         environment.setenv("IPYTHONDIR", str(tmp_path))
-        client = nbclient.NotebookClient(nbformat.v4.new_notebook(cells=cells), timeout=120, kernel_name="python3")
+        client = nbclient.NotebookClient(
+            nbformat.v4.new_notebook(cells=cells), timeout=600, startup_timeout=600, kernel_name="python3"
+        )
         done = client.execute(cwd=str(tmp_path))
     pictures = [sum("image/png" in output.get("data", {}) for output in cell.outputs) for cell in done.cells]
     assert pictures == [1] + [0] * len(CELLS) + [1] * (len(FIGURES) - 1)

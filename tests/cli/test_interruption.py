@@ -146,7 +146,7 @@ def test_sigterm_saves_what_was_learned_as_ctrl_c_does(tmp_path: Path, command: 
     assert process.stdout.readline().startswith("Episode 10000 ")
     process.send_signal(signal.SIGTERM)
     process.send_signal(signal.SIGTERM)
-    out, err = process.communicate(timeout=60)
+    out, err = process.communicate(timeout=600)
     assert (process.returncode, err) == (143, "")
     run = qtab.load(tmp_path / "run.npz")
     assert 10_000 <= len(run.episode_returns) < 1_000_000

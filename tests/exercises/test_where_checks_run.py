@@ -55,7 +55,7 @@ def test_pytest_in_two_processes_shows_the_report_of_the_wrong_function(tmp_path
     (tmp_path / "homework.py").write_text(HOMEWORK, encoding="utf-8")
     (tmp_path / "test_homework.py").write_text(TESTS, encoding="utf-8")
     command = [sys.executable, "-m", "pytest", "-n", "2", "-p", "no:cacheprovider", "-q", "test_homework.py"]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=120, check=False)
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=600, check=False)
     assert done.returncode == 1, done.stderr
     assert "1 failed, 1 passed" in done.stdout
     assert "exercise 2, sample_average: 0 of 2 checks passed" in done.stdout
@@ -72,7 +72,9 @@ def test_a_notebook_shows_the_report_as_a_table_and_names_the_line_of_the_cell(t
     ]
     cells = [nbformat.v4.new_code_cell(source) for source in sources]
     notebook = nbformat.v4.new_notebook(cells=cells)
-    nbclient.NotebookClient(notebook, timeout=120, resources={"metadata": {"path": str(tmp_path)}}).execute()
+    nbclient.NotebookClient(
+        notebook, timeout=600, startup_timeout=600, resources={"metadata": {"path": str(tmp_path)}}
+    ).execute()
     raised, stopped = (cell.outputs[0].data["text/html"] for cell in notebook.cells[2:])
     assert "0 of 4 checks passed" in raised
     assert "NameError" in raised

@@ -14,7 +14,7 @@ from support.repository import ROOT
 
 
 def in_a_process(code):
-    return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=120).stdout
+    return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=600).stdout
 
 
 MODULES = ["book", "callbacks", "designs", "exercises", "planning", "playground", "plots", "prediction", "sb3", "stats"]

@@ -140,7 +140,7 @@ def test_two_processes_share_a_store(tmp_path, small_chunks):
     both = [start(path, seeds=60) for _ in range(2)]
     new = []
     for process in both:
-        lines = process.communicate(timeout=300)[0].splitlines()
+        lines = process.communicate(timeout=600)[0].splitlines()
         assert process.returncode == 0
         new.append(len(lines))
     assert sum(new) >= 120

@@ -220,8 +220,8 @@ def test_a_forked_child_continues_stepping():
     queue = context.Queue()
     child = context.Process(target=_steps_of_a_child, args=(env, queue))
     child.start()
-    assert queue.get(timeout=60) == env.step(np.zeros(40, np.int64))[0].tobytes()
-    child.join(60)
+    assert queue.get(timeout=600) == env.step(np.zeros(40, np.int64))[0].tobytes()
+    child.join(600)
     assert child.exitcode == 0
 
 

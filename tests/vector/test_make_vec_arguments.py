@@ -128,7 +128,7 @@ if __name__ == "__main__":
 def test_workers_started_by_spawn_and_forkserver_find_the_environments(tmp_path):
     program = tmp_path / "workers.py"
     program.write_text(WORKERS)
-    done = subprocess.run([sys.executable, program], capture_output=True, text=True, timeout=120)
+    done = subprocess.run([sys.executable, program], capture_output=True, text=True, timeout=600)
     assert done.returncode == 0, done.stderr
     lines = done.stdout.splitlines()
     assert len(lines) == 4

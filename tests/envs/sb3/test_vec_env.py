@@ -163,7 +163,7 @@ try:
 except ModuleNotFoundError as error:
     print(error)
 """
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60)
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=600)
     assert "this needs stable_baselines3" in done.stdout
     assert "which is not installed; run: pip install 'stable-baselines3>=2.9'" in done.stdout
 

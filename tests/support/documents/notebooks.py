@@ -83,7 +83,12 @@ def execute(name: str, folder: Path) -> Executed:
         environment.setenv("IPYTHONDIR", str(folder / "ipython"))
         # A cell that fails is reported with all others of its notebook.
         client = nbclient.NotebookClient(
-            notebook, timeout=300, kernel_name="python3", allow_errors=True, coalesce_streams=True
+            notebook,
+            timeout=600,
+            startup_timeout=600,
+            kernel_name="python3",
+            allow_errors=True,
+            coalesce_streams=True,
         )
         client.execute(cwd=str(folder))
     return Executed(notebook.cells)

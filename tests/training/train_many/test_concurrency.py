@@ -33,8 +33,8 @@ def test_train_many_works_after_a_fork():
     queue = context.Queue()
     child = context.Process(target=_in_a_child, args=(queue,))
     child.start()
-    after = queue.get(timeout=300)
-    child.join(300)
+    after = queue.get(timeout=600)
+    child.join(600)
     assert child.exitcode == 0
     assert before.tobytes() == after.tobytes()
 
@@ -81,7 +81,7 @@ def run_until_ready_then_interrupt(script):
     assert process.stdout is not None
     assert process.stdout.readline() == "ready\n"
     os.kill(process.pid, signal.SIGINT)
-    out, err = process.communicate(timeout=300)
+    out, err = process.communicate(timeout=600)
     assert process.returncode == 0, err
     return out.split()
 
