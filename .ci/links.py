@@ -3,7 +3,7 @@ open its notebooks in Google Colab and Binder, and writes the repository into th
 
     python .ci/links.py https://github.com/OWNER/NAME v1.2.3
 
-The README has links within the repository, whose address nobody has to write down: a release knows where it was made.
+The links of the README are relative: the address of the repository stands in no file, and a release passes it.
 """
 
 import re
