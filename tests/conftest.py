@@ -17,7 +17,7 @@ os.environ["MPLBACKEND"] = "agg"
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
 
-from hypothesis import settings
+from hypothesis import HealthCheck, settings
 
 from support import selection
 
@@ -26,9 +26,11 @@ with warnings.catch_warnings(), suppress(ModuleNotFoundError):
     warnings.simplefilter("ignore")
     import_module("Box2D")
 
-# Everyone's tests draw the same examples every time. The profile "fuzz" draws new ones, every night.
-settings.register_profile("same", deadline=None, max_examples=30, derandomize=True, print_blob=True)
-settings.register_profile("fuzz", deadline=None, max_examples=1000, print_blob=True)  # --hypothesis-profile fuzz
+# Everyone's tests draw the same examples every time. The profile "fuzz" draws new ones, every night. Neither limits the
+# time, which depends on how busy the machine is.
+patient = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow], print_blob=True)
+settings.register_profile("same", patient, max_examples=30, derandomize=True)
+settings.register_profile("fuzz", patient, max_examples=1000)  # --hypothesis-profile fuzz
 settings.load_profile("same")
 
 

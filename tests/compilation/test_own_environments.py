@@ -3,7 +3,7 @@
 from typing import Any
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from support.environments import own
@@ -31,7 +31,6 @@ PARAMETERS: dict[Any, dict[str, st.SearchStrategy[Any]]] = {
 
 
 @pytest.mark.parametrize("made", own.ENVIRONMENTS, ids=lambda made: made.__name__)
-@settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(data=st.data())
 def test_compiled_steps_equal_pythons(made: Any, data: st.DataObject) -> None:
     chosen = {name: data.draw(strategy, name) for name, strategy in PARAMETERS.get(made, {}).items()}

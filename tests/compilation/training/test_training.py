@@ -7,7 +7,7 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import qtab
@@ -46,7 +46,7 @@ def assert_same(one: qtab.Run, other: qtab.Run) -> None:
 
 
 @pytest.mark.parametrize("made", WITH_CELLS, ids=lambda made: made.__name__)
-@settings(deadline=None, max_examples=4, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=4)
 @given(seed=st.integers(0, 2**64))
 def test_each_environment(made: Any, seed: int) -> None:
     compiled, python = (trained(made, backend, seed=seed) for backend in ("numba", "python"))

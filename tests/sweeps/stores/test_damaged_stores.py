@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 
 import qtab
 from qtab.cli import main
@@ -80,7 +80,7 @@ def stores(tmp_path_factory: pytest.TempPathFactory) -> Stores:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["finished", "unfinished"])
-@settings(max_examples=settings().max_examples // 5, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=settings().max_examples // 5)
 @given(damage=DAMAGE)
 def test_a_damaged_store_is_refused_or_gives_the_same_results(stores: Stores, name: str, damage: Damage) -> None:
     with tempfile.TemporaryDirectory() as folder:
@@ -95,7 +95,7 @@ def test_a_damaged_store_is_refused_or_gives_the_same_results(stores: Stores, na
 
 
 @pytest.mark.slow
-@settings(max_examples=settings().max_examples // 10, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=settings().max_examples // 10)
 @given(damage=DAMAGE)
 def test_a_damaged_store_of_an_earlier_version_raises_no_other_error(damage: Damage) -> None:
     with tempfile.TemporaryDirectory() as folder:
