@@ -21,6 +21,8 @@ NOTEBOOKS = "notebooks/"
 TOO_WIDE = """() => [...document.querySelectorAll(".bd-article div.highlight pre")]
     .map(block => block.scrollWidth - block.clientWidth).filter(pixels => pixels > 1)"""
 """Returns by how many pixels each block of code of a page is wider than its box."""
+PATIENCE = 300_000
+"""What a busy machine may take for anything in the browser, in milliseconds."""
 NO_NETWORK = "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1"
 
 
@@ -58,8 +60,11 @@ def browsed(site: Path) -> Iterator[tuple[Any, str]]:
     from playwright.sync_api import sync_playwright
 
     with served(site) as address, sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox", NO_NETWORK])
-        yield browser.new_page(viewport={"width": 1400, "height": 900}), address
+        options = {"executable_path": CHROMIUM, "args": ["--no-sandbox", NO_NETWORK], "timeout": PATIENCE}
+        browser = playwright.chromium.launch(**options)
+        page = browser.new_page(viewport={"width": 1400, "height": 900})
+        page.set_default_timeout(PATIENCE)
+        yield page, address
         browser.close()
 
 

@@ -15,6 +15,7 @@ import qtab.playground.assemble
 from qtab import playground
 from qtab.cli import main
 from qtab.playground.bundle import bundle
+from support.playground import PATIENCE
 
 MODULE = Path(qtab.playground.assemble.__file__).parent / "page/qtab.wasm"
 # Of the page in one file, and of what a server that compresses it sends.
@@ -97,6 +98,7 @@ def test_a_module_of_another_version_is_refused(tmp_path, chromium, requested_wh
     assert html.count(version) == html.count(instantiate) == 1
     html = html.replace(version, '"version":"9.9.9"')
     page = chromium.new_page()
+    page.set_default_timeout(PATIENCE)
     if requested_while_loading:
         html = html.replace(instantiate, f"await new Promise((done) => setTimeout(done, 1000)); {instantiate}")
         page.add_init_script(

@@ -3,6 +3,9 @@
 from pathlib import Path
 from typing import Any
 
+PATIENCE = 300_000
+"""What a busy machine may take for anything in the browser, in milliseconds."""
+
 SETTLED = """() => {
   const { training, view } = globalThis.playground ?? {};
   const done = ["paused", "finished", "diverged"];
@@ -40,7 +43,7 @@ class Playground:
     def __init__(self, context: Any, file: Path) -> None:
         self.file = file
         self.page = context.new_page()
-        self.page.set_default_timeout(300_000)  # for a busy machine
+        self.page.set_default_timeout(PATIENCE)
         self.problems: list[str] = []
         self.requests: list[str] = []
         self.page.on("console", lambda message: self._heard(message.type, message.text))
