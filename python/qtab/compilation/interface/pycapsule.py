@@ -20,7 +20,6 @@ def _api(name: str, result: Any, *arguments: Any) -> Any:
 
 
 _new = _api("PyCapsule_New", ctypes.py_object, ctypes.c_void_p, ctypes.c_char_p, ctypes.c_void_p)
-_pointer = _api("PyCapsule_GetPointer", ctypes.c_void_p, ctypes.py_object, ctypes.c_char_p)
 _pointer_of_dying = _api("PyCapsule_GetPointer", ctypes.c_void_p, ctypes.c_void_p, ctypes.c_char_p)
 
 
@@ -44,12 +43,3 @@ def make_capsule(struct: QtabEnv, *needed: Any) -> Any:
     address = ctypes.addressof(struct)
     _kept[address] = (struct, *needed)
     return _new(address, NAME, ctypes.cast(_destructor, ctypes.c_void_p))
-
-
-def struct_of(capsule: Any) -> QtabEnv:
-    """Returns the struct in a capsule. It is valid as long as the capsule.
-
-    Raises:
-        ValueError: if it is not a capsule named ``qtab.env.1``.
-    """
-    return QtabEnv.from_address(_pointer(capsule, NAME))
