@@ -25,7 +25,7 @@ class Shows(gym.Env):
         return 0, {}
 
     def step(self, action):
-        print(action)  # noqa: T201  # noqa: T201
+        print(action)  # noqa: T201
         return 0, 0.0, False, False, {}
 
 
