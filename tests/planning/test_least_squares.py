@@ -133,6 +133,13 @@ def test_values_weighted_by_visits_alternate_between_two_bad_policies(four: qtab
     assert policies == ["RRRR", "LLLL", "RRRR", "LLLL"]
 
 
+def test_the_chain_of_twenty_states_is_solved_with_polynomials_of_degree_four() -> None:
+    features = np.vander(np.arange(1.0, 21.0) / 2, 5, increasing=True)
+    twenty = chain(20, {0, 19})
+    for batch in (Transitions.of_table(twenty), Transitions.sample(twenty, 5_000, seed=0)):
+        assert named(lspi(batch, features, GAMMA), 20)[-1] == "L" * 10 + "R" * 10
+
+
 def test_the_chain_of_fifty_states_is_solved_from_one_random_walk() -> None:
     fifty = chain(50, {9, 40})
     states, centers = np.arange(50.0), np.linspace(0, 49, 10)
@@ -237,6 +244,7 @@ HALF = Transitions([0, 1, 0], [0, 0, 1], [1.0, 0.0, 0.0], [1, 0, 1], [False, Fal
         (lambda: Transitions([0], [3], [1], [0], [True], 2), ValueError, "actions must be numbers from 0 to 1, got 3"),
         (lambda: Transitions(["a"], [0], [1], ["b"], [True]), TypeError, "observations must be an array of numbers"),
         (lambda: Transitions.sample("FrozenLake-v1", 5, "greedy"), ValueError, "policy must be 'random' or a policy"),
+        (lambda: Transitions.sample("Pendulum-v1", 5), ValueError, r"env must have discrete actions, got Box\("),
         (lambda: Transitions.of_table("MountainCar-v0"), ValueError, "env must have a transition table"),
     ],
 )

@@ -161,7 +161,10 @@ class Transitions:
         generator = np.random.default_rng(seed)
         collected = _Collected()
         with opened_env(env, env_kwargs) as (_, opened):
-            actions = choose_actions(opened.action_space, None)
+            space = opened.action_space
+            if isinstance(space, gym.spaces.Box) and np.issubdtype(space.dtype, np.floating):
+                raise ValueError(f"env must have discrete actions, got {space}")
+            actions = choose_actions(space, None)
             observation, _ = opened.reset(seed=seed)
             for _ in range(steps):
                 column = _column(policy, observation, actions, generator)
