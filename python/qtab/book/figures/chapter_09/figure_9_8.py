@@ -23,6 +23,8 @@ DENSITY = 50
 POINTS = (np.arange(200) + 0.5) / 200
 """Where the functions are drawn and measured."""
 DESIRED = "desired function"
+RANGE = (-0.4, 1.4)
+"""The values that the figure shows."""
 
 
 def square_wave(s: FloatArray) -> FloatArray:
@@ -104,7 +106,7 @@ def _draw(result: Result, ax: "Axes | None") -> "Axes":
             (line,) = [one for one in others if one.name == _line_name(name, count)]
             part.plot(wave.x, wave.mean, "--", color="0.5", linewidth=1)
             part.plot(line.x, line.mean, color=hue, linewidth=1.6)
-            part.set_ylim(*result.experiment.y_range)
+            part.set_ylim(*RANGE)
             part.set_xticks([])
             part.set_yticks([])
             if column == 0:
@@ -126,5 +128,5 @@ EXPERIMENT = CoarseCoding(
     draw=_draw,
     x_label="place in the extent",
     y_label="value",
-    y_range=(-0.4, 1.4),
+    y_range=RANGE,
 )
