@@ -3,7 +3,7 @@ open its notebooks in Google Colab and Binder, and writes the repository into th
 
     python .ci/links.py https://github.com/OWNER/NAME v1.2.3
 
-The links of the README are relative: the address of the repository stands in no file, and a release passes it.
+The links of the README are relative, because no file contains the address of the repository: a release passes it.
 """
 
 import re

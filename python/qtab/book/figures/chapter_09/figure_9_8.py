@@ -45,7 +45,7 @@ def interval_features(s: FloatArray, width: float) -> FloatArray:
 
 
 def learned(width: float, examples: FloatArray, record: Sequence[int]) -> FloatArray:
-    """Returns (points, places): the function after so many examples, by w <- w + α [U - wᵀx] x (equation 9.7).
+    """Returns (points, places): the function after each number of examples in ``record``, by w <- w + α [U - wᵀx] x (equation 9.7).
 
     The step size is 0.2 / n for n features that contain the example.
     """
@@ -90,7 +90,7 @@ def rms_error(line: Line) -> float:
 
 def _text(lines: Sequence[Line]) -> str:
     errors = {line.name: f"{rms_error(line):.3f}" for line in lines}
-    rows = [["RMS error after so many examples", *(f"{count:,}" for count in EXAMPLES)]]
+    rows = [["RMS error by number of examples", *(f"{count:,}" for count in EXAMPLES)]]
     rows += [[f"{name} features", *(errors[_line_name(name, count)] for count in EXAMPLES)] for name in WIDTHS]
     return "\n".join(aligned(rows))
 
