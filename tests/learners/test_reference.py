@@ -6,7 +6,6 @@ import pytest
 from hypothesis import given, settings
 
 import qtab
-from qtab import reference
 from qtab.config.choices import Algorithm
 from qtab.config.options import PREFERENCES, TABLES_ONLY, fixed_settings
 from qtab.reference import LEARNERS
@@ -83,7 +82,3 @@ def test_an_environment_in_python_gives_the_identical_table(algorithm: Any, feat
     run = qtab.train(Chain(), algorithm=algorithm, seed=2, episodes=6, **features)
     assert run.terminated.any()
     assert qtab.verify(run, env=Chain()).equal
-
-
-def test_every_learner_is_a_public_name_of_its_package() -> None:
-    assert all(getattr(reference, name) is learner for name, learner in LEARNERS.items())
