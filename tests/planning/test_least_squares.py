@@ -219,6 +219,12 @@ HALF = Transitions([0, 1, 0], [0, 0, 1], [1.0, 0.0, 0.0], [1, 0, 1], [False, Fal
             "the weights of action 1, which is never taken",
         ),
         (
+            lambda: lstdq(Transitions([0], [0], [1.0], [1], [False], 2), [[1.0], [3.0]], 0, 0.9, epsilon=1.7),
+            ValueError,
+            "the transitions leave open all weights",
+        ),
+        (lambda: lspi(HALF, np.eye(2), epsilon=0.1).q_values(0), ValueError, "observations must hold at least 1"),
+        (
             lambda: lspi(Transitions([0], [0], [1.0], [0], [True], weights=[1e50]), [[1e150]]),
             ValueError,
             "features and rewards must be smaller",

@@ -19,7 +19,7 @@ from qtab.planning.least_squares.lstdq import (
     chosen_actions,
     feature_vectors,
 )
-from qtab.planning.least_squares.transitions import Transitions
+from qtab.planning.least_squares.transitions import Transitions, observed
 
 
 @with_fields
@@ -58,7 +58,7 @@ class LeastSquaresPolicy:
             TypeError: if the observations are not numbers, or not integers for features in an array.
             ValueError: if the observations do not fit the features.
         """
-        x = feature_vectors(self.features, np.asarray(observations))
+        x = feature_vectors(self.features, observed("observations", observations))
         values: FloatArray = x @ self.history[iteration]
         return values
 

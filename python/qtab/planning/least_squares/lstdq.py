@@ -80,7 +80,8 @@ class Batch:
     def _undetermined(self, columns: Sequence[int]) -> str:
         """Describes the weights in given columns of A."""
         d = self.x.shape[1]
-        never = [action for action in range(self.transitions.n_actions) if action not in self.transitions.actions]
+        open_ones = {column // d for column in columns}
+        never = [action for action in sorted(open_ones) if action not in self.transitions.actions]
         if never:
             return f"the weights of action {never[0]}, which is never taken"
         if not columns:

@@ -64,8 +64,8 @@ class Transitions:
         n_actions: int | None = None,
         weights: ArrayLike | None = None,
     ) -> None:
-        self.observations = _observed("observations", observations)
-        self.next_observations = _observed("next_observations", next_observations)
+        self.observations = observed("observations", observations)
+        self.next_observations = observed("next_observations", next_observations)
         count, taken, ends = len(self.observations), np.asarray(actions), np.asarray(terminated)
         if taken.dtype.kind not in "iu":
             raise TypeError(f"actions must hold integers, got dtype {taken.dtype}")
@@ -244,7 +244,7 @@ def _column(
     return int(generator.choice(len(actions), p=probabilities))
 
 
-def _observed(name: str, values: ArrayLike) -> NDArray[Any]:
+def observed(name: str, values: ArrayLike) -> NDArray[Any]:
     """Returns observations as an array of numbers.
 
     Raises:
