@@ -11,6 +11,7 @@ import numpy as np
 
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting.attributes import MISSING
+from qtab.compilation.rewriting.infos.made import bindings, is_made, values_of
 from qtab.compilation.rewriting.source.sources import source_of
 from qtab.compilation.twins.own_code import own_methods, runs_code
 
@@ -29,6 +30,7 @@ PURE_METHODS = (
 )
 LOCAL_METHODS = ("add", "append", "extend", "insert", "pop", "sort", "update")
 """Methods that change a list or a dict that the function made."""
+CHANGEABLE = (list, dict, set, np.ndarray)
 ADVICE = "compute it without drawing or changing attributes, or leave it out"
 
 
@@ -58,10 +60,14 @@ def _effect(
         if isinstance(one, ast.Attribute) and one.attr in ("np_random", "_np_random"):
             return "it draws random numbers"
         if isinstance(one, ast.Attribute | ast.Subscript) and isinstance(one.ctx, ast.Store):
-            base = _root(one)
-            is_new = base in function.__code__.co_varnames and base not in parameters and base != own
-            if isinstance(one, ast.Attribute) or not is_new:
+            if isinstance(one, ast.Attribute) or not _is_made(scope, one.value, function, parameters):
                 return f"it assigns {ast.unparse(one)}"
+        if isinstance(one, ast.AugAssign) and isinstance(one.target, ast.Name):
+            source, name = source_of(function), one.target.id
+            values = list(values_of(source, name))
+            is_given = name in parameters or bindings(source, name) > len(values)
+            if is_given or any(_is_kept(scope, value, function, own) for value in values):
+                return f"it may change the value of {name}"
         if isinstance(one, ast.Attribute) and isinstance(one.value, ast.Name) and one.value.id == own:
             member, _ = scope.program.attributes.find(one.attr)
             if isinstance(member, property):
@@ -102,10 +108,21 @@ def _of_operators(scope: "Expressions", value: Any, seen: set[Any]) -> str | Non
     return None
 
 
-def _root(node: ast.expr) -> str | None:
-    while isinstance(node, ast.Attribute | ast.Subscript):
-        node = node.value
-    return node.id if isinstance(node, ast.Name) else None
+def _is_made(scope: "Expressions", node: ast.expr, function: FunctionType, parameters: set[str]) -> bool:
+    """Returns whether a function changes only what it made itself, in a variable."""
+    is_variable = isinstance(node, ast.Name) and node.id not in parameters
+    return is_variable and is_made(scope.program.attributes, source_of(function), node)
+
+
+def _is_kept(scope: "Expressions", node: ast.expr, function: FunctionType, own: str | None) -> bool:
+    """Returns whether a value may be a list, a dict, a set or an array of the environment, or of other code."""
+    found = _resolved(node, function)
+    if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == own:
+        known = scope.program.attributes
+        found = vars(known.twin).get(node.attr, known.find(node.attr)[0])
+    elif isinstance(node, ast.Attribute | ast.Subscript) and found is MISSING:
+        return _is_kept(scope, node.value, function, own)
+    return isinstance(found, CHANGEABLE)
 
 
 def _of_function(scope: "Expressions", function: Any, seen: set[Any]) -> str | None:
@@ -138,14 +155,16 @@ def _of_call(
         simple = owner is MISSING or isinstance(owner, np.ndarray | str | dict | list | tuple)
         if simple and callee.attr in PURE_METHODS:
             return None
-        root = _root(callee)
-        if root is not None and callee.attr in LOCAL_METHODS and root not in parameters and owner is MISSING:
+        is_local = owner is MISSING and function is not scope.source.function
+        if is_local and callee.attr in LOCAL_METHODS and _is_made(scope, callee.value, function, parameters):
             return None
         return f"it calls {shown}, whose effects are unknown"
     if isinstance(found, FunctionType) and not _is_numpy(found):
         return _of_function(scope, found, seen)
-    is_enum = isinstance(found, enum.EnumMeta) and "_missing_" not in vars(found)
-    if is_enum or (isinstance(found, type) and found.__module__ == "builtins" and issubclass(found, BaseException)):
+    if isinstance(found, enum.EnumMeta):
+        has_code = any("_missing_" in vars(base) for base in found.__mro__ if base.__module__ != "enum")
+        return f"{found.__name__} defines _missing_" if has_code else None
+    if isinstance(found, type) and found.__module__ == "builtins" and issubclass(found, BaseException):
         return None
     name = getattr(found, "__name__", "")
     if name in PURE_BUILTINS and getattr(builtins, name) is found:

@@ -1,0 +1,124 @@
+"""Functions that only info dicts call are left out, unless they change what they have not made."""
+
+import enum
+from typing import Any
+
+import numpy as np
+import pytest
+
+from qtab.compilation.not_compilable import NotCompilable
+from qtab.compilation.rewriting import rewrite
+from support.environments.gym_classes.extra import ExtraEnv
+
+TOTALS: dict[str, Any] = {"steps": 0, "cells": []}
+
+
+class Counted(enum.Enum):
+    """Has no member yet."""
+
+    @classmethod
+    def _missing_(cls, value):
+        TOTALS["steps"] += 1
+        return next(iter(cls))
+
+
+class Kind(Counted):
+    """Finds a member by code of its base class."""
+
+    ONE = 1
+
+
+class Shows(ExtraEnv):
+    """Has an info dict that a method computes."""
+
+    def reset(self, *, seed=None, options=None):
+        self.board = np.zeros(3)
+        return super().reset(seed=seed)
+
+    def step(self, action):
+        if action:
+            self.board[1] = 1.0
+        return self.cell, float(self.board[0]), False, False, self.shown()
+
+    def made(self):
+        return {"cell": self.cell}
+
+    def shown(self) -> Any:
+        """Changes only what it makes."""
+        info, cells, counts, after = self.made(), [], np.zeros(3), self.cell
+        info["board"] = self.board.copy()
+        info.update(cell=1)
+        cells.append(self.cell)
+        cells += [1]
+        counts[0] = 1.0
+        counts += 1.0
+        after += 1
+        return info
+
+
+class ChangesElement(Shows):
+    def shown(self):
+        board = self.board
+        board[0] += 1.0
+        return {}
+
+
+class ChangesArray(Shows):
+    def shown(self):
+        board = self.board
+        board += 1.0
+        return {}
+
+
+class ChangesDict(Shows):
+    def shown(self):
+        totals = TOTALS
+        totals["steps"] += 1
+        return {}
+
+
+class Appends(Shows):
+    def shown(self):
+        cells = TOTALS["cells"]
+        cells.append(self.cell)
+        return {}
+
+
+class ChangesInner(Shows):
+    def shown(self):
+        kept = [self.board]
+        kept[0][0] = 1.0
+        return {}
+
+
+class ChangesInLoop(Shows):
+    def shown(self):
+        for cells in [TOTALS["cells"]]:
+            cells.append(self.cell)
+        return {}
+
+
+class Finds(Shows):
+    def shown(self):
+        return {"kind": Kind(self.cell)}
+
+
+class PopsInStep(ExtraEnv):
+    def step(self, action):
+        values = [0, 1]
+        info = {"last": values.pop()}
+        return self.cell, float(len(values)), False, False, info
+
+
+CHANGES = [ChangesElement, ChangesArray, ChangesDict, Appends, ChangesInner, ChangesInLoop, Finds, PopsInStep]
+
+
+@pytest.mark.parametrize("cls", CHANGES, ids=lambda cls: cls.__name__)
+def test_changes_of_what_a_function_has_not_made_are_refused(cls: Any) -> None:
+    with pytest.raises(NotCompilable, match="left out in compiled code, but"):
+        rewrite(cls())
+    assert TOTALS == {"steps": 0, "cells": []}
+
+
+def test_changes_of_what_a_function_makes_are_left_out() -> None:
+    assert rewrite(Shows()).source
