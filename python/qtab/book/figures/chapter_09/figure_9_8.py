@@ -45,7 +45,7 @@ def interval_features(s: FloatArray, width: float) -> FloatArray:
 
 
 def learned(width: float, examples: FloatArray, record: Sequence[int]) -> FloatArray:
-    """Returns (points, places): the function after each number of examples in ``record``, by w <- w + α [U - wᵀx] x (equation 9.7).
+    """Returns (points, places): the function after some numbers of examples, by w <- w + α [U - wᵀx] x (equation 9.7).
 
     The step size is 0.2 / n for n features that contain the example.
     """

@@ -59,9 +59,9 @@ def _effect(
             return f"it contains {type(one).__name__}"
         if isinstance(one, ast.Attribute) and one.attr in ("np_random", "_np_random"):
             return "it draws random numbers"
-        if isinstance(one, ast.Attribute | ast.Subscript) and isinstance(one.ctx, ast.Store):
-            if isinstance(one, ast.Attribute) or not _is_made(scope, one.value, function, parameters):
-                return f"it assigns {ast.unparse(one)}"
+        is_element = isinstance(one, ast.Subscript) and _is_made(scope, one.value, function, parameters)
+        if isinstance(one, ast.Attribute | ast.Subscript) and isinstance(one.ctx, ast.Store) and not is_element:
+            return f"it assigns {ast.unparse(one)}"
         if isinstance(one, ast.AugAssign) and isinstance(one.target, ast.Name):
             source, name = source_of(function), one.target.id
             values = list(values_of(source, name))
