@@ -9,7 +9,7 @@ import gymnasium as gym
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting.attributes import Attributes
 from qtab.compilation.rewriting.infos.dicts import LENGTHS
-from qtab.compilation.rewriting.infos.made import is_made, returned, values_of
+from qtab.compilation.rewriting.infos.made import is_made, is_step, returned, values_of
 from qtab.compilation.rewriting.source.sources import Source, source_of
 from qtab.compilation.rewriting.source.syntax import info_names
 
@@ -49,16 +49,14 @@ def _names(source: Source) -> set[str]:
     """Returns the names of info dicts: those that are returned last, and those that a ``step`` or ``reset`` gives."""
     found = info_names(source.node)
     for one in ast.walk(source.node):
-        if isinstance(one, ast.Assign) and any(map(_is_info, ast.walk(one.value))):
+        if isinstance(one, ast.Assign) and any(
+            isinstance(node, ast.expr) and is_step(node) for node in ast.walk(one.value)
+        ):
             for target in one.targets:
                 last = target.elts[-1] if isinstance(target, ast.Tuple | ast.List) else target
                 if isinstance(last, ast.Name):
                     found.add(last.id)
     return found
-
-
-def _is_info(node: ast.AST) -> bool:
-    return isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in LENGTHS
 
 
 def _changed(source: Source) -> bool:
