@@ -4,6 +4,7 @@ import sys
 import time
 import warnings
 from collections.abc import Iterator
+from functools import cache
 from typing import Any
 
 from qtab._utils.extras import missing
@@ -31,6 +32,17 @@ def notebook_bar(**options: Any) -> Any:
     if notebook.IProgress is None:
         return tqdm(**options)
 
+    bar = _widget_class()(display=False, **options)
+    if options.get("delay", 0.0) <= 0.0:
+        bar.display()
+    return bar
+
+
+@cache
+def _widget_class() -> Any:
+    """Returns the class of bars in notebooks. There is only one, because tqdm starts a thread for each class."""
+    from tqdm import notebook
+
     class WidgetProgressBar(notebook.tqdm_notebook):  # type: ignore[misc] # tqdm has no types
         """tqdm's widget, whose output can be replaced.
 
@@ -56,10 +68,7 @@ def notebook_bar(**options: Any) -> Any:
                 self.output.update({"text/plain": ""}, raw=True)
                 self.output = None
 
-    bar = WidgetProgressBar(display=False, **options)
-    if options.get("delay", 0.0) <= 0.0:
-        bar.display()
-    return bar
+    return WidgetProgressBar
 
 
 SECONDS_BETWEEN_UPDATES = 0.1
