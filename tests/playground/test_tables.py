@@ -15,13 +15,14 @@ from qtab.config.config import DEFAULTS
 from qtab.config.options import OPTIONS, is_set
 from qtab.config.validation import defaults
 from qtab.playground import definitions
-from qtab.playground.assemble import data_script
+from qtab.playground.assemble import packed
 from qtab.playground.bundle import bundle
 from qtab.playground.settings import OFFERED, is_offered
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
-ENGINE = (Path(qtab.__file__).parent / "playground/page/engine.js").read_text(encoding="utf-8")
+PAGE = Path(qtab.__file__).parent / "playground/page"
+SOURCES = {name: (PAGE / name).read_text(encoding="utf-8") for name in ("engine.js", "worker.js")}
 # Trains by a request and returns the table and the returns of each seed, as base64 of float64.
 TRAIN = """
 async ({ request, given }) => {
@@ -53,9 +54,10 @@ EQUAL = [environment for environment, known in KNOWN.items() if not known["chaot
 @pytest.fixture(scope="module")
 def engine(chromium: Any, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
     """A page that holds the engine alone."""
-    script = bundle({"engine.js": ENGINE}, "engine.js") + '\nglobalThis.engineModule = modules["engine.js"];'
+    script = bundle(SOURCES, "engine.js") + '\nglobalThis.engineModule = modules["engine.js"];'
     file = tmp_path_factory.mktemp("engine") / "engine.html"
-    file.write_text(f'<!doctype html>{data_script()}<script type="module">{script}</script>', encoding="utf-8")
+    scripts = packed(script, bundle(SOURCES, "worker.js"))
+    file.write_text(f"<!doctype html><body>{scripts}</body>", encoding="utf-8")
     page = chromium.new_page()
     page.goto(file.as_uri())
     page.wait_for_function("globalThis.engineModule")

@@ -23,6 +23,18 @@ POLICY = (
     "'wasm-unsafe-eval' blob:; style-src 'unsafe-inline'; img-src data: blob:; worker-src blob:; base-uri 'none'; "
     "form-action 'none'\">"
 )
+# Starts the script of a page in one file.
+UNPACK = """\
+const data = globalThis.QTAB_PLAYGROUND;
+if (!globalThis.DecompressionStream) {
+  document.querySelector("#status").textContent = "This browser cannot decompress the page: a newer version can.";
+}
+const bytes = Uint8Array.from(atob(data.packed), (letter) => letter.charCodeAt(0));
+const unpacked = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
+Object.assign(data, JSON.parse(await new Response(unpacked).text()));
+delete data.packed;
+document.body.append(Object.assign(document.createElement("script"), { type: "module", textContent: data.script }));
+"""
 
 
 def page() -> str:
@@ -37,23 +49,22 @@ def page() -> str:
         if line not in html:
             raise ValueError(f"index.html must hold the line {line}")
     style = f"<style>\n{_text('style.css')}\n</style>"
-    script = f'<script type="module">\n{bundle(sources, "main.js")}\n</script>'
     html = html.replace(STYLE, f"{POLICY}\n{style}")
-    return html.replace(SCRIPT, f"{data_script(sources)}\n{script}")
+    return html.replace(SCRIPT, packed(bundle(sources, "main.js"), bundle(sources, "worker.js")))
 
 
-def data_script(sources: dict[str, str] | None = None) -> str:
-    """Returns the script with the data that engine.js would otherwise load: module, worker and definitions.
+def packed(script: str, worker: str) -> str:
+    """Returns the scripts of a page in one file, which start ``script`` with all that engine.js would otherwise load.
 
-    The module is compressed by gzip, which makes the page in one file much smaller.
+    The module, the definitions and both scripts are compressed by gzip: together they take less than half of the space.
     """
-    sources = _sources() if sources is None else sources
-    data = {
-        "wasm": base64.b64encode(gzip.compress(wasm(), mtime=0)).decode(),
-        "worker": bundle(sources, "worker.js"),
-        "definitions": definitions(),
-    }
-    return f"<script>globalThis.QTAB_PLAYGROUND = {_json(data)};</script>"
+    texts = _json({"worker": worker, "definitions": definitions(), "script": script}).encode()
+    data = {"wasm": _compressed(wasm()), "packed": _compressed(texts)}
+    return f'<script>globalThis.QTAB_PLAYGROUND = {_json(data)};</script>\n<script type="module">\n{UNPACK}</script>'
+
+
+def _compressed(data: bytes) -> str:
+    return base64.b64encode(gzip.compress(data, mtime=0)).decode()
 
 
 def write_site(folder: Path) -> None:

@@ -47,6 +47,12 @@ def test_the_command_writes_one_file_and_opens_it(tmp_path, opened, capsys):
     module = re.search(r'"wasm":"([^"]*)"', html)
     assert module is not None
     assert gzip.decompress(base64.b64decode(module[1])) == MODULE.read_bytes()
+    texts = re.search(r'"packed":"([^"]*)"', html)
+    assert texts is not None
+    data = json.loads(gzip.decompress(base64.b64decode(texts[1])))
+    assert data["definitions"] == json.loads(json.dumps(playground.definitions()))
+    sources = qtab.playground.assemble._sources()
+    assert (data["script"], data["worker"]) == (bundle(sources, "main.js"), bundle(sources, "worker.js"))
     assert not [line for line in html.splitlines() if 'src="' in line or '<link rel="stylesheet' in line]
 
 
@@ -91,22 +97,24 @@ def test_without_the_module_the_error_says_how_to_build_it(tmp_path, opened, cap
 @needs_module
 @pytest.mark.browser
 @pytest.mark.parametrize("requested_while_loading", [False, True])
-def test_a_module_of_another_version_is_refused(tmp_path, chromium, requested_while_loading):
-    html = playground.page()
-    version = f'"version":"{qtab.__version__}"'
-    instantiate = "const { instance, module: ready } = await WebAssembly"
-    assert html.count(version) == html.count(instantiate) == 1
-    html = html.replace(version, '"version":"9.9.9"')
+def test_a_module_of_another_version_is_refused(tmp_path, chromium, requested_while_loading, monkeypatch):
+    of_another = {**playground.definitions(), "version": "9.9.9"}
+    monkeypatch.setattr(qtab.playground.assemble, "definitions", lambda: of_another)
     page = chromium.new_page()
     page.set_default_timeout(PATIENCE)
     if requested_while_loading:
-        html = html.replace(instantiate, f"await new Promise((done) => setTimeout(done, 1000)); {instantiate}")
+        instantiate = "const { instance, module: ready } = await WebAssembly"
+        later = f"await new Promise((done) => setTimeout(done, 1000)); {instantiate}"
+        assert bundle(qtab.playground.assemble._sources(), "worker.js").count(instantiate) == 1
+        monkeypatch.setattr(
+            qtab.playground.assemble, "bundle", lambda *given: bundle(*given).replace(instantiate, later)
+        )
         page.add_init_script(
             "const post = Worker.prototype.postMessage; Worker.prototype.postMessage = function (message, ...rest) "
             "{ setTimeout(() => post.call(this, message, ...rest), message.type === 'load' ? 0 : 200); };"
         )
     path = tmp_path / "page.html"
-    path.write_text(html, encoding="utf-8")
+    path.write_text(playground.page(), encoding="utf-8")
     page.goto(path.as_uri())
     problem = page.locator("#problem")
     problem.wait_for()
