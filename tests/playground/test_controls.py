@@ -22,6 +22,7 @@ ALL = {
         {"exploration": "softmax"},
         {"discretizer": "bins"},
         {"discretizer": "tiles"},
+        {"discretizer": "fourier", "order": "2"},
     ]
 }
 SHORT = {"episodes": "20", "max_episode_steps": "30"}
@@ -64,6 +65,9 @@ def _change(playground: Playground, name: str, before: Any) -> Any:
         if other is not None:
             select.select_option(other)
         return other
+    if definition["type"] == "flag":
+        page.locator(f"#set-{name}").click()
+        return not before
     if definition["type"] in NUMBERS:
         slider = page.locator(f"#slide-{name}")
         moved = int(slider.input_value())
@@ -83,6 +87,24 @@ def _change(playground: Playground, name: str, before: Any) -> Any:
     count = len(KNOWN["environments"]["MountainCar-v0"]["observations"])
     spread = before if len(before) == count else before * count
     return [first, *spread[1:]]
+
+
+def test_a_fourier_basis_has_its_own_learning_rate_and_says_what_it_cannot_be_used_with(playground: Playground) -> None:
+    open_short(playground, "MountainCar-v0", {"learning_rate": "0.3", "discretizer": "tiles"})
+    before = playground.state()["settings"]
+    discretizers = playground.page.locator("#set-discretizer")
+    discretizers.select_option("fourier")
+    assert playground.settled().state()["settings"].items() >= {"learning_rate": 0.001, "initial_q": 0}.items()
+    # A quarter of the way from 0.0001 to 1, by orders of magnitude.
+    assert playground.page.locator("#slide-learning_rate").input_value() == "250"
+    refused = playground.page.locator("#set-algorithm option:disabled").all_inner_texts()
+    assert len(refused) == 5
+    assert all(text.endswith(" (not with Fourier basis)") for text in refused), refused
+    discretizers.select_option("bins")
+    after = playground.settled().state()["settings"]
+    assert [after[name] for name in ("learning_rate", "initial_q")] == [0.3, before["initial_q"]]
+    playground.page.locator("#set-algorithm").select_option("dyna_q")
+    assert discretizers.locator('[value="fourier"]').inner_text() == "Fourier basis (not with Dyna-Q)"
 
 
 def test_a_setting_changes_what_is_learned(playground: Playground) -> None:

@@ -4,6 +4,7 @@ import re
 
 import pytest
 
+from qtab.config.options import LEARNS_WEIGHTED
 from qtab.playground.settings import OFFERED
 from support.playground import Playground
 
@@ -11,6 +12,7 @@ pytestmark = pytest.mark.browser
 
 GRID = "env=CliffWalking-v1&episodes=40&max_episode_steps=40&epsilon=0.4&epsilon_schedule=constant&discount=0.95"
 TILES = "env=MountainCar-v0&discretizer=tiles&tilings=8&tiles=4&episodes=20&discount=0.95&terminal_update=target"
+FOURIER = "env=MountainCar-v0&discretizer=fourier&order=3&episodes=20&discount=0.95"
 CHANGES = (
     "learning_rate=0.3",
     "learning_rate=0.3&on_truncation=terminate",
@@ -66,6 +68,7 @@ def check_equations(playground: Playground, context: str) -> int:
         left, right = numbers.split(" = ")
         difference = evaluated(left) - evaluated(right)
         assert abs(difference.value) <= difference.error + 1e-12, (context, when, symbols, numbers)
+        assert ("Σ αᵢ xᵢ²" in symbols) == ("fourier" in context), context
         # As many factors and terms as the symbols say: α z [...] has two factors before the bracket.
         before = symbols.split("[")[0]
         assert left.split("[")[0].count("·") == ("α" in before) + ("z" in before), (context, symbols, numbers)
@@ -80,10 +83,10 @@ def test_every_printed_equation_holds(playground: Playground, algorithm: str) ->
     playground.open("#env=CliffWalking-v1&episodes=20")
     restore = "text => { playground.restore(playground.store, text); }"
     count = 0
-    for base, cells in ((GRID, (36, 24, 37)), (TILES, (None,))):
-        if base is TILES and algorithm.startswith("dyna"):
+    for base, cells in ((GRID, (36, 24, 37)), (TILES, (None,)), (FOURIER, (None,))):
+        if (base is TILES and algorithm.startswith("dyna")) or (base is FOURIER and algorithm not in LEARNS_WEIGHTED):
             continue
-        for change in CHANGES:
+        for change in CHANGES if base is not FOURIER else ("", CHANGES[1].replace("0.3", "0.01")):
             if "visits" in change and algorithm == "true_online_sarsa_lambda":
                 continue
             context = f"{base}&algorithm={algorithm}&{change}"

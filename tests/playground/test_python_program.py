@@ -39,6 +39,7 @@ PROGRAMS = (
     "#env=FrozenLake-v1&episodes=150&algorithm=expected_sarsa&exploration=epsilon_greedy&epsilon=0.5&min_epsilon=0.1"
     "&epsilon_warm_up=20&learning_rate_schedule=linear&min_learning_rate=0.01&learning_rate_warm_up=10",
     "#env=CartPole-v1&discretizer=tiles&tilings=4&tiles=3&episodes=20&algorithm=watkins_q_lambda&traces=replacing",
+    "#env=MountainCar-v0&discretizer=fourier&order=4&coupled=false&algorithm=sarsa&learning_rate=0.004&episodes=60",
 )
 TABLE = """async () => {
   const table = await playground.engine.table(0);
@@ -60,7 +61,10 @@ def test_the_program_learns_the_same_table(playground: Playground, fragment: str
     with contextlib.redirect_stdout(io.StringIO()) as printed:
         exec(compile(program, "copied.py", "exec"), names)  # noqa: S102 - what a reader does with it
     run = names["run"]
-    assert run.tables.tobytes() == table.tobytes()
+    if run.config.discretizer == "fourier":  # the cosines of the page differ in the last bit
+        np.testing.assert_allclose(run.tables.ravel(), table, rtol=0, atol=1e-9)
+    else:
+        assert run.tables.tobytes() == table.tobytes()
     assert run.episode_returns.tolist() == playground.result()["returns"][: len(run.episode_returns)]
     assert "array" not in printed.getvalue()
     figure = float(printed.getvalue().split("\n")[0])

@@ -9,6 +9,7 @@ import gymnasium as gym
 import numpy as np
 
 from qtab._utils.versions import versions
+from qtab.config.implied import weighted_defaults
 from qtab.config.options import n_tables
 from qtab.config.preset_settings import CLIFF_WALKING
 from qtab.config.presets import presets
@@ -16,7 +17,7 @@ from qtab.envs.grid_worlds import ACTION_NAMES
 from qtab.envs.metadata.quantities import Quantities, quantities_of
 from qtab.explanation.equations import bootstrap_symbol
 from qtab.playground.environments import ENVIRONMENTS, Entry
-from qtab.playground.settings import LEFT_OUT, OFFERED, rules, settings
+from qtab.playground.settings import LEFT_OUT, MAX_FEATURES, OFFERED, rules, settings
 
 GRID_TIME_LIMIT = 1000
 """The time limit of grid worlds, in steps."""
@@ -30,6 +31,11 @@ def definitions() -> dict[str, Any]:
         "environments": {key: _environment(key, entry) for key, entry in ENVIRONMENTS.items()},
         "settings": _plain(settings()),
         "rules": rules(),
+        # The settings that come with a discretizer, and are set aside with it.
+        "implied": {
+            name: found for name in OFFERED["discretizer"] if (found := weighted_defaults({"discretizer": name}))
+        },
+        "max_features": MAX_FEATURES,
         "bootstraps": {
             name: [bootstrap_symbol(name, table) for table in range(n_tables(name))] for name in OFFERED["algorithm"]
         },
@@ -109,7 +115,7 @@ def _gymnasium(entry: Entry) -> dict[str, Any]:
             for quantity, lower, upper in zip(description.observation, low.tolist(), high.tolist(), strict=True)
         ],
         # Rounding needs a scale for the observations.
-        "discretizers": [*(["round"] if "scale" in options else []), "bins", "tiles"],
+        "discretizers": [*(["round"] if "scale" in options else []), "bins", "tiles", "fourier"],
         "options": options,
         "map": {axis: _axis(description, name) for axis, name in zip("xy", plane, strict=True)},
     }

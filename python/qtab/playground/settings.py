@@ -30,10 +30,13 @@ OFFERED: Mapping[str, tuple[str, ...]] = {
     "exploration": ("epsilon_greedy", "softmax"),
     "epsilon_schedule": ("constant", "linear", "exponential"),
     "ties": ("first", "random"),
-    "discretizer": ("round", "bins", "tiles", "identity"),
+    "discretizer": ("round", "bins", "tiles", "fourier", "identity"),
     "bit_generator": ("PCG64", "MT19937"),
 }
 """The choices that the page offers, limited to those of rust/web/src/settings. The others need Python."""
+
+MAX_FEATURES = 256
+"""The largest number of Fourier features, as in rust/web/src/settings/discretizer.rs."""
 
 LEFT_OUT = frozenset(
     (
@@ -48,7 +51,7 @@ have their defaults on the page."""
 _CONTROLS: Mapping[str, tuple[str, float | None, float | None, bool]] = {
     "max_episode_steps": ("integer", 1, 10_000, True),
     "episodes": ("integer", 1, 100_000, True),
-    "learning_rate": ("number", 0, 1, False),  # up to 2 with tile coding
+    "learning_rate": ("number", 0, 1, False),  # up to 2 without cells
     "discount": ("number", 0, 1, False),
     "min_learning_rate": ("number", 0, 1, False),
     "learning_rate_decay": ("number", 0, 1, False),
@@ -68,6 +71,9 @@ _CONTROLS: Mapping[str, tuple[str, float | None, float | None, bool]] = {
     "tilings": ("integer", 1, 32, False),
     "tiles": ("integers", 1, 64, False),
     "bins": ("integers", 1, 100, False),
+    "order": ("integer", 1, 20, False),  # fewer if the features are coupled
+    "coupled": ("flag", None, None, False),
+    "scale_step_sizes": ("flag", None, None, False),
     "low": ("numbers", None, None, False),
     "high": ("numbers", None, None, False),
 }
@@ -75,6 +81,7 @@ _CONTROLS: Mapping[str, tuple[str, float | None, float | None, bool]] = {
 _TITLES = {
     "round": "Rounding",
     "tiles": "Tile coding",
+    "fourier": "Fourier basis",
     "identity": "None: states are numbers",
     "epsilon_greedy": "ε-greedy",
     "visits": "By visits",
@@ -84,10 +91,11 @@ _TITLES = {
 # Sentences that replace those of the config, which mention options that the page omits, or Python's names of them.
 _SENTENCES = {
     "learning_rate": "α: the fraction of the error that an update corrects, in [0, 1]. With tile coding it is divided "
-    "among the tilings, and may be up to 2.",
+    "among the tilings, and may be up to 2. With a Fourier basis it is not divided, so that it must be small.",
     "exploration": "The policy: a random action with probability ε, or the softmax of the values.",
     "max_episode_steps": "The time limit of an episode, in steps.",
-    "initial_q": "The initial Q table: drawn uniformly from a range (low, high), or one number everywhere.",
+    "initial_q": "The initial Q table: drawn uniformly from a range (low, high), or one number everywhere. With a "
+    "Fourier basis these are weights, not values.",
     "discount": "γ: the discount factor, in [0, 1]: how much the value of the next state counts.",
     "learning_rate_schedule": "The schedule of α: constant, linear or exponential over the episodes, or α / n at the "
     "n-th visit of a state and action (by visits).",
@@ -96,7 +104,14 @@ _SENTENCES = {
     "next state were terminal (a common mistake).",
     "epsilon_schedule": "The schedule of ε over the episodes.",
     "min_epsilon": "The lowest ε, which is at most ε itself. A linear schedule reaches it at the end of the run.",
-    "discretizer": "How observations index the Q table: rounded to a grid, by bins of equal width, or by tile coding.",
+    "discretizer": "How observations index the Q table: rounded to a grid, by bins of equal width, or by tile coding. "
+    "A Fourier basis has no cells: the value is a sum of cosines, each with a weight.",
+    "order": "n: the largest frequency of a cosine, in half waves along a component. There are (n + 1)ᵈ features of d "
+    f"components if they are coupled, of which this page allows {MAX_FEATURES}.",
+    "coupled": "Cosines of all components at once. Without them the value is a sum of functions of single components, "
+    "as if these did not interact, with only d n + 1 features.",
+    "scale_step_sizes": "Divides the α of a feature by the length of its frequency vector, so that fine waves are "
+    "learned slowly.",
 }
 _SYMBOL = re.compile(r"(\w): ")
 

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::learners::greedy::{Episode, mean_action_value};
+use crate::learners::greedy::{Episode, StateFeatures, mean_action_value};
 use crate::map::Cells;
 use crate::map::best::Best;
 use crate::runs::run::Progress;
@@ -158,11 +158,11 @@ fn add_map(training: &Training, arrays: &mut Arrays) {
     let (tables, num_actions) = (run.tables(), training.subject.num_actions());
     let (mut values, mut visits, mut greedy) = (Vec::new(), Vec::new(), Vec::new());
     for cell in 0..training.cells.count() {
-        let rows = training.cells.observation(cell).and_then(|observation| training.subject.active_rows(&observation));
-        let rows = rows.unwrap_or_default();
+        let features = training.cells.observation(cell).and_then(|observation| training.subject.features(&observation));
+        let features = features.unwrap_or_default();
         let mut best = (NO_ACTION, f64::NAN);
         for action in 0..num_actions {
-            let value = mean_action_value(&tables, &rows, num_actions, action).filter(|_| !rows.is_empty());
+            let value = mean_action_value(&tables, &features, num_actions, action).filter(|_| !features.is_empty());
             if let Some(value) = value
                 && (best.0 == NO_ACTION || value > best.1)
             {
@@ -171,13 +171,13 @@ fn add_map(training: &Training, arrays: &mut Arrays) {
         }
         greedy.push(best.0);
         values.push(best.1);
-        let counts = run.visits().map(|counts| count_of(counts, &rows, num_actions));
+        let counts = run.visits().map(|counts| count_of(counts, &features, cell, num_actions));
         visits.push(counts.map_or(f64::NAN, |counts| counts.iter().sum()));
     }
     arrays.add("visits", Array::F64(visits));
     arrays.add("values", Array::F64(values));
     arrays.add("greedy", Array::U8(greedy));
-    if let Cells::Plane(plane) = &training.cells {
+    if let Cells::Plane(plane) = &*training.cells {
         arrays.add("xEdges", Array::F64(plane.x_edges.clone()));
         arrays.add("yEdges", Array::F64(plane.y_edges.clone()));
     }
@@ -188,8 +188,11 @@ fn as_i32(index: usize) -> i32 {
     i32::try_from(index).unwrap_or(i32::MAX)
 }
 
-/// The number of times each action was taken in a state: with tile coding, the mean over its tiles.
-fn count_of(counts: &[i64], rows: &[u32], num_actions: usize) -> Vec<f64> {
+/// The number of times each action was taken in a state: with tile coding, the mean over its tiles; with weighted features,
+/// those of its cell.
+fn count_of(counts: &[i64], features: &StateFeatures, cell: usize, num_actions: usize) -> Vec<f64> {
+    let cell = [cell as u32];
+    let rows = if features.weighted().is_some() { &cell[..] } else { &features.rows };
     let count = |row: u32, action| counts.get(row as usize * num_actions + action).copied().unwrap_or(0) as f64;
     let mean = |action| rows.iter().map(|&row| count(row, action)).sum::<f64>() / rows.len().max(1) as f64;
     (0..num_actions).map(mean).collect()
@@ -223,11 +226,11 @@ pub(crate) fn inspection<'a>(training: &'a Training, cell: usize, arrays: &mut A
     let run = &training.runs[0].run;
     let num_actions = training.subject.num_actions();
     let observation = training.cells.observation(cell).unwrap_or_default();
-    let rows = training.subject.active_rows(&observation).unwrap_or_default();
+    let features = training.subject.features(&observation).unwrap_or_default();
     let tables = run.tables();
-    let value = |action| mean_action_value(&tables, &rows, num_actions, action).unwrap_or(f64::NAN);
+    let value = |action| mean_action_value(&tables, &features, num_actions, action).unwrap_or(f64::NAN);
     arrays.add("actionValues", Array::F64((0..num_actions).map(value).collect()));
-    let visits = run.visits().map(|counts| count_of(counts, &rows, num_actions)).unwrap_or_default();
+    let visits = run.visits().map(|counts| count_of(counts, &features, cell, num_actions)).unwrap_or_default();
     arrays.add("visits", Array::F64(visits));
     arrays.add("observation", Array::F64(observation));
     let updates = run.watch().into_iter().flat_map(Watch::updates).collect();

@@ -43,12 +43,23 @@ export function term(value, digits = 4) {
 
 const NUMBER = /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;
 
-/** The largest learning rate with tile coding, which divides it among the tilings. */
+/** The largest learning rate if states have no cells of their own: with tile coding it is divided among the tilings. */
 export const HIGHEST_RATE = 2;
 
+/** Whether each state is one row of the table. */
+export function hasCells({ discretizer }) {
+  return !["tiles", "fourier"].includes(discretizer);
+}
+
+/** Whether the features of states are numbers, which multiply all weights. */
+export function isWeighted({ discretizer }) {
+  return discretizer === "fourier";
+}
+
 /** The largest value of a setting beside others. */
-export function highest(name, definition, settings) {
-  if (name === "learning_rate" && settings.discretizer === "tiles") return HIGHEST_RATE;
+export function highest(name, definition, settings, { max_features }) {
+  if (name === "learning_rate" && !hasCells(settings)) return HIGHEST_RATE;
+  if (name === "order" && settings.coupled) return Math.floor(max_features ** (1 / settings.low.length) + 1e-9) - 1;
   if (name === "min_epsilon") return settings.epsilon;
   if (name === "min_learning_rate") return settings.learning_rate;
   if (name.endsWith("_warm_up")) return settings.episodes - 1;
@@ -71,6 +82,11 @@ export function readNumber(name, text, { low, high, integer }) {
   return { value };
 }
 
+/** The range of a slider: without cells a learning rate is so small that only its order of magnitude matters. */
+export function sliderRange(name, limits, settings) {
+  return name === "learning_rate" && isWeighted(settings) ? { low: 1e-4, high: 1, integer: false, log: true } : limits;
+}
+
 /** Converts between the positions 0 to 1000 of a slider and values, on a linear or logarithmic scale. */
 export function positions({ low, high, integer, log }) {
   const steps = 1000;
@@ -90,5 +106,5 @@ export function positions({ low, high, integer, log }) {
 }
 
 function decimals(width) {
-  return width > 20 ? 0 : width > 2 ? 1 : 2;
+  return width > 20 ? 0 : width > 2 ? 1 : Math.min(Math.max(2 - Math.ceil(Math.log10(width)), 2), 12);
 }

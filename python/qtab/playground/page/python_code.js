@@ -1,7 +1,7 @@
 // The run as a Python program, which learns the same table unless the task is chaotic.
 
 import { make } from "./controls/elements.js";
-import { counted } from "./format.js";
+import { counted, hasCells } from "./format.js";
 import { lastOf } from "./results/statistics.js";
 
 const INDENT = "    ";
@@ -54,7 +54,7 @@ export function pythonProgram(store, measure = "returns") {
   const env = entry.python ? literal(entry.python) : many ? "make_env" : "env";
   lines.push("", many ? "runs = qtab.train_many(" : "run = qtab.train(", ...[env, ...settings].map((each) => `${INDENT}${each},`), ")");
   lines.push(printedMean(state, measure), ...(many ? ["run = runs[0]"] : []));
-  lines.push(state.settings.discretizer === "tiles" ? "print(run.tables)" : "print(run.q_table)");
+  lines.push(hasCells(state.settings) ? "print(run.q_table)" : "print(run.tables)");
   return `${lines.join("\n")}\n`;
 }
 

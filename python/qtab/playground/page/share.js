@@ -87,7 +87,7 @@ function readSeeds(given, left) {
 
 /** Puts the settings of an address into a state; returns their names and values. */
 function readSettings(store, given, state, left) {
-  const { settings: known, environments } = store.definitions;
+  const { settings: known, environments, implied } = store.definitions;
   const { discretizers, observations } = environments[state.environment];
   const asks = new Map();
   for (const [name, text] of given) {
@@ -97,7 +97,7 @@ function readSettings(store, given, state, left) {
     if (impossible) left.push(name);
     else asks.set(name, value);
   }
-  state.settings = { ...state.settings, ...Object.fromEntries(asks) };
+  state.settings = { ...state.settings, ...implied[asks.get("discretizer")], ...Object.fromEntries(asks) };
   return asks;
 }
 
@@ -105,6 +105,7 @@ function readSettings(store, given, state, left) {
 function readSetting(name, text, definition, components) {
   const integer = ["integer", "integers"].includes(definition.type);
   const high = name === "learning_rate" ? HIGHEST_RATE : definition.high;
+  if (definition.type === "flag") return { true: true, false: false }[text];
   const read = (part) => readNumber(name, part, { low: definition.low, high, integer }).value;
   if (definition.type === "choice") return definition.choices.find(({ value }) => value === text)?.value;
   if (["number", "integer"].includes(definition.type)) return read(text);

@@ -17,7 +17,7 @@ export function fit(definitions, environment, given) {
   for (const name of [...FIRST, ...Object.keys(settings)]) {
     const { type, low } = definitions.settings[name];
     if (!(name in settings) || !["number", "integer"].includes(type)) continue;
-    settings[name] = Math.max(Math.min(settings[name], highest(name, definitions.settings[name], settings)), low);
+    settings[name] = Math.max(Math.min(settings[name], highest(name, definitions.settings[name], settings, definitions)), low);
   }
   if (settings.low?.some((low, index) => low >= settings.high[index])) Object.assign(settings, { low: known.options.low, high: known.options.high });
   return settings;
@@ -46,6 +46,7 @@ export class Store {
   constructor(definitions) {
     this.definitions = definitions;
     this.listeners = new Set();
+    this.setAside = null;
     this.state = this.initial(Object.keys(definitions.environments)[0]);
   }
 
@@ -80,9 +81,24 @@ export class Store {
     for (const listener of this.listeners) listener(state, Object.keys(changes));
   }
 
-  /** Changes one setting. */
+  /** Changes one setting, and those that come with it. */
   set(name, value) {
-    this.update({ settings: { ...this.state.settings, [name]: value } });
+    const implied = name === "discretizer" ? this.impliedBy(value) : {};
+    this.update({ settings: { ...this.state.settings, [name]: value, ...implied } });
+  }
+
+  /**
+   * The settings that come with another discretizer: the step size of Fourier features means another thing than that of
+   * cells. The settings that they replace come back with cells.
+   */
+  impliedBy(discretizer) {
+    const { implied } = this.definitions;
+    const { environment, settings } = this.state;
+    const [before, after] = [implied[settings.discretizer], implied[discretizer]];
+    if (Boolean(before) === Boolean(after)) return {};
+    if (before) return this.setAside?.environment === environment ? this.setAside.settings : pick(this.initial(environment).settings, before);
+    this.setAside = { environment, settings: pick(settings, after) };
+    return after;
   }
 
   /** The reason why a choice is impossible with the others; null if it is possible. */
@@ -124,6 +140,11 @@ export class Store {
     const map = plane ? { map: { x: plane.x.component, y: plane.y.component, at: observations.map(() => 0), columns: RASTER, rows: RASTER } } : {};
     return { environment: asked, settings, seeds: Array.from({ length: seeds }, (_, index) => seed + index), ...map };
   }
+}
+
+/** The members of an object that another one has. */
+function pick(object, other) {
+  return Object.fromEntries(Object.keys(other).map((name) => [name, object[name]]));
 }
 
 /** A copy of a grid world that can be changed. */

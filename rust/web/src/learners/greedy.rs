@@ -1,5 +1,7 @@
 //! The greedy policy of a table: action values, and an episode.
 
+use qtab_core::features::ActiveFeatures;
+
 /// The steps of an episode.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Episode {
@@ -11,6 +13,7 @@ pub(crate) struct Episode {
 }
 
 impl Episode {
+    #[inline(never)]
     pub(crate) fn push(&mut self, observation: Vec<f64>, action: usize, reward: f64) {
         self.observations.extend(observation);
         self.actions.push(action as u8);
@@ -23,27 +26,76 @@ impl Episode {
     }
 }
 
-/// The value of an action in the state with these active rows: the sum over the rows and the tables.
-pub(crate) fn action_value(tables: &[&[f64]], rows: &[u32], num_actions: usize, action: usize) -> Option<f64> {
+/// The features of a state: its active rows, and with weighted features the number of each.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct StateFeatures {
+    pub(crate) rows: Vec<u32>,
+    /// Empty for binary features.
+    values: Vec<f64>,
+}
+
+impl StateFeatures {
+    #[inline(never)]
+    pub(crate) fn of(features: &impl ActiveFeatures) -> Self {
+        Self { rows: features.as_ref().to_vec(), values: features.values().to_vec() }
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    /// The numbers of weighted features, all of whose rows are active; `None` for binary features.
+    pub(crate) fn weighted(&self) -> Option<&[f64]> {
+        (!self.values.is_empty()).then_some(&self.values)
+    }
+}
+
+/// The value of an action in a state: the sum over the tables.
+#[inline(never)]
+pub(crate) fn action_value(
+    tables: &[&[f64]],
+    features: &StateFeatures,
+    num_actions: usize,
+    action: usize,
+) -> Option<f64> {
     let mut sum = 0.0;
     for table in tables {
-        for &row in rows {
+        if let Some(x) = features.weighted() {
+            sum += sum_of_products(table.get(action..)?.iter().step_by(num_actions), x);
+            continue;
+        }
+        for &row in &features.rows {
             sum += table.get(row as usize * num_actions + action)?;
         }
     }
     Some(sum)
 }
 
+/// The products of weights and features, added as the core does: four partial sums, which are added in pairs.
+fn sum_of_products<'a>(weights: impl Iterator<Item = &'a f64>, x: &[f64]) -> f64 {
+    let mut parts = [0.0; 4];
+    for (index, (weight, x)) in weights.zip(x).enumerate() {
+        parts[index % 4] += weight * x;
+    }
+    (parts[0] + parts[1]) + (parts[2] + parts[3])
+}
+
 /// The mean of the value over the tables, which unlike the sum has the scale of a return.
-pub(crate) fn mean_action_value(tables: &[&[f64]], rows: &[u32], num_actions: usize, action: usize) -> Option<f64> {
-    action_value(tables, rows, num_actions, action).map(|sum| sum / tables.len() as f64)
+pub(crate) fn mean_action_value(
+    tables: &[&[f64]],
+    features: &StateFeatures,
+    num_actions: usize,
+    action: usize,
+) -> Option<f64> {
+    action_value(tables, features, num_actions, action).map(|sum| sum / tables.len() as f64)
 }
 
 /// The first action with the largest value.
-pub(crate) fn greedy_action(tables: &[&[f64]], rows: &[u32], num_actions: usize) -> Option<usize> {
+#[inline(never)]
+pub(crate) fn greedy_action(tables: &[&[f64]], features: &StateFeatures, num_actions: usize) -> Option<usize> {
     let mut best = (0, f64::NEG_INFINITY);
     for action in 0..num_actions {
-        let value = action_value(tables, rows, num_actions, action)?;
+        let value = action_value(tables, features, num_actions, action)?;
         if value > best.1 {
             best = (action, value);
         }

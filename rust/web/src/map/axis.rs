@@ -46,19 +46,15 @@ impl Axis {
         if self.is_angle {
             return even(-PI, PI, count);
         }
-        match discretizer {
-            Discretizer::Grid(grid) => {
-                let edges = &grid.edges[self.component];
-                if edges.len() > MAX_CELLS + 1 {
-                    return even(edges[0], edges[edges.len() - 1], MAX_CELLS as u32);
-                }
-                edges.clone()
+        if let Discretizer::Grid(grid) = discretizer {
+            let edges = &grid.edges[self.component];
+            if edges.len() > MAX_CELLS + 1 {
+                return even(edges[0], edges[edges.len() - 1], MAX_CELLS as u32);
             }
-            Discretizer::Tiles { limits, .. } => even(limits[self.component].0, limits[self.component].1, count),
-            Discretizer::Identity => {
-                let (low, high) = bounds[self.component];
-                even(low.into(), high.into(), count)
-            }
+            return edges.clone();
         }
+        let (low, high) = bounds[self.component];
+        let (low, high) = discretizer.limits().map_or((low.into(), high.into()), |limits| limits[self.component]);
+        even(low, high, count)
     }
 }

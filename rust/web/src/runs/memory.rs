@@ -4,7 +4,7 @@ use qtab_core::learners::AnyAlgorithm;
 use qtab_core::settings::LearningRateSpec;
 
 use crate::failure::Failure;
-use crate::settings::Settings;
+use crate::settings::{MAX_FEATURES, Settings};
 
 /// The largest memory of a request's runs.
 const MAX_BYTES: u64 = 512 << 20;
@@ -45,7 +45,11 @@ fn bytes_of_algorithm(settings: &Settings, values: u64) -> u64 {
         AnyAlgorithm::DynaQ { .. } => 36 * values,
         AnyAlgorithm::DynaQPlus { .. } => 44 * values,
         AnyAlgorithm::NStepSarsa { n_steps } => {
-            let bytes_per_step = 32 + 4 * settings.discretizer.n_active() as u64;
+            let bytes_per_step = if settings.discretizer.step_size_divisors().is_some() {
+                32 + 8 * MAX_FEATURES as u64
+            } else {
+                32 + 4 * settings.discretizer.n_active() as u64
+            };
             bytes_per_step * settings.max_episode_steps.min(n_steps as u64)
         }
         _ => 0,

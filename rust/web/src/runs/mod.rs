@@ -2,19 +2,23 @@
 
 mod memory;
 pub(crate) mod run;
+mod shown_task;
 mod subject;
+mod unsaved;
+
+use std::sync::Arc;
 
 use serde::Serialize;
 use serde_json::Value;
 
 use self::run::Run;
-use self::subject::{StartedRun, Subject, subject};
+use self::subject::{Shown, StartedRun, Subject, subject};
 use crate::environment::Environment;
 use crate::failure::Failure;
 use crate::json::integer;
 use crate::map::Cells;
 use crate::settings::Settings;
-use crate::updates::Watch;
+use crate::updates::{Place, Watch};
 
 const MAX_SEEDS: usize = 64;
 /// The largest number of episodes of all seeds together: their results take 17 bytes each, and a page copies them.
@@ -31,7 +35,7 @@ pub(crate) struct Training {
     pub(crate) environment: Environment,
     pub(crate) settings: Settings,
     pub(crate) subject: Box<dyn Subject>,
-    pub(crate) cells: Cells,
+    pub(crate) cells: Arc<Cells>,
     pub(crate) seeds: Vec<u32>,
     pub(crate) runs: Vec<StartedRun>,
     /// The cell whose updates the first run watches; `None` if no cell of the map has its first state.
@@ -82,7 +86,7 @@ impl Training {
         let subject = subject.ok_or_else(|| "the discretizer does not fit the environment".to_string())?;
         memory::check(&settings, (subject.n_rows(), subject.num_actions()), seeds.len())?;
         let first = subject.first_observation(seeds[0]);
-        let cells = Cells::new(&environment, &settings.discretizer, request.get("map"), &first)?;
+        let cells = Arc::new(Cells::new(&environment, &settings.discretizer, request.get("map"), &first)?);
         let mut training =
             Self { environment, settings, subject, cells, seeds, runs: Vec::new(), watched: None, replay: None };
         training.start(request.get("inspect"))?;
@@ -97,7 +101,8 @@ impl Training {
         let mut watch = self.watch(cell, self.settings.episodes - self.settings.episodes / LAST_PART);
         self.watched = watch.as_ref().map(|_| cell);
         for (index, &seed) in self.seeds.iter().enumerate() {
-            self.runs.push(self.subject.run(&self.settings, seed, index == 0, watch.take())?);
+            let shown = (index == 0).then(|| Shown { cells: &self.cells, watch: watch.take() });
+            self.runs.push(self.subject.run(&self.settings, seed, shown)?);
         }
         Ok(())
     }
@@ -112,7 +117,13 @@ impl Training {
     /// A watch of a cell from an episode on; `None` if the cell has no action values.
     fn watch(&self, cell: usize, from: usize) -> Option<Watch> {
         let observation = self.cells.observation(cell)?;
-        self.subject.active_rows(&observation).map(|rows| Watch::new(rows, from))
+        let features = self.subject.features(&observation)?;
+        let place = if features.weighted().is_some() {
+            Place::Cell { watched: cell, left: Arc::default() }
+        } else {
+            Place::Rows(features.rows)
+        };
+        Some(Watch::new(place, from))
     }
 
     /// The smallest number of finished episodes of all runs.
@@ -171,7 +182,8 @@ impl Training {
         }
         if self.replay.as_ref().is_none_or(|replay| replay.cell != cell) {
             let watch = self.watch(cell, 0).ok_or("cell must be one with action values")?;
-            let run = self.subject.run(&self.settings, self.seeds[0], true, Some(watch))?;
+            let shown = Shown { cells: &self.cells, watch: Some(watch) };
+            let run = self.subject.run(&self.settings, self.seeds[0], Some(shown))?;
             self.replay = Some(Replay { cell, run });
         }
         let Some(replay) = &mut self.replay else { return Ok(Position::OnItsWay) };

@@ -1,6 +1,6 @@
 //! The discretizer of a request.
 
-use qtab_core::features::{AnyGrid, Axis, Bins, Edges, MAX_TILINGS, Rounding, TileCoding};
+use qtab_core::features::{AnyGrid, Axis, Bins, Edges, FourierBasis, MAX_TILINGS, Rounding, TileCoding};
 use qtab_core::settings::SettingSource;
 
 use super::fields::Fields;
@@ -9,6 +9,8 @@ use crate::failure::Failure;
 
 /// The largest number of rows of a table.
 const MAX_ROWS: u64 = 1 << 24;
+/// The largest number of weighted features. A step copies them, so there is room for fewer than in Python.
+pub(crate) const MAX_FEATURES: usize = 256;
 /// Larger limits would overflow float32, the precision of grids.
 const LARGEST_LIMIT: f64 = 1e30;
 
@@ -21,6 +23,10 @@ pub(crate) enum Discretizer {
     Tiles {
         features: Box<TileCoding<f32, MAX_TILINGS>>,
         tilings: usize,
+        limits: Vec<(f64, f64)>,
+    },
+    Fourier {
+        features: FourierBasis<f32, MAX_FEATURES>,
         limits: Vec<(f64, f64)>,
     },
 }
@@ -38,18 +44,34 @@ impl Discretizer {
             fields.word("discretizer", &[("identity", ())])?;
             return Ok(Self::Identity);
         };
-        if bounds.iter().all(|(low, high)| low.is_finite() && high.is_finite()) {
-            fields.word("discretizer", &[("round", rounding as Parser), ("bins", bins), ("tiles", tiles)])?(
-                fields, bounds,
-            )
-        } else {
-            fields.word("discretizer", &[("bins", bins as Parser), ("tiles", tiles)])?(fields, bounds)
-        }
+        let parsers: [(&str, Parser); 4] =
+            [("round", rounding), ("bins", bins), ("tiles", tiles), ("fourier", fourier)];
+        let is_bounded = bounds.iter().all(|(low, high)| low.is_finite() && high.is_finite());
+        // Rounding needs bounds.
+        fields.word("discretizer", &parsers[usize::from(!is_bounded)..])?(fields, bounds)
     }
 
     /// The number of rows that are active at a time.
     pub(crate) fn n_active(&self) -> usize {
-        if let Self::Tiles { tilings, .. } = self { *tilings } else { 1 }
+        match self {
+            Self::Identity | Self::Grid(_) => 1,
+            Self::Tiles { tilings, .. } => *tilings,
+            Self::Fourier { features, .. } => features.n_features(),
+        }
+    }
+
+    /// The numbers that divide the learning rate of each row of weighted features, which may be none; `None` for other
+    /// features.
+    pub(crate) fn step_size_divisors(&self) -> Option<Vec<f64>> {
+        if let Self::Fourier { features, .. } = self { Some(features.divisors()) } else { None }
+    }
+
+    /// The limits of each component; `None` if there are cells, or states that are numbers.
+    pub(crate) fn limits(&self) -> Option<&[(f64, f64)]> {
+        match self {
+            Self::Identity | Self::Grid(_) => None,
+            Self::Tiles { limits, .. } | Self::Fourier { limits, .. } => Some(limits),
+        }
     }
 }
 
@@ -91,6 +113,18 @@ fn tiles(fields: &Fields<'_>, bounds: Bounds) -> Result<Discretizer, Failure> {
     let (low, high): (Vec<f64>, Vec<f64>) = limits.iter().copied().unzip();
     let features = Box::new(TileCoding::new(&low, &high, &tiles, tilings));
     Ok(Discretizer::Tiles { features, tilings: tilings as usize, limits })
+}
+
+fn fourier(fields: &Fields<'_>, bounds: Bounds) -> Result<Discretizer, Failure> {
+    let limits = limits(fields, bounds)?;
+    let order = fields.integer("order", 1, MAX_FEATURES as u64)? as u32;
+    let (coupled, scales_step_sizes) = (fields.flag("coupled")?, fields.flag("scale_step_sizes")?);
+    let (low, high): (Vec<f64>, Vec<f64>) = limits.iter().copied().unzip();
+    let features = FourierBasis::try_new(&low, &high, order, coupled, scales_step_sizes).map_err(|_| {
+        let expected = format!("small enough for {MAX_FEATURES} features with {} components", limits.len());
+        fields.invalid("order", &expected)
+    })?;
+    Ok(Discretizer::Fourier { features, limits })
 }
 
 /// The lower and the upper limit of each component: the given ones, or those of the observation space.

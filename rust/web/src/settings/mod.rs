@@ -3,7 +3,7 @@
 mod discretizer;
 mod fields;
 
-use qtab_core::learners::{Agent, AnyAlgorithm};
+use qtab_core::learners::{Agent, AnyAlgorithm, FeatureKinds};
 use qtab_core::memory::{AllocationError, filled, from_fn};
 use qtab_core::q_table::TerminalUpdate;
 use qtab_core::random::{AgentRng, Rng, SeedSequence};
@@ -11,7 +11,7 @@ use qtab_core::settings::{LearningRateSpec, PolicySpec, SettingSource as _};
 use qtab_core::{QTable, StopFlag};
 use serde_json::Value;
 
-pub(crate) use discretizer::Discretizer;
+pub(crate) use discretizer::{Discretizer, MAX_FEATURES};
 use fields::Fields;
 
 use crate::environment::Bounds;
@@ -50,19 +50,24 @@ impl Settings {
         let episodes = fields.integer("episodes", 1, MAX_EPISODES)?;
         let max_episode_steps = fields.integer("max_episode_steps", 1, MAX_STEPS)?;
         let discretizer = Discretizer::parse(&fields, bounds)?;
-        let tiles = matches!(discretizer, Discretizer::Tiles { .. });
-        let largest_rate = if tiles { 2.0 } else { 1.0 };
+        let weighted = discretizer.step_size_divisors().is_some();
+        let has_cells = discretizer.limits().is_none();
+        let largest_rate = if has_cells { 1.0 } else { 2.0 };
         fields.word("algorithm", ALGORITHMS)?;
         fields.word("exploration", &[("epsilon_greedy", ()), ("softmax", ())])?;
         if fields.has("model") {
             fields.word("model", &[("deterministic", ())])?;
         }
         let (algorithm, learning_rate) = AnyAlgorithm::parse(&fields, episodes, max_episode_steps, largest_rate)?;
-        if tiles && algorithm.needs_single_rows() {
+        if weighted && algorithm.feature_kinds() != FeatureKinds::All {
+            let expected = "a one-step or n-step method for discretizer 'fourier'";
+            return Err(fields.invalid("algorithm", expected));
+        }
+        if !has_cells && algorithm.needs_single_rows() {
             return Err(fields.invalid("algorithm", "an algorithm without a model for discretizer 'tiles'"));
         }
         let terminal_update = fields.word("terminal_update", TERMINAL_UPDATES)?;
-        if terminal_update == TerminalUpdate::Assign && (tiles || !assigns(algorithm)) {
+        if terminal_update == TerminalUpdate::Assign && !(has_cells && assigns(algorithm)) {
             return Err(fields.invalid("terminal_update", "'target' for this algorithm and discretizer"));
         }
         let parsed = Self {
@@ -79,10 +84,10 @@ impl Settings {
             mersenne_twister: fields.word("bit_generator", &[("PCG64", false), ("MT19937", true)])?,
         };
         let visits = matches!(parsed.learning_rate, LearningRateSpec::Visits { .. });
-        if visits && matches!(parsed.algorithm, AnyAlgorithm::TrueOnlineSarsaLambda { .. }) {
-            return Err(
-                fields.invalid("learning_rate_schedule", "'constant', 'linear' or 'exponential' for this algorithm")
-            );
+        if visits && (weighted || matches!(parsed.algorithm, AnyAlgorithm::TrueOnlineSarsaLambda { .. })) {
+            let chosen = if weighted { "discretizer" } else { "algorithm" };
+            let expected = format!("'constant', 'linear' or 'exponential' for this {chosen}");
+            return Err(fields.invalid("learning_rate_schedule", &expected));
         }
         fields.check_all_used()?;
         Ok(parsed)
@@ -97,14 +102,17 @@ impl Settings {
     pub(crate) fn agent(
         &self,
         (n_rows, num_actions): (usize, usize),
-        n_active: usize,
         rng: &mut AgentRng,
     ) -> Result<(Agent, Option<QTable>), AllocationError> {
         let (stop, weights) = (StopFlag::new(), n_rows * num_actions);
         let table = self.table(weights, num_actions, rng)?;
         let second = (self.algorithm.n_tables() == 2).then(|| self.table(weights, num_actions, rng)).transpose()?;
         let episodes = self.episodes as u64;
-        let learning_rate = self.learning_rate.build(episodes, weights, n_active, &stop)?;
+        let of_weighted = || self.learning_rate.build_weighted(episodes, self.discretizer.step_size_divisors()?);
+        let learning_rate = match of_weighted() {
+            Some(learning_rate) => learning_rate,
+            None => self.learning_rate.build(episodes, weights, self.discretizer.n_active(), &stop)?,
+        };
         let policy = self.policy.build(episodes, (n_rows, num_actions), false, &stop)?;
         let (discount, terminal_update) = (self.discount, self.terminal_update);
         Ok((Agent { table, policy, learning_rate, discount, terminal_update, masks: None }, second))

@@ -1,5 +1,6 @@
 //! Requests like those of the page, and properties that hold for all of them.
 
+mod fourier;
 mod maps;
 mod parity;
 mod refusals;

@@ -49,7 +49,7 @@ fn changed(settings: &str, changes: &[(&str, &str)]) -> Option<String> {
 }
 
 /// Checks the equation of an update. It holds to the last bit with a single active row and without traces.
-fn check_equation(update: &Value, discount: f64, exact: bool, context: &str) {
+pub(super) fn check_equation(update: &Value, discount: f64, exact: bool, context: &str) {
     let agree = |left: f64, right: f64| if exact { left.to_bits() == right.to_bits() } else { close(left, right) };
     let value = |name: &str| number(update, name).expect("a number");
     let (old, new, target) = (value("old"), value("new"), value("target"));

@@ -4,6 +4,8 @@ pub(crate) mod recorder;
 mod step_terms;
 
 use std::collections::VecDeque;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use serde::Serialize;
 
@@ -94,10 +96,22 @@ impl Update {
     }
 }
 
+/// The cell of the state that a run has left with its last step.
+pub(crate) type CellLeft = Arc<AtomicUsize>;
+
+/// The state that is watched.
+#[derive(Clone, Debug)]
+pub(crate) enum Place {
+    /// The state with these active rows.
+    Rows(Vec<u32>),
+    /// The states of a cell of the map, for weighted features: their rows are those of all states.
+    Cell { watched: usize, left: CellLeft },
+}
+
 /// The state that is watched, with its updates.
 #[derive(Clone, Debug)]
 pub(crate) struct Watch {
-    rows: Vec<u32>,
+    place: Place,
     /// The first episode that is watched, counted from 0.
     from: usize,
     episode: usize,
@@ -107,9 +121,14 @@ pub(crate) struct Watch {
 }
 
 impl Watch {
-    /// A watch of the state with these active rows, from an episode on.
-    pub(crate) fn new(rows: Vec<u32>, from: usize) -> Self {
-        Self { rows, from, episode: 0, steps: 0, updates: VecDeque::with_capacity(KEPT) }
+    /// A watch of a state from an episode on.
+    pub(crate) fn new(place: Place, from: usize) -> Self {
+        Self { place, from, episode: 0, steps: 0, updates: VecDeque::with_capacity(KEPT) }
+    }
+
+    /// The place where the run notes the cell that it leaves with each step, if the cell is watched.
+    pub(crate) fn cell_left(&self) -> Option<CellLeft> {
+        if let Place::Cell { left, .. } = &self.place { Some(Arc::clone(left)) } else { None }
     }
 
     /// Whether all updates were kept that would have been kept when watching from the first episode.
@@ -122,11 +141,17 @@ impl Watch {
         self.updates.iter()
     }
 
-    /// Whether a state is the watched one; with tile coding, whether it shares three quarters of its tiles.
+    /// Whether a state is the watched one; with tile coding, whether it shares three quarters of its tiles. If a cell is
+    /// watched, the state must be the one that the last step has left.
     #[inline]
     pub(crate) fn is_near(&self, state: &[u32]) -> bool {
-        let shared = state.iter().zip(&self.rows).filter(|(row, watched)| row == watched).count();
-        shared * 4 >= self.rows.len() * 3
+        match &self.place {
+            Place::Rows(rows) => {
+                let shared = state.iter().zip(rows).filter(|(row, watched)| row == watched).count();
+                shared * 4 >= rows.len() * 3
+            }
+            Place::Cell { watched, left } => left.load(Ordering::Relaxed) == *watched,
+        }
     }
 
     /// Counts a step, and returns whether its updates are watched.

@@ -1,5 +1,7 @@
 //! A learner that records the updates of a state. The learned values are unchanged.
 
+use std::collections::VecDeque;
+
 use qtab_core::checkpoint::{Checkpoint, CheckpointError};
 use qtab_core::features::ActiveRows;
 use qtab_core::learners::TransformedSteps;
@@ -9,18 +11,21 @@ use qtab_core::tasks::Next;
 use qtab_core::{Learner, delegate_learner};
 
 use crate::learners::AnyLearner;
-use crate::updates::step_terms::StepTerms;
+use crate::updates::step_terms::{StepTerms, weighted_rate};
 use crate::updates::{Update, UpdateKind, Watch};
 
 /// A learner, and the state whose updates are watched, if any.
 pub(crate) struct UpdateRecorder<R: ActiveRows> {
     learner: TransformedSteps<AnyLearner<R>>,
     watch: Option<Box<Watch>>,
+    /// With weighted features, for each step of an n-step method that waits for its update: the rate of its value if its
+    /// state is the watched one. Updates come in the order of the steps.
+    waiting: VecDeque<Option<f64>>,
 }
 
 impl<R: ActiveRows> UpdateRecorder<R> {
     pub(crate) fn new(learner: TransformedSteps<AnyLearner<R>>, watch: Option<Watch>) -> Self {
-        Self { learner, watch: watch.map(Box::new) }
+        Self { learner, watch: watch.map(Box::new), waiting: VecDeque::new() }
     }
 
     pub(crate) fn watch(&self) -> Option<&Watch> {
@@ -40,6 +45,10 @@ impl<R: ActiveRows> UpdateRecorder<R> {
         self.learner.complete_tables();
         let terminate = self.learner.terminate;
         let terms = near.then(|| StepTerms::new(&mut self.learner.learner, step, &next, terminate));
+        if R::WEIGHTED && matches!(self.learner.learner, AnyLearner::NStepSarsa(_)) {
+            let rate = if near { weighted_rate(&mut self.learner.learner, &state) } else { None };
+            self.waiting.push_back(rate);
+        }
         let traces = self.learner.learner.has_traces();
         self.learner.learner.set_logging(!traces);
         let next_action = self.learner.learn(state, action, reward, next, rng);
@@ -63,7 +72,13 @@ impl<R: ActiveRows> UpdateRecorder<R> {
         let several = matches!(learner, AnyLearner::NStepSarsa(_));
         for (table, rate) in learner.learning_rates().enumerate() {
             for (index, (rows, logged)) in rate.logged().iter().enumerate() {
-                if !watch.is_near(rows) {
+                let LoggedUpdate { action, old, new, target, mut learning_rate } = *logged;
+                if R::WEIGHTED {
+                    let of_step = step.and_then(|(terms, _)| terms.weighted_rate);
+                    learning_rate = if several { self.waiting.pop_front().flatten() } else { of_step };
+                }
+                let is_shown = if R::WEIGHTED { learning_rate.is_some() } else { watch.is_near(rows) };
+                if !is_shown {
                     continue;
                 }
                 let is_own = from_step && index == 0 && !several;
@@ -72,7 +87,6 @@ impl<R: ActiveRows> UpdateRecorder<R> {
                     (false, true) => UpdateKind::Target,
                     (false, false) => UpdateKind::Planning,
                 };
-                let LoggedUpdate { action, old, new, target, learning_rate } = *logged;
                 let update = Update { table, ..Update::new(kind, action, (old, new, target), learning_rate) };
                 watch.push(match step.filter(|_| is_own) {
                     Some((terms, next_action)) => terms.explain(update, next_action),
@@ -107,6 +121,7 @@ impl<R: ActiveRows> Learner<R> for UpdateRecorder<R> {
 
     fn end_episode(&mut self) {
         self.learner.end_episode();
+        self.waiting.clear();
         if let Some(watch) = &mut self.watch {
             watch.end_episode();
         }

@@ -6,7 +6,6 @@ use qtab_core::schedules::{LearningRate, StepSize};
 use qtab_core::tasks::Next;
 
 use crate::learners::AnyLearner;
-use crate::learners::greedy::{action_value, greedy_action};
 use crate::updates::{StepEnd, Update, UpdateKind};
 
 /// The value of the next state, before the step.
@@ -31,6 +30,27 @@ pub(crate) struct StepTerms<R> {
     /// With traces: the traces of the active rows after this visit. Dutch traces are known only after the step.
     traces: Vec<f64>,
     q_old: Option<f64>,
+    /// [`weighted_rate`] of the state.
+    pub(super) weighted_rate: Option<f64>,
+}
+
+/// With weighted features, how much of an error an update corrects: it moves weight i by αᵢ xᵢ times the error, and so the
+/// value by Σᵢ αᵢ xᵢ² times the error. `None` for binary features.
+pub(super) fn weighted_rate<R: ActiveRows>(learner: &mut AnyLearner<R>, state: &R) -> Option<f64> {
+    let rate = &learner.agent().learning_rate;
+    R::WEIGHTED.then(|| numbered(state).map(|(row, x)| step_size(rate, row, 0) * x * x).sum())
+}
+
+/// The rows of a state, each with the number of its feature.
+fn numbered<R: ActiveRows>(state: &R) -> impl Iterator<Item = (u32, f64)> + Clone {
+    let values = state.values();
+    let number = move |index: usize| if R::WEIGHTED { values[index] } else { 1.0 };
+    state.as_ref().iter().enumerate().map(move |(index, &row)| (row, number(index)))
+}
+
+/// The step size of a weight, whose row can have its own.
+fn step_size(rate: &LearningRate, row: u32, weight_index: usize) -> f64 {
+    rate.of_rows().map_or_else(|| rate.at(weight_index), |steps| steps[row as usize])
 }
 
 impl<R: ActiveRows> StepTerms<R> {
@@ -47,9 +67,10 @@ impl<R: ActiveRows> StepTerms<R> {
             Next::Truncated(next) => (StepEnd::Truncated, learner.next_value(next)),
             Next::Terminal => (StepEnd::Terminal, NextValue::None),
         };
-        let (traces, q_old) = learner.traces_of_visit(state.as_ref(), action);
+        let (traces, q_old) = learner.traces_of_visit(&state, action);
         let old = learner.agent().value(state, action);
-        Self { state, action, reward, end, next, old, traces, q_old }
+        let weighted_rate = weighted_rate(learner, &state);
+        Self { state, action, reward, end, next, old, traces, q_old, weighted_rate }
     }
 
     /// The update of a table by this step, as the learner logged it.
@@ -69,13 +90,14 @@ impl<R: ActiveRows> StepTerms<R> {
         let dutch = learner.dutch_traces(rows, self.action);
         let traces = dutch.as_ref().unwrap_or(&self.traces);
         let Agent { table, learning_rate, discount, .. } = learner.agent();
-        let sizes = rows.iter().map(|&row| learning_rate.at(table.weight_index(row, self.action)));
-        let learning_rate: f64 = sizes.clone().sum();
-        let gain: f64 = sizes.zip(traces).map(|(size, trace)| size * trace).sum();
+        let size = |row: u32| step_size(learning_rate, row, table.weight_index(row, self.action));
+        let moved = numbered(&self.state).map(|(row, x)| (size(row) * x, x));
+        let gain: f64 = moved.clone().zip(traces).map(|((step, _), trace)| step * trace).sum();
+        let learning_rate: f64 = moved.map(|(step, x)| step * x).sum();
         // With several active rows, the trace is the mean that would change the value equally.
         let trace = if learning_rate > 0.0 { gain / learning_rate } else { *traces.first()? };
         let kind = if dutch.is_some() { UpdateKind::DutchTrace } else { UpdateKind::Trace };
-        let new = table.value(rows, self.action);
+        let new = table.value(&self.state, self.action);
         let update = Update::new(kind, self.action, (self.old, new, f64::NAN), Some(learning_rate));
         let update = self.explain(update, next_action);
         let target = update.next_value.map_or(self.reward, |value| self.reward + *discount * value);
@@ -134,11 +156,11 @@ impl<R: ActiveRows> AnyLearner<R> {
             }
             Self::ExpectedSarsa(learner) => NextValue::One(learner.agent.expected_value(next)),
             Self::DoubleQLearning(learner) => {
-                let (rows, num_actions) = (next.as_ref(), learner.rule.second_table.num_actions());
-                let tables = [learner.agent.table.values(), learner.rule.second_table.values()];
+                let tables = [&learner.agent.table, &learner.rule.second_table];
                 let of = |updated: usize| {
-                    let greedy = greedy_action(&tables[updated..=updated], rows, num_actions).unwrap_or(0);
-                    action_value(&[tables[1 - updated]], rows, num_actions, greedy).unwrap_or(f64::NAN)
+                    let values = (0..tables[0].num_actions()).map(|action| tables[updated].value(&next, action));
+                    let greedy = values.enumerate().reduce(|best, other| if other.1 > best.1 { other } else { best });
+                    greedy.map_or(f64::NAN, |(action, _)| tables[1 - updated].value(&next, action))
                 };
                 NextValue::OfTable([of(0), of(1)])
             }
@@ -150,13 +172,13 @@ impl<R: ActiveRows> AnyLearner<R> {
     }
 
     /// The traces of a pair after a visit, and Qₒ of true online Sarsa(λ).
-    fn traces_of_visit(&self, rows: &[u32], action: usize) -> (Vec<f64>, Option<f64>) {
+    fn traces_of_visit(&self, state: &R, action: usize) -> (Vec<f64>, Option<f64>) {
         let visited = |agent: &Agent, traces: &Traces, kind: TraceKind| {
-            let visited = |&row: &u32| match kind {
-                TraceKind::Accumulating => traces.get(agent.table.weight_index(row, action)) + 1.0,
-                TraceKind::Replacing | TraceKind::Clearing => 1.0,
+            let visited = |(row, x): (u32, f64)| match kind {
+                TraceKind::Accumulating => traces.get(agent.table.weight_index(row, action)) + x,
+                TraceKind::Replacing | TraceKind::Clearing => x,
             };
-            (rows.iter().map(visited).collect(), None)
+            (numbered(state).map(visited).collect(), None)
         };
         match self {
             Self::SarsaLambda(learner) => visited(&learner.agent, &learner.rule.traces, learner.rule.kind),

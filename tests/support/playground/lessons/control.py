@@ -30,6 +30,18 @@ def solved_car(lesson: Lesson, _: Lessons) -> None:
     assert all(episode.terminated for episode in lesson.greedy_of_all(runs))
 
 
+def weights(lesson: Lesson) -> int:
+    return lesson.train(0, episodes=1).tables.size
+
+
+def fourier_car(lesson: Lesson, others: Lessons) -> None:
+    assert weights(lesson) == 108
+    assert weights(others["MountainCar-v0", "Solved: tile coding"]) == 7776
+    lengths = lesson.runs().episode_lengths
+    assert lengths[:, :100].mean() == pytest.approx(160, abs=5)
+    assert lengths[:, -100:].mean() == pytest.approx(130, abs=5)
+
+
 def coarse_pole(lesson: Lesson, _: Lessons) -> None:
     assert (last(lesson.runs()) < 50).all()
 
@@ -48,11 +60,35 @@ def solved_pole(lesson: Lesson, _: Lessons) -> None:
     assert all(episode.total == 500 for episode in lesson.greedy_of_all(runs))
 
 
+def fourier_pole(lesson: Lesson, _: Lessons) -> None:
+    assert weights(lesson) == 81 * 2
+    returns = lesson.runs().episode_returns
+    assert returns[:, :100].mean() == pytest.approx(275, abs=10)
+    assert (returns[:, 200:] == 500).all()
+
+
+def uncoupled_pole(lesson: Lesson, others: Lessons) -> None:
+    assert weights(lesson) == 9 * 2
+    coupled = others["CartPole-v1", "Fourier basis: solved"].settings
+    assert lesson.settings == {**coupled, "coupled": False, "learning_rate": 10 * coupled["learning_rate"]}
+    mean = last(lesson.runs()).mean()
+    assert mean == pytest.approx(65, abs=5)
+    assert mean > last(lesson.runs(learning_rate=coupled["learning_rate"])).mean() + 40
+
+
 def acrobot_with_tiles(lesson: Lesson, _: Lessons) -> None:
     returns = lesson.runs().episode_returns
     assert returns[:, :10].mean() < -300
     assert returns[:, 200:300].mean() > -105
     assert returns[:, -100:].mean() > -90
+
+
+def fourier_acrobot(lesson: Lesson, others: Lessons) -> None:
+    assert weights(lesson) == 19 * 3
+    assert weights(others["Acrobot-v1", "Tile coding"]) > 200_000
+    lengths = -lesson.runs().episode_returns
+    assert lengths[:, :100].mean() == pytest.approx(110, abs=5)
+    assert lengths[:, 100:].mean() == pytest.approx(90, abs=5)
 
 
 def acrobot_without_traces(lesson: Lesson, others: Lessons) -> None:
@@ -73,10 +109,14 @@ CLAIMS: Claims = {
     ("MountainCar-v0", "The article: fails"): article,
     ("MountainCar-v0", "Optimistic: better"): optimistic_car,
     ("MountainCar-v0", "Solved: tile coding"): solved_car,
+    ("MountainCar-v0", "Fourier basis"): fourier_car,
     ("CartPole-v1", "Too coarse: fails"): coarse_pole,
     ("CartPole-v1", "Bins"): pole_in_bins,
     ("CartPole-v1", "Solved: tile coding"): solved_pole,
+    ("CartPole-v1", "Fourier basis: solved"): fourier_pole,
+    ("CartPole-v1", "Uncoupled: fails"): uncoupled_pole,
     ("Acrobot-v1", "Tile coding"): acrobot_with_tiles,
+    ("Acrobot-v1", "Fourier basis"): fourier_acrobot,
     ("Acrobot-v1", "One-step Sarsa: slower"): acrobot_without_traces,
     ("Acrobot-v1", "Bins: slow"): acrobot_in_bins,
 }

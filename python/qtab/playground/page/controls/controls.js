@@ -3,7 +3,7 @@
 
 import { make, refusalPlace, refuse } from "./elements.js";
 import { fallingText } from "./schedules.js";
-import { highest, positions, readNumber } from "../format.js";
+import { highest, positions, readNumber, sliderRange } from "../format.js";
 
 const TITLES = {
   initial_q: "Initial values",
@@ -20,6 +20,7 @@ const TITLES = {
   low: "Lower limits",
   high: "Upper limits",
   scale: "Cells per unit",
+  scale_step_sizes: "Scaled step sizes",
 };
 
 /** The title of a setting: a special one, or its name in words. */
@@ -63,6 +64,17 @@ function choiceControl(store, name, definition) {
   return { element: parts.element, refresh, focus: () => select.focus() };
 }
 
+/** A box to check. */
+function flagControl(store, name, definition) {
+  const id = `set-${name}`;
+  const parts = frame(name, definition, id);
+  const onchange = () => store.set(name, box.checked);
+  const box = make("input", { type: "checkbox", id, "aria-describedby": parts.sentence.id, onchange });
+  parts.head.append(box);
+  const refresh = () => { box.checked = store.state.settings[name]; };
+  return { element: parts.element, refresh, focus: () => box.focus() };
+}
+
 /** A text field with checked numbers. `apply(value)` may return a reason to reject one. */
 function numberField({ refused: place, sentence }, id, read, apply) {
   const onchange = () => {
@@ -96,28 +108,29 @@ function numberControl(store, name, definition) {
   const parts = frame(name, definition, id);
   const limits = () => ({
     low: definition.low,
-    high: highest(name, definition, store.state.settings),
+    high: highest(name, definition, store.state.settings, store.definitions),
     integer: definition.type === "integer",
     log: definition.log,
   });
+  const range = () => sliderRange(name, limits(), store.state.settings);
   const field = numberField(parts, id, (text) => readNumber(name, text, limits()), (value) => store.set(name, value));
   const falling = make("span", { className: "falling", id: `falling-${name}` });
   parts.head.append(field.input, falling);
   field.input.setAttribute("aria-describedby", `${falling.id} ${field.input.getAttribute("aria-describedby")}`);
-  const oninput = () => store.set(name, positions(limits()).value(Number(slider.value)));
+  const oninput = () => store.set(name, positions(range()).value(Number(slider.value)));
   const onkeydown = (event) => {
     const step = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 10, PageDown: -10 }[event.key];
     if (!step) return;
     event.preventDefault();
-    store.set(name, stepped(limits(), store.state.settings[name], step));
+    store.set(name, stepped(range(), store.state.settings[name], step));
   };
-  const range = { type: "range", min: 0, max: 1000, step: 1, id: `slide-${name}`, "aria-label": titleOf(name) };
-  const slider = make("input", { ...range, oninput, onkeydown });
+  const places = { type: "range", min: 0, max: 1000, step: 1, id: `slide-${name}`, "aria-label": titleOf(name) };
+  const slider = make("input", { ...places, oninput, onkeydown });
   parts.head.after(slider);
   const refresh = () => {
     const value = store.state.settings[name];
     field.show(value);
-    slider.value = positions(limits()).position(value);
+    slider.value = positions(range()).position(value);
     falling.textContent = fallingText(store.state.settings, name);
     falling.hidden = falling.textContent === "";
     slider.setAttribute("aria-valuetext", `${value} ${falling.textContent}`.trim());
@@ -184,9 +197,9 @@ function initialValuesControl(store, name, definition) {
 const LESS_NEEDED = new Set([
   ...["learning_rate_schedule", "min_learning_rate", "learning_rate_decay", "learning_rate_warm_up", "traces", "trace_cutoff"],
   ...["initial_q", "terminal_update", "on_truncation", "epsilon_warm_up", "ties", "max_episode_steps", "bit_generator"],
-  ...["low", "high"],
+  ...["low", "high", "scale_step_sizes"],
 ]);
-const CONTROLS = { choice: choiceControl, number: numberControl, integer: numberControl, initial_q: initialValuesControl };
+const CONTROLS = { choice: choiceControl, flag: flagControl, number: numberControl, integer: numberControl, initial_q: initialValuesControl };
 const GROUP_ORDER = ["Learning", "Exploration", "Discretizer", "Run"];
 
 /** Builds the controls of a store's settings and keeps them up to date. */

@@ -2,6 +2,7 @@
 
 import { radioButtons } from "./elements.js";
 import { exampleState } from "./examples.js";
+import { isWeighted } from "../format.js";
 
 const STROKE = 'fill="none" stroke="currentColor" stroke-width="2" stroke-linecap="round" stroke-linejoin="round"';
 const cell = (x, y, opacity) =>
@@ -32,12 +33,13 @@ function drawing(key, entry) {
 export function setUpEnvironments(store, group, title, sentence) {
   const choices = Object.entries(store.definitions.environments).map(([key, entry]) => [key, drawing(key, entry), entry.title]);
   const mark = radioButtons(group, "environment", choices, (key) => store.update(exampleState(store, key, 0)));
-  const show = ({ environment }) => {
+  const show = ({ environment, settings }) => {
     const chosen = mark(environment);
+    const claim = store.entry.chaotic ? "chaotic" : isWeighted(settings) ? "close" : "equal";
     group.scrollLeft = Math.max(chosen.offsetLeft - group.offsetLeft - group.clientWidth / 3, 0);
     title.textContent = store.entry.title;
     sentence.textContent = store.entry.sentence;
-    for (const claim of document.querySelectorAll("[data-chaotic]")) claim.hidden = claim.dataset.chaotic !== String(store.entry.chaotic);
+    for (const each of document.querySelectorAll("[data-claim]")) each.hidden = each.dataset.claim !== claim;
   };
   store.subscribe(show);
   show(store.state);

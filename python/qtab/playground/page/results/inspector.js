@@ -15,14 +15,15 @@ function nameOf(table, bootstraps) {
  * The equation of updates in symbols. `bootstraps`: the term for the value of the next state, one text for each table
  * that the algorithm learns: Double Q-learning has two.
  */
-function symbolEquation({ kind, table, learningRate }, bootstraps) {
+function symbolEquation({ kind, table, learningRate, isWeighted }, bootstraps) {
   const value = nameOf(table, bootstraps);
   const source = kind === "planning" ? "Planning with the model: " : "";
   if (learningRate === null) return `${source}${value} ← R`;
   const following = bootstraps[table].replaceAll("'", "′").replaceAll("Q1", "Q₁").replaceAll("Q2", "Q₂");
+  const rate = isWeighted ? "Σ αᵢ xᵢ²" : "α";
   const target = { n_step: "G", planning: "target" }[kind] ?? `R + γ ${following}`;
-  if (kind === "dutch_trace") return `${value} ← ${value} + α z [${target} − Q_old] − α [${value} − Q_old]`;
-  return `${source}${value} ← ${value} + α ${kind === "trace" ? "z " : ""}[${target} − ${value}]`;
+  if (kind === "dutch_trace") return `${value} ← ${value} + ${rate} z [${target} − Q_old] − ${rate} [${value} − Q_old]`;
+  return `${source}${value} ← ${value} + ${rate} ${kind === "trace" ? "z " : ""}[${target} − ${value}]`;
 }
 
 /** The equation with the numbers of an update, as parts: the last one is the new value. */
@@ -50,6 +51,9 @@ const SHOWN_UPDATES = 5;
 const HINT =
   "Select a cell of the first map, with the pointer or with the arrow keys and Enter. Here you then see how much each " +
   "action is worth, how often it was taken, and the last updates with their numbers.";
+const WEIGHTED =
+  "Each update of a state in this cell moves all weights of the action at once: weight i by αᵢ xᵢ times the error, and so the " +
+  "value by Σ αᵢ xᵢ² times the error. Between them, updates of other states move the value as well.";
 const UNVISITED = "No update yet: the agent has not left this state by a step.";
 const ENDS = {
   terminal: "a terminal state follows",
@@ -71,6 +75,7 @@ export function showInspection(title, place, inspection, actions, bootstraps, hi
   if (newest.length) {
     updates.append(make("p", { className: "equation symbols", textContent: symbolEquation(newest[0], bootstraps) }));
     updates.append(make("ol", { className: "updates" }, ...newest.map((update) => updateItem(update, actions, newest[0], bootstraps))));
+    if (newest[0].isWeighted) updates.append(make("p", { className: "hint", textContent: WEIGHTED }));
   } else {
     updates.append(make("p", { className: "hint", textContent: UNVISITED }));
   }

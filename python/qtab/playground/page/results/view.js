@@ -8,7 +8,7 @@ import { Motion } from "../drawing/motion.js";
 import { forgetSizes } from "../drawing/surface.js";
 import { onThemeChange } from "../drawing/theme.js";
 import { StateMap } from "../drawing/value_map.js";
-import { count, counted, number } from "../format.js";
+import { count, counted, isWeighted, number } from "../format.js";
 import { showInspection } from "./inspector.js";
 import {
   along,
@@ -387,7 +387,9 @@ export class View {
     const { actions } = this.store.entry;
     const bootstraps = this.store.definitions.bootstraps[this.store.state.settings.algorithm];
     const when = this.past ? ", at the end of the training" : "";
-    const named = inspection && { ...inspection, state: `${this.stateText(inspection)}${when}` };
+    const weighted = isWeighted(this.store.state.settings);
+    const updates = inspection?.updates.map((update) => ({ ...update, isWeighted: weighted }));
+    const named = inspection && { ...inspection, updates, state: `${this.stateText(inspection)}${when}` };
     showInspection(element("inspector-title"), element("inspection"), named, actions, bootstraps);
   }
 }

@@ -13,7 +13,7 @@ pytestmark = pytest.mark.browser
 
 EXAMPLE = "#env=Acrobot-v1&example=0&episodes=200"
 SHOWN = """() => ["footer", "#python-dialog"].map((place) =>
-  [...document.querySelectorAll(`${place} [data-chaotic]`)]
+  [...document.querySelectorAll(`${place} [data-claim]`)]
     .filter((claim) => !claim.hidden).map((claim) => claim.textContent.replace(/\\s+/g, " ")))"""
 DIGEST = """async () => new Uint32Array((await playground.engine.table(0)).buffer)
   .reduce((digest, word) => Math.imul(digest ^ word, 16777619), 2166136261)"""
@@ -29,6 +29,16 @@ def test_only_acrobot_is_said_to_part_from_python(playground: Playground) -> Non
         assert ("in Python gives the same table, to the last bit" in footer) != is_acrobot
         assert ("learns the same table as this page" in dialog) != is_acrobot
         assert ("Acrobot is chaotic" in footer) == ("Acrobot is chaotic" in dialog) == is_acrobot
+
+
+def test_a_fourier_basis_is_said_to_differ_from_python_in_the_last_digits(playground: Playground) -> None:
+    playground.open("#env=MountainCar-v0&episodes=20&discretizer=fourier")
+    [footer], [dialog] = playground.page.evaluate(SHOWN)
+    assert "gives the same weights, apart from their last digits" in footer
+    assert "learns the same weights as this page, apart from their last digits" in dialog
+    playground.page.locator("#set-discretizer").select_option("tiles")
+    [footer], [dialog] = playground.page.evaluate(SHOWN)
+    assert "in Python gives the same table, to the last bit" in footer
 
 
 @pytest.mark.slow

@@ -1,9 +1,11 @@
 """The tables that a browser learns equal those of ``qtab.train`` to the bit."""
 
 import base64
+import math
 import random
 from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -12,12 +14,16 @@ from numpy.typing import NDArray
 
 import qtab
 from qtab.config.config import DEFAULTS
-from qtab.config.options import OPTIONS, is_set
+from qtab.config.options import LEARNS_WEIGHTED, OPTIONS, is_set
 from qtab.config.validation import defaults
 from qtab.playground import definitions
 from qtab.playground.assemble import packed
 from qtab.playground.bundle import bundle
-from qtab.playground.settings import OFFERED, is_offered
+from qtab.playground.settings import MAX_FEATURES, OFFERED, is_offered
+from qtab.reference import LEARNERS
+from qtab.reference.parts import discretizers
+from qtab.training.setup.run_env import make_run_env
+from support.playground import musl
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
@@ -124,7 +130,7 @@ def random_settings(rng: random.Random, environment: str, algorithm: str) -> dic
         "discount": rng.choice([0.0, 0.9, 0.99, 1.0]),
         "epsilon": rng.choice([0.0, 0.2, 0.8]),
         "initial_q": rng.choice([0.0, -3.5, (-1.0, 1.0)]),
-        "discretizer": rng.choice(known["discretizers"]),
+        "discretizer": rng.choice([name for name in known["discretizers"] if name != "fourier"]),
         "max_episode_steps": rng.choice([50, 200]),
         "bins": rng.randint(2, 8),
         "tiles": rng.randint(2, 6),
@@ -193,12 +199,73 @@ def test_painted_grid_worlds_equal_python(engine):
         check(engine, painted, given, [seed])
 
 
+FOURIER: dict[str, Any] = {"discretizer": "fourier", "learning_rate": 0.004, "initial_q": 0.0, "discount": 1.0}
+FOURIER |= {"epsilon": 0.1, "epsilon_schedule": "constant", "terminal_update": "target", "ties": "first"}
+SMALL_POLE = {"low": (-2.4, -2.5, -0.21, -3.5), "high": (2.4, 2.5, 0.21, 3.5), "order": 2}
+
+
+def trained_with_features(engine: Any, environment: str, given: dict[str, Any]) -> tuple[Any, NDArray[np.float64]]:
+    """Trains in the browser and in Python, which must take the same steps; returns Python's run, the page's table."""
+    trained = engine.evaluate(TRAIN, {"request": {"environment": {"id": environment}, "seeds": [3]}, "given": given})
+    settings = {name: tuple(value) if isinstance(value, list) else value for name, value in trained["settings"].items()}
+    run = qtab.train(environment, seed=3, progress=False, **settings)
+    assert trained["lengths"] == run.episode_lengths.tolist()
+    assert floats(trained["returns"]).tobytes() == run.episode_returns.tobytes()
+    return run, floats(trained["tables"][0]).reshape(run.tables.shape)
+
+
+@pytest.mark.parametrize("algorithm", [name for name in OFFERED["algorithm"] if name in LEARNS_WEIGHTED])
+def test_fourier_weights_equal_those_of_the_reference_with_the_cosines_of_the_page(engine, algorithm, monkeypatch):
+    of_page = SimpleNamespace(**{**vars(math), "cos": musl.cos, "sin": musl.sin})
+    for number, coupled in enumerate([True, False]):
+        given = {**FOURIER, "algorithm": algorithm, "order": 3 + number, "coupled": coupled, "episodes": 6}
+        run, table = trained_with_features(
+            engine, "MountainCar-v0", {**given, "scale_step_sizes": algorithm != "sarsa"}
+        )
+        np.testing.assert_allclose(table, run.tables, rtol=0, atol=1e-10)
+        with monkeypatch.context() as patched:
+            patched.setattr(discretizers, "math", of_page)
+            found = LEARNERS[algorithm](make_run_env(run.config, of="gymnasium"), run.config)
+        assert table.tobytes() == found[0].tobytes(), given
+        assert found[2].tolist() == run.episode_lengths.tolist()
+
+
+@pytest.mark.parametrize(
+    ("environment", "changes"),
+    [
+        ("MountainCar-v0", {"order": 5, "n_steps": 16, "episodes": 300, "learning_rate_schedule": "linear"}),
+        ("CartPole-v1", {**SMALL_POLE, "n_steps": 8, "episodes": 100}),
+        ("Acrobot-v1", {"order": 1, "n_steps": 4, "episodes": 40, "max_episode_steps": 20}),
+    ],
+)
+def test_long_runs_with_a_fourier_basis_take_the_same_steps_as_in_python(engine, environment, changes):
+    run, table = trained_with_features(engine, environment, {**FOURIER, "algorithm": "n_step_sarsa", **changes})
+    assert np.abs(table).max() > 0.1
+    np.testing.assert_allclose(table, run.tables, rtol=0, atol=1e-8)
+
+
+def test_the_largest_order_of_the_page_is_that_of_the_engine(engine):
+    for environment, known in KNOWN.items():
+        components = len(known["observations"] or ())
+        if not components:
+            continue
+        rows = [(n + 1) ** components for n in range(1, 20) if (n + 1) ** components <= MAX_FEATURES]
+        given = {**FOURIER, **(SMALL_POLE if environment == "CartPole-v1" else {}), "order": len(rows), "episodes": 1}
+        request = {"request": {"environment": {"id": environment}, "seeds": [3]}, "given": given}
+        assert len(floats(engine.evaluate(TRAIN, request)["tables"][0])) == rows[-1] * len(known["actions"])
+        request["given"]["order"] += 1
+        with pytest.raises(Exception, match=f"order must be small enough for {MAX_FEATURES} features"):
+            engine.evaluate(TRAIN, request)
+
+
 @pytest.mark.parametrize("environment", KNOWN)
 def test_the_page_completes_settings_as_python_does(engine, environment):
     rng = random.Random(environment)  # noqa: S311
     known = definitions()["environments"][environment]
     for algorithm in OFFERED["algorithm"]:
         given = random_settings(rng, environment, algorithm)
+        if "fourier" in known["discretizers"] and algorithm == "n_step_sarsa":
+            given |= {**FOURIER, "learning_rate_schedule": "constant", "coupled": False}
         options = {"max_episode_steps": known["max_episode_steps"], **known["options"]}
         expected = completed({**options, **given})
         script = "(arguments) => globalThis.engineModule.complete(...arguments)"
