@@ -1,18 +1,17 @@
 //! Estimated state values: the weights, their features and their step sizes.
 
 use super::StateFeatures;
-use crate::numeric::sum;
 use crate::schedules::{LearningRate, StepSize};
 use crate::tasks::Next;
 
-/// v(s) = Σ w over the active rows of s, from left to right. With one row per state it is a table.
+/// v(s) = wᵀx(s), in the order of [`StateFeatures::dot`]. With one active row per state it is a table.
 #[derive(Debug, PartialEq)]
 pub struct LinearValues {
     /// The weights w.
     pub weights: Vec<f64>,
-    /// The features x(s): the active rows of each state.
+    /// The features x(s).
     pub features: StateFeatures,
-    /// The learning rate α, divided by the number of active rows.
+    /// The learning rate α, divided by the number of active rows; that of a weighted feature i is αᵢ.
     pub learning_rate: LearningRate,
     /// The discount γ.
     pub discount: f64,
@@ -23,7 +22,7 @@ impl LinearValues {
     /// The values before the first episode.
     ///
     /// # Panics
-    /// If the number of weights differs from the number of rows.
+    /// If the number of weights differs from that of the features.
     pub fn new(weights: Vec<f64>, features: StateFeatures, learning_rate: LearningRate, discount: f64) -> Self {
         assert_eq!(weights.len(), features.n_weights(), "there must be a weight for each row");
         Self { weights, features, learning_rate, discount, diverged: false }
@@ -32,13 +31,13 @@ impl LinearValues {
     /// v(S).
     #[inline]
     pub fn value(&self, state: u32) -> f64 {
-        if self.features.n_active() == 1 { self.weights[self.features.first(state)] } else { self.sum_rows(state) }
-    }
-
-    /// v(S) with several active rows. It is a separate function so that the case of one row is inlined: TD(0) then takes
-    /// 12 % fewer instructions per step.
-    fn sum_rows(&self, state: u32) -> f64 {
-        sum(self.features.of(state).iter().map(|&row| self.weights[row as usize]))
+        // The sum is a separate function so that the case of one row is inlined: TD(0) then takes 12 % fewer instructions
+        // per step.
+        if self.features.has_single_rows() {
+            self.weights[self.features.first(state)]
+        } else {
+            self.features.dot(state, &self.weights)
+        }
     }
 
     /// v(S′), which is 0 in a terminal state.
@@ -50,11 +49,19 @@ impl LinearValues {
         }
     }
 
+    /// δ = R + γ v(S′) - v(S). Records a divergence if it is not a finite number.
+    #[inline]
+    pub fn td_error(&mut self, state: u32, reward: f64, next: Next<u32>) -> f64 {
+        let error = reward + self.discount * self.next_value(next) - self.value(state);
+        self.check_finite(error);
+        error
+    }
+
     /// w ← w + α [target - v(S)] ∇v(S).
     #[inline]
     pub fn update(&mut self, state: u32, target: f64) {
-        if self.features.n_active() != 1 {
-            return self.update_rows(state, target);
+        if !self.features.has_single_rows() {
+            return self.update_all(state, target);
         }
         let row = self.features.first(state);
         let error = target - self.weights[row];
@@ -63,17 +70,20 @@ impl LinearValues {
         self.weights[row] += self.learning_rate.at(row) * error;
     }
 
-    /// The update with several active rows, separate for the same reason.
-    fn update_rows(&mut self, state: u32, target: f64) {
-        let error = target - self.sum_rows(state);
+    /// The update of several weights, separate for the same reason.
+    fn update_all(&mut self, state: u32, target: f64) {
+        let error = target - self.features.dot(state, &self.weights);
         self.check_finite(error);
+        if let Some(x) = self.features.vector(state) {
+            return add_scaled(&mut self.weights, &self.learning_rate, error, x);
+        }
         for &row in self.features.of(state) {
             self.learning_rate.visit(row as usize);
             self.weights[row as usize] += self.learning_rate.at(row as usize) * error;
         }
     }
 
-    /// The step size shared by all weights, which the methods with traces need.
+    /// The step size shared by all weights of binary features, which the methods with traces need.
     #[inline]
     pub fn step_size(&self) -> f64 {
         self.learning_rate.at(0)
@@ -93,5 +103,39 @@ impl LinearValues {
     /// Whether a value has overflowed, or the values will never settle.
     pub fn diverged(&self) -> bool {
         self.diverged
+    }
+}
+
+/// wᵢ ← wᵢ + (αᵢ error) zᵢ, for all weights.
+#[inline]
+pub(super) fn add_scaled(weights: &mut [f64], rate: &LearningRate, error: f64, z: &[f64]) {
+    let weights = weights.iter_mut().zip(z);
+    if let Some(steps) = rate.of_rows() {
+        weights.zip(steps).for_each(|((weight, z), step)| *weight += step * error * z);
+    } else {
+        let change = rate.at(0) * error;
+        weights.for_each(|(weight, z)| *weight += change * z);
+    }
+}
+
+/// αᵢ: the step size of a weight, for a rate that does not depend on visits.
+#[inline]
+pub(super) fn step_of(rate: &LearningRate, row: usize) -> f64 {
+    rate.of_rows().map_or_else(|| rate.at(0), |steps| steps[row])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::schedules::Schedule;
+
+    #[test]
+    fn each_weight_moves_by_its_step_size_times_the_error_times_its_feature() {
+        let Some(features) = StateFeatures::weighted(vec![1.0, -0.5, 0.25], 3) else { unreachable!("they fit") };
+        let rate = LearningRate::scaled_by_row(Schedule::constant(0.5), vec![1.0, 2.0, 1.0]);
+        let mut values = LinearValues::new(vec![1.0, 2.0, 4.0], features, rate, 1.0);
+        assert_eq!(values.value(0), 1.0);
+        values.update(0, 3.0);
+        assert_eq!(values.weights, [2.0, 1.75, 4.25]);
     }
 }

@@ -258,4 +258,22 @@ mod tests {
         });
         assert_eq!(weights[0], weights[1]);
     }
+
+    #[test]
+    fn values_of_weighted_features_do_not_depend_on_how_many_visits_are_kept() {
+        let weights = [Some(1), None].map(|look_back| {
+            let basis =
+                FourierBasis::<f32, 16>::try_new(&[-1.2, -0.07], &[0.6, 0.07], 3, true, false).expect("16 features");
+            let task = NativeTask::new(MountainCar::default(), basis, Some(200), rng());
+            let task = PolicyTask { task, policy: WithTheVelocity, rng: rng() };
+            let features = StateFeatures::of_weighted_visits(16, look_back).expect("memory suffices");
+            let rate = LearningRate::scheduled(Schedule::constant(0.001), 1);
+            let values = LinearValues::new(vec![0.0; 16], features, rate, 1.0);
+            let mut run = Trainer::new(task, Predictor::new(values, ActionFromTask, Box::new(TdZero)), rng());
+            run.advance(Budget { episodes: 3, work: 1000 }).expect("no bounds are left");
+            run.learner().values.weights.clone()
+        });
+        assert_eq!(weights[0], weights[1]);
+        assert!(weights[0].iter().all(|&weight| weight != 0.0));
+    }
 }

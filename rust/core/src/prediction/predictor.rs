@@ -102,9 +102,10 @@ impl<U: ?Sized, B> Predictor<U, B> {
     where
         B: Behavior<R>,
     {
-        assert_binary::<R>();
-        if !B::OF_STATES {
-            self.state = self.values.features.visit(active.as_ref());
+        if B::OF_STATES {
+            assert_binary::<R>();
+        } else {
+            self.state = self.values.features.visit(active);
         }
         self.last_visit(active)
     }

@@ -9,9 +9,19 @@ use crate::tasks::Next;
 pub(super) fn predictor<U>(values: &[f64], rule: U) -> Predictor<U> {
     let rows = (0..values.len() as u32).collect();
     let rows = StateFeatures::of_states(rows, 1, values.len()).expect("a row for each state");
+    with_features(values, rows, rule)
+}
+
+/// Weights of weighted features, those of state 0 first, with the same α, γ and policy.
+pub(super) fn weighted_predictor<U>(weights: &[f64], vectors: &[f64], rule: U) -> Predictor<U> {
+    let features = StateFeatures::weighted(vectors.to_vec(), weights.len()).expect("a vector for each state");
+    with_features(weights, features, rule)
+}
+
+fn with_features<U>(weights: &[f64], features: StateFeatures, rule: U) -> Predictor<U> {
+    let behavior = FixedPolicy::new(vec![1.0; features.num_states()].into(), 1);
     let rate = LearningRate::scheduled(Schedule::constant(0.5), 1);
-    let values = LinearValues::new(values.to_vec(), rows, rate, 0.5);
-    let behavior = FixedPolicy::new(vec![1.0; values.weights.len()].into(), 1);
+    let values = LinearValues::new(weights.to_vec(), features, rate, 0.5);
     Predictor::new(values, behavior, Box::new(rule))
 }
 

@@ -1,14 +1,19 @@
 //! True online TD(λ), with dutch traces (H. van Seijen and R. Sutton, 2014; Sutton & Barto, the box in section 12.5).
 
-use super::traces::StateTraces;
-use super::{LinearValues, PredictionRule, PredictionStep};
+use super::StateTraces;
+use crate::numeric::sum_products;
+use crate::prediction::linear_values::step_of;
+use crate::prediction::{LinearValues, PredictionRule, PredictionStep};
 
-/// With the weights w, the traces z, the binary features x of S, V = wᵀx and V′ = wᵀx′:
+/// With the weights w, the traces z, the features x of S, V = wᵀx and V′ = wᵀx′:
 ///
 /// - δ = R + γ V′ - V
 /// - z ← γλ z + (1 - αγλ zᵀx) x
 /// - w ← w + α (δ + V - Vₒ) z - α (V - Vₒ) x
 /// - Vₒ ← V′
+///
+/// If each weighted feature i has its own step size αᵢ, then α zᵀx is Σᵢ αᵢ zᵢ xᵢ: the method is the same for the features √αᵢ
+/// xᵢ with a step size of 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrueOnlineTdLambda {
     trace_decay: f64,
@@ -23,23 +28,40 @@ impl TrueOnlineTdLambda {
     }
 }
 
+impl TrueOnlineTdLambda {
+    /// αγλ zᵀx.
+    fn reduction(&self, values: &LinearValues, state: u32, decay: f64) -> f64 {
+        let traces = &self.traces.values;
+        if let Some(x) = values.features.vector(state) {
+            return decay * sum_products(x, |row| [step_of(&values.learning_rate, row) * traces[row]])[0];
+        }
+        let overlap = values.features.of(state).iter().fold(0.0, |sum, &row| sum + traces[row as usize]);
+        values.step_size() * decay * overlap
+    }
+}
+
 impl PredictionRule for TrueOnlineTdLambda {
     fn learn(&mut self, values: &mut LinearValues, step: PredictionStep) {
         let next_value = values.next_value(step.next);
         let value = values.value(step.state);
         let error = step.reward + values.discount * next_value - value;
         values.check_finite(error);
-        let (step_size, decay) = (values.step_size(), values.discount * self.trace_decay);
-        let overlap =
-            values.features.of(step.state).iter().fold(0.0, |sum, &row| sum + self.traces.values[row as usize]);
-        self.traces.decay(decay);
-        for &row in values.features.of(step.state) {
-            self.traces.add(row, 1.0 - step_size * decay * overlap);
-        }
+        let decay = values.discount * self.trace_decay;
+        let reduction = self.reduction(values, step.state, decay);
+        self.traces.multiply(decay);
+        self.traces.add(&values.features, step.state, 1.0 - reduction);
         let change = value - self.v_old;
-        self.traces.apply(&mut values.weights, step_size * (error + change));
-        for &row in values.features.of(step.state) {
-            values.weights[row as usize] -= step_size * change;
+        let LinearValues { weights, features, learning_rate, .. } = values;
+        self.traces.apply(weights, learning_rate, error + change);
+        if let Some(x) = features.vector(step.state) {
+            for (row, (weight, x)) in weights.iter_mut().zip(x).enumerate() {
+                *weight -= step_of(learning_rate, row) * change * x;
+            }
+        } else {
+            let reduced = step_of(learning_rate, 0) * change;
+            for &row in features.of(step.state) {
+                weights[row as usize] -= reduced;
+            }
         }
         self.v_old = next_value;
     }

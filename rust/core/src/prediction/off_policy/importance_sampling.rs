@@ -1,8 +1,8 @@
 //! Off-policy Monte Carlo prediction by importance sampling (Sutton & Barto, equations 5.3 to 5.8).
 
-use super::episode::Episode;
-use super::{LinearValues, PredictionRule, PredictionStep};
 use crate::memory::{AllocationError, RunMemory};
+use crate::prediction::episode::Episode;
+use crate::prediction::{LinearValues, PredictionRule, PredictionStep};
 
 /// Updates at the end of an episode, for its steps from the last to the first, with the importance-sampling ratio ρ = Π
 /// π(A|S) / b(A|S) from that step on:

@@ -1,7 +1,7 @@
 //! TD(λ) with accumulating traces (R. Sutton, 1988; Sutton & Barto, the box in section 12.2).
 
-use super::traces::StateTraces;
-use super::{LinearValues, PredictionRule, PredictionStep};
+use super::StateTraces;
+use crate::prediction::{LinearValues, PredictionRule, PredictionStep};
 
 /// With the weights w and the traces z, which start at 0 in each episode:
 ///
@@ -23,14 +23,10 @@ impl TdLambda {
 
 impl PredictionRule for TdLambda {
     fn learn(&mut self, values: &mut LinearValues, step: PredictionStep) {
-        self.traces.decay(values.discount * self.trace_decay);
-        for &row in values.features.of(step.state) {
-            self.traces.add(row, 1.0);
-        }
-        let error = step.reward + values.discount * values.next_value(step.next) - values.value(step.state);
-        values.check_finite(error);
-        let step_size = values.step_size();
-        self.traces.apply(&mut values.weights, step_size * error);
+        self.traces.multiply(values.discount * self.trace_decay);
+        self.traces.add(&values.features, step.state, 1.0);
+        let error = values.td_error(step.state, step.reward, step.next);
+        self.traces.apply(&mut values.weights, &values.learning_rate, error);
     }
 
     fn work(&self) -> u64 {
@@ -49,7 +45,7 @@ impl PredictionRule for TdLambda {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::prediction::test_support::{last, predictor, step};
+    use crate::prediction::test_support::{last, predictor, step, weighted_predictor};
 
     #[test]
     fn an_episode_by_hand() {
@@ -60,5 +56,17 @@ mod tests {
         learner.rule.learn(&mut learner.values, last(1, -1.0));
         // δ = -1 - 3, and the trace of state 0 is 1/4
         assert_eq!(learner.values.weights, [0.25, 1.0]);
+    }
+
+    #[test]
+    fn vectors_by_hand() {
+        // x = (1, 2) in state 0 and (0, 4) in state 1; v = wᵀx
+        let mut learner = weighted_predictor(&[1.0, 0.5], &[1.0, 2.0, 0.0, 4.0], TdLambda::new(0.5, 2));
+        learner.rule.learn(&mut learner.values, step(0, -1.0, 1));
+        // z = (1, 2); δ = -1 + 0.5 · 2 - 2
+        assert_eq!(learner.values.weights, [0.0, -1.5]);
+        learner.rule.learn(&mut learner.values, last(1, -4.0));
+        // z = (1/4, 4.5); δ = -4 - 4 · -1.5
+        assert_eq!(learner.values.weights, [0.25, 3.0]);
     }
 }
