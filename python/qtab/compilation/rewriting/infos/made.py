@@ -51,7 +51,7 @@ def is_made(attributes: Attributes, source: Source, node: ast.expr, depth: int =
     return all(is_made(attributes, inner, one, depth + 1) for one in returned(inner.node))
 
 
-def is_step(node: ast.expr) -> bool:
+def is_step(node: ast.AST) -> bool:
     """Returns whether an expression calls ``step`` or ``reset``, such as those of a base class."""
     return isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in LENGTHS
 
