@@ -52,7 +52,11 @@ def window(chromium: Any, page_file: Path, request: pytest.FixtureRequest) -> An
 
 @pytest.mark.parametrize("window", [{"viewport": {"width": 360, "height": 740}, "has_touch": True}], indirect=True)
 @pytest.mark.parametrize(
-    "environment", ["MountainCar-v0", "CartPole-v1", "CliffWalking-v1", "Taxi-v4", "Blackjack-v1", "grid"]
+    "environment",
+    [
+        *("MountainCar-v0", "CartPole-v1", "CliffWalking-v1", "Taxi-v4", "Blackjack-v1", "grid"),
+        "CartPole-v1&discretizer=fourier&order=2&counterexample=tdc",
+    ],
 )
 def test_a_small_screen_needs_no_sideways_scrolling(window: Playground, environment: str) -> None:
     window.open(f"#env={environment}&episodes=30")
@@ -77,7 +81,7 @@ def test_a_small_screen_needs_no_sideways_scrolling(window: Playground, environm
     ids=["light", "dark"],
 )
 def test_text_has_enough_contrast(window: Playground) -> None:
-    window.open("#env=grid&example=0")
+    window.open("#env=grid&example=0&counterexample=tdc")
     assert window.page.evaluate(CONTRASTS) == []
     window.page.locator("#shortcuts-open").click()
     assert window.page.evaluate(CONTRASTS) == []

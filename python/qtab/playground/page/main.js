@@ -6,6 +6,8 @@ import { EXAMPLES, exampleState, setUpExamples } from "./controls/examples.js";
 import { seedControls } from "./controls/seeds.js";
 import { setUpDialog, setUpShortcuts } from "./controls/shortcuts.js";
 import { comparisonControl, paceControl, PastControl } from "./controls/watching.js";
+import { setUpCounterexample } from "./counterexample/panel.js";
+import { expectedUpdates } from "./counterexample/updates.js";
 import { setUpTheme } from "./drawing/theme.js";
 import { definitions, Engine } from "./engine.js";
 import { copyText, pythonProgram } from "./python_code.js";
@@ -68,7 +70,8 @@ function start() {
   const note = (names) => {
     if (names.length) view.showNote(`Some parts of the address are not valid and were left out or changed: ${names.slice(0, 8).join(", ")}.`);
   };
-  setUpPage(store, agents, view, note, announce);
+  const noteAddress = setUpPage(store, agents, view, note, announce);
+  setUpCounterexample(store, element("counterexample"), noteAddress);
   const start = () => {
     if (!store.otherSettings) other?.stop();
     for (const each of agents()) {
@@ -81,9 +84,10 @@ function start() {
   note(left);
   addEventListener("hashchange", () => note(restore(store, location.hash.slice(1))));
   if (matchMedia("(max-width: 860px)").matches) element("settings-fold").open = false;
-  globalThis.playground = { engine: training.engine, store, training, agents, view, fragment, restore, fit, pythonProgram, EXAMPLES, exampleState };
+  globalThis.playground = { engine: training.engine, store, training, agents, view, fragment, restore, fit, pythonProgram, EXAMPLES, exampleState, expectedUpdates };
 }
 
+/** Connects the buttons, the dialogs and the address; returns a function that writes the address soon. */
 function setUpPage(store, agents, view, note, announce) {
   /** The agents to train on: those that are not at their end, or all if each of them is. */
   const next = () => {
@@ -138,10 +142,11 @@ function setUpPage(store, agents, view, note, announce) {
     if (event.key === "Enter") open();
   });
   let waiting = 0;
-  store.subscribe(() => {
+  const noteAddress = () => {
     clearTimeout(waiting);
     waiting = setTimeout(() => history.replaceState(null, "", `#${fragment(store)}`), ADDRESS_DELAY);
-  });
+  };
+  store.subscribe(noteAddress);
   setUpShortcuts(
     [
       ["r", "run to the end", press.run],
@@ -161,6 +166,7 @@ function setUpPage(store, agents, view, note, announce) {
       isBlocked: () => document.querySelector("dialog[open]") !== null,
     },
   );
+  return noteAddress;
 }
 
 start();

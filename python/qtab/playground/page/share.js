@@ -1,13 +1,14 @@
 // The state in the fragment of the address. The parts of an address are used only as values of controls, all checked.
 
 import { EXAMPLES, exampleOf, exampleState } from "./controls/examples.js";
+import { METHODS } from "./counterexample/updates.js";
 import { HIGHEST_RATE, readNumber } from "./format.js";
 import { MANY_SEEDS, MAX_SIDE, PAINTED, REWARD_LIMITS, SEED_LIMITS } from "./store.js";
 
 const MAX_LENGTH = 8000;
 /** The parts of an address besides settings. */
 const GRID_NAMES = ["layout", "wind", "step_reward", "goal_reward", "rewards"];
-const NAMES = new Set(["env", "example", "seed", "seeds", "compare", ...GRID_NAMES]);
+const NAMES = new Set(["env", "example", "seed", "seeds", "compare", "counterexample", ...GRID_NAMES]);
 
 /** The fragment of a state, without "#". */
 export function fragment(store) {
@@ -20,6 +21,7 @@ export function fragment(store) {
   if (state.seed) base.set("seed", String(state.seed));
   if (state.seeds > 1) base.set("seeds", String(state.seeds));
   if (store.otherSettings) base.set("compare", state.compared);
+  if (state.counterexample) base.set("counterexample", state.counterexample);
   if (state.environment === PAINTED && example === null) {
     const { layout, wind, step_reward, goal_reward, rewards } = state.grid;
     base.set("layout", layout.join("/").replaceAll("#", "W"));
@@ -61,6 +63,11 @@ export function restore(store, text) {
   Object.assign(state, readSeeds(given, left));
   const asks = readSettings(store, given, state, left);
   state.compared = given.get("compare");
+  state.counterexample = given.get("counterexample");
+  if (state.counterexample !== null && !Object.hasOwn(METHODS, state.counterexample)) {
+    left.push("counterexample");
+    state.counterexample = null;
+  }
   if (environment === PAINTED && given.has("layout")) readGrid(given, state, left);
   else left.push(...GRID_NAMES.filter((name) => given.has(name)));
   store.update(state);
