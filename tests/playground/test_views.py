@@ -143,7 +143,7 @@ def test_the_end_of_a_game_follows_from_its_hand_and_its_return(playground: Play
     [
         (
             "Taxi-v4",
-            {0: "The taxi is in row 1, column 1, before the pick-up:", 5: "No state.", 54: "with the passenger"},
+            {0: "The taxi is in row 0, column 0, before the pick-up:", 5: "No state.", 54: "with the passenger"},
         ),
         (
             "Blackjack-v1",
@@ -168,7 +168,7 @@ def test_the_states_of_a_game_are_said_in_words(
 @pytest.mark.parametrize(
     ("fragment", "cell", "words"),
     [
-        ("#env=grid&layout=S.W.G&episodes=20", 2, "Row 1, column 3: wall."),
+        ("#env=grid&layout=S.W.G&episodes=20", 2, "Row 0, column 2: wall."),
         ("#env=Taxi-v4&episodes=50", 5, "No state."),
         ("#env=Blackjack-v1&episodes=50", 10, "No state."),
     ],
@@ -181,6 +181,22 @@ def test_a_cell_without_numbers_is_not_selected(playground: Playground, fragment
     playground.settled()
     assert playground.text("inspection") == before
     assert playground.page.locator("#problem").is_hidden()
+
+
+@pytest.mark.parametrize(
+    ("fragment", "cell", "title"),
+    [
+        ("#env=CliffWalking-v1&episodes=20", 25, "State 25: row 2, column 1"),
+        ("#env=Blackjack-v1&episodes=300", 0, "State 464: sum 21, without a usable ace, the dealer shows A"),
+    ],
+)
+def test_a_state_has_the_number_that_it_has_in_python(
+    playground: Playground, fragment: str, cell: int, title: str
+) -> None:
+    playground.open(fragment)
+    playground.page.evaluate("cell => playground.view.pick(cell, 'press')", cell)
+    playground.settled()
+    assert playground.text("inspector-title") == title
 
 
 def test_a_map_of_angles_shows_the_whole_circle(playground: Playground) -> None:

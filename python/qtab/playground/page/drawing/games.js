@@ -126,8 +126,8 @@ export function stateWords(drawing, cell, columns) {
   const [row, column] = [Math.floor(cell / columns), cell % columns];
   if (drawing === "taxi") {
     const when = column > SIZE ? "with the passenger" : "before the pick-up";
-    return `the taxi is in row ${row + 1}, column ${(column % (SIZE + 1)) + 1}, ${when}`;
+    return `the taxi is in row ${row}, column ${column % (SIZE + 1)}, ${when}`;
   }
   if (drawing === "blackjack") return `sum ${21 - row}, ${column > 10 ? "with" : "without"} a usable ace, the dealer shows ${cardName((column % 11) + 1)}`;
-  return `row ${row + 1}, column ${column + 1}`;
+  return `row ${row}, column ${column}`;
 }

@@ -68,7 +68,7 @@ export function showInspection(title, place, inspection, actions, bootstraps, hi
     place.replaceChildren(make("p", { className: "hint", textContent: hint }));
     return;
   }
-  title.textContent = `State: ${inspection.state}`;
+  title.textContent = inspection.state;
   const values = make("div", {}, make("h4", { textContent: bootstraps.length > 1 ? "Action values Q(s, a), averaged over both tables, and visits" : "Action values Q(s, a) and visits" }), valueTable(inspection, actions));
   const updates = make("div", {}, make("h4", { textContent: "Last updates, newest first" }));
   const newest = [...inspection.updates].reverse().slice(0, SHOWN_UPDATES);

@@ -349,15 +349,18 @@ export class View {
     return `${place}${kind}: value ${number(map.values[cell])}${policy}, visited ${counted(Math.round(map.visits[cell]), "time")}.`;
   }
 
-  /** The state of an inspected cell: its observation, with angles for their cosines and sines, or its position on the grid. */
+  /**
+   * The state of an inspected cell in words: its observation, with angles for their cosines and sines, or its number, which
+   * is its row in Python's table, and its position on the grid.
+   */
   stateText({ cell, observation }) {
     const { observations, drawing, map } = this.store.entry;
-    if (!observations) return stateWords(drawing, cell, this.result.map.columns);
+    if (!observations) return `State ${observation[0]}: ${stateWords(drawing, cell, this.result.map.columns)}`;
     const angles = [map.x, map.y].filter((axis) => axis.is_angle);
     const isSine = (index) => angles.some(({ component }) => component + 1 === index);
     const axes = observations.map((each, component) => angles.find((angle) => angle.component === component) ?? { ...each, component });
     const text = (axis) => `${axis.name} ${number(Number(along(axis, observation).toFixed(6)), 3)}${axis.unit ? ` ${axis.unit}` : ""}`;
-    return axes.filter((_, index) => !isSine(index)).map(text).join(", ");
+    return `State: ${axes.filter((_, index) => !isSine(index)).map(text).join(", ")}`;
   }
 
   pick(cell, how) {
