@@ -5,7 +5,9 @@ from typing import Any
 
 import pytest
 
+from qtab.config.options import LEARNS_WEIGHTED
 from qtab.playground import definitions
+from qtab.playground.settings import OFFERED
 from support.playground import Playground
 
 pytestmark = pytest.mark.browser
@@ -98,7 +100,7 @@ def test_a_fourier_basis_has_its_own_learning_rate_and_says_what_it_cannot_be_us
     # A quarter of the way from 0.0001 to 1, by orders of magnitude.
     assert playground.page.locator("#slide-learning_rate").input_value() == "250"
     refused = playground.page.locator("#set-algorithm option:disabled").all_inner_texts()
-    assert len(refused) == 5
+    assert len(refused) == len({*OFFERED["algorithm"]} - {*LEARNS_WEIGHTED})
     assert all(text.endswith(" (not with Fourier basis)") for text in refused), refused
     discretizers.select_option("bins")
     after = playground.settled().state()["settings"]

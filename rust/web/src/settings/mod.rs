@@ -60,7 +60,7 @@ impl Settings {
         }
         let (algorithm, learning_rate) = AnyAlgorithm::parse(&fields, episodes, max_episode_steps, largest_rate)?;
         if weighted && algorithm.feature_kinds() != FeatureKinds::All {
-            let expected = "a one-step or n-step method for discretizer 'fourier'";
+            let expected = "one that learns with weighted features for discretizer 'fourier'";
             return Err(fields.invalid("algorithm", expected));
         }
         if !has_cells && algorithm.needs_single_rows() {

@@ -202,7 +202,7 @@ fn what_has_no_meaning_is_refused_in_words() {
             MOUNTAIN_CAR,
             r#""algorithm": "sarsa""#,
             r#""algorithm": "dyna_q", "planning_steps": 1"#,
-            "algorithm must be a one-step or n-step method for discretizer 'fourier', got 'dyna_q'",
+            "algorithm must be one that learns with weighted features for discretizer 'fourier', got 'dyna_q'",
         ),
         (
             MOUNTAIN_CAR,
