@@ -18,7 +18,7 @@ Weights: TypeAlias = list[float]
 SHARE = 1 / STATES
 X: list[Weights] = BairdCounterexampleEnv().features.tolist()
 LOWER = X[-1]
-STEP_SIZES = {"td": (0.01, None), "tdc": (0.005, 0.05), "emphatic_td": (0.03, None)}
+STEP_SIZES: dict[str, Any] = {"td": (0.01, None), "tdc": (0.005, 0.05), "emphatic_td": (0.03, None)}
 """Those of Figures 11.2, 11.5 and 11.6."""
 
 

@@ -207,7 +207,8 @@ SMALL_POLE = {"low": (-2.4, -2.5, -0.21, -3.5), "high": (2.4, 2.5, 0.21, 3.5), "
 def trained_with_features(engine: Any, environment: str, given: dict[str, Any]) -> tuple[Any, NDArray[np.float64]]:
     """Trains in the browser and in Python, which must take the same steps; returns Python's run, the page's table."""
     trained = engine.evaluate(TRAIN, {"request": {"environment": {"id": environment}, "seeds": [3]}, "given": given})
-    settings = {name: tuple(value) if isinstance(value, list) else value for name, value in trained["settings"].items()}
+    given_back = trained["settings"].items()
+    settings: Any = {name: tuple(value) if isinstance(value, list) else value for name, value in given_back}
     run = qtab.train(environment, seed=3, progress=False, **settings)
     assert trained["lengths"] == run.episode_lengths.tolist()
     assert floats(trained["returns"]).tobytes() == run.episode_returns.tobytes()
