@@ -188,6 +188,9 @@ class MethodSpec(TypedDict, total=False):
     trace_decay: float
     first_visit: bool
     weighted: bool
+    second_learning_rate: float
+    epsilon: float
+    recursive: bool
 
 
 class ObservationPolicySpec(TypedDict, total=False):
@@ -227,7 +230,9 @@ class PredictionSpec(TypedDict):
     policies: ObservationPoliciesSpec | None
     """Policies that read the observations of a Box."""
     rows: NDArray[np.uint32] | None
-    """The active rows of each state, (states, n_active); None if they are the rows of the discretizer."""
+    """The active rows of each state, (states, n_active); None for vectors, or if they are those of the discretizer."""
+    vectors: NDArray[np.float64] | None
+    """The feature vector of each state, (states, n_weights); None for rows, or if the discretizer gives them."""
     initial_weights: NDArray[np.float64]
     """The initial weights, (n_weights,)."""
 

@@ -270,7 +270,7 @@ def test_functions_that_read_rows_refuse_the_run() -> None:
     for function, purpose in ((qtab.explain, "be explained"), (qtab.diagnose, "be diagnosed")):
         with pytest.raises(ValueError, match=rf"^run must have rows for its observations to {purpose}, got weighted"):
             function(run)
-    with pytest.raises(ValueError, match=r"^discretizer must have rows for its observations to estimate values"):
+    with pytest.raises(ValueError, match=r"^policy must have rows for its observations to be followed, got weighted"):
         qtab.estimate_values(CAR, run, episodes=2)
 
 

@@ -34,7 +34,7 @@ def test_damaged_files_are_refused(tmp_path: Any) -> None:
     damaged = [
         {"weights": arrays["weights"][..., 1:]},
         {"discretizer_low": arrays["discretizer_low"][:1]},
-        {"about": about.replace('"format": 2', '"format": 3')},
+        {"about": about.replace('"format": 2', '"format": 4')},
         {"about": about.replace('"format": 2', '"format": 1')},
         {"about": about.replace('"discretizer"', '"other"', 1)},
         {"about": about.replace('"tilings": 4', '"tilings": "x"')},
@@ -77,6 +77,7 @@ def test_pictures_of_numbered_states_from_a_file_are_refused(tmp_path: Any) -> N
     ("changes", "error", "message"),
     [
         ({"method": "batch_td"}, ValueError, "discretizer must be 'round', 'bins' or 'edges' for method 'batch_td'"),
+        ({"method": "batch_td", "tilings": 1}, ValueError, "discretizer must be 'round', 'bins' or 'edges' for method"),
         (
             {"method": "importance_sampling", "behavior": "random"},
             ValueError,

@@ -10,6 +10,7 @@ import qtab
 from qtab.envs.book.random_mdp import random_mdp
 from qtab.prediction import state_aggregation
 from qtab.prediction.settings import METHODS
+from qtab.prediction.task import OF_OBSERVATIONS
 
 OFTEN_FIRST = np.tile([0.6, 0.3, 0.1], (6, 1))
 LINEAR: dict[str, Any] = {"learning_rate": 0.5, "learning_rate_schedule": "linear"}
@@ -24,14 +25,18 @@ PAIRS: dict[str, tuple[tuple[Any, Any], dict[str, Any]]] = {
     "min_learning_rate": ((0.0, 0.3), LINEAR),
     "learning_rate_decay": ((0.9, 0.5), EXPONENTIAL),
     "learning_rate_warm_up": ((0, 10), LINEAR),
+    "second_learning_rate": ((0.1, 0.4), {}),
     "discount": ((0.9, 0.5), {}),
     "n_steps": ((2, 4), {}),
     "trace_decay": ((0.9, 0.4), {}),
     "first_visit": ((False, True), {}),
     "weighted": ((True, False), {}),
+    "epsilon": ((0.001, 0.5), {}),
+    "recursive": ((True, False), {}),
     "behavior": (("random", OFTEN_FIRST), {}),
     "features": ((None, state_aggregation(6, 2)), {}),
     "initial_value": ((0.0, 1.0), {}),
+    "initial_weights": ((np.zeros(6), np.arange(6)), {}),
     "on_truncation": (("bootstrap", "terminate"), {}),
     "bit_generator": (("PCG64", "MT19937"), {}),
     "seeds": (([0], [1]), {}),
@@ -42,7 +47,7 @@ NEUTRAL = {
     **dict.fromkeys(("env", "method"), "every pair of values has one"),
     **dict.fromkeys(("threads", "progress", "record"), "they say how to compute and what to keep"),
     **dict.fromkeys(
-        ("discretizer", "tilings", "tiles", "hashed_rows", "bins", "edges", "scale", "low", "high", "actions"),
+        OF_OBSERVATIONS,
         "they are for a Box of observations, as the tests of its estimates show",
     ),
 }
@@ -52,6 +57,11 @@ NEEDED: dict[str, dict[str, Any]] = {
     "true_online_td_lambda": TRACES,
     "offline_lambda_return": TRACES,
     "importance_sampling": {"behavior": "random"},
+    "off_policy_td": {"behavior": "random", "learning_rate": 0.3},
+    "off_policy_td_lambda": {"behavior": "random", **TRACES},
+    "gtd2": {"learning_rate": 0.3, "second_learning_rate": 0.2},
+    "tdc": {"learning_rate": 0.3, "second_learning_rate": 0.2},
+    "emphatic_td": {"learning_rate": 0.05},
 }
 
 

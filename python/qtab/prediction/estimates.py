@@ -17,7 +17,7 @@ from qtab.discretizers import Discretizer
 from qtab.prediction import storage
 from qtab.prediction.observation_policies import ObservationPolicies
 from qtab.prediction.settings import PredictionSettings
-from qtab.results.action_values import summed
+from qtab.results.action_values import summed, weighted_sum
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -43,8 +43,8 @@ class ValueEstimates:
     weights: NDArray[np.float64]
     """(seeds, points, n_weights): the recorded weights, which are the values if the features are a table."""
     rows: NDArray[np.uint32] | None
-    """(states, n_active): the active features of each state, whose weights add up to its value; None with tile coding
-    of the observations, whose active tiles are the features."""
+    """(states, n_active): the active features of each state, whose weights add up to its value; None for feature
+    vectors, and with tile coding or a Fourier basis of the observations, which are the features."""
     probabilities: NDArray[np.float64] | None
     """(*cells, actions): the policy that is evaluated; None if it reads the observations of a Box."""
     behavior: NDArray[np.float64] | None
@@ -57,23 +57,40 @@ class ValueEstimates:
     """Maps observations to states, or to the active features; None for estimates of numbered states from a file."""
     policies: ObservationPolicies | None = field(repr=False, default=None)
     """The policies that read the observations of a Box, if they are not tables; None for estimates from a file."""
+    feature_vectors: NDArray[np.float64] | None = field(repr=False, default=None)
+    """(states, n_weights): the feature vector of each state, whose product with the weights is its value; or None."""
+    initial_weights: NDArray[np.float64] | None = field(repr=False, default=None)
+    """(n_weights,): the weights before the first episode; None for estimates from a file."""
 
     @property
     def shape(self) -> tuple[int, ...]:
         """The shape of the values of a run: the number of cells along each component of the observation.
 
         Raises:
-            ValueError: with tile coding of the observations, which has no cells.
+            ValueError: with tile coding or a Fourier basis of the observations, which have no cells.
         """
         if self.probabilities is not None:
             return self.probabilities.shape[:-1]
         if self.discretizer is None or not self.discretizer.has_cells:
-            raise ValueError("the values need cells, which tile coding does not have; value(observation) works instead")
+            what = "weighted features do" if self.is_weighted else "tile coding does"
+            raise ValueError(f"the values need cells, which {what} not have; value(observation) works instead")
         return self.discretizer.shape
+
+    @property
+    def of_cells(self) -> bool:
+        """Whether the states are numbered, or cells of the observations, so that their values are an array."""
+        return self.rows is not None or self.feature_vectors is not None
+
+    @property
+    def is_weighted(self) -> bool:
+        """Whether the features have values other than 1: feature vectors, or a Fourier basis."""
+        return self.feature_vectors is not None or (self.discretizer is not None and self.discretizer.is_weighted)
 
     @property
     def n_active(self) -> int:
         """The number of weights that add up to a value."""
+        if self.feature_vectors is not None:
+            return int(self.feature_vectors.shape[1])
         return required("discretizer", self.discretizer).n_active if self.rows is None else self.rows.shape[1]
 
     @property
@@ -81,7 +98,8 @@ class ValueEstimates:
         """(seeds, *cells): the values after the last episode.
 
         Raises:
-            ValueError: with tile coding of the observations, which has no cells; :meth:`value` works.
+            ValueError: with tile coding or a Fourier basis of the observations, which have no cells; :meth:`value`
+                works.
         """
         return self.values_after(-1)
 
@@ -99,9 +117,14 @@ class ValueEstimates:
         """
         if self.discretizer is None:
             raise ValueError("value needs the observations of the states, which are not in the file; values works")
-        rows = self.discretizer.active_rows(observation)
-        active = rows if self.rows is None else self.rows[rows[..., 0]]
-        return _summed(self.weights[:, point], np.moveaxis(active, -1, 0))
+        weights, features = self.weights[:, point], self.discretizer.active_features(observation)
+        if self.feature_vectors is not None:
+            features = self.feature_vectors[features[..., 0]]
+        elif self.rows is not None:
+            features = self.rows[features[..., 0]]
+        if self.is_weighted:
+            return np.moveaxis(weighted_sum(features, weights.T), -1, 0)
+        return _summed(weights, np.moveaxis(features, -1, 0))
 
     @property
     def mean(self) -> NDArray[np.float64]:
@@ -119,9 +142,10 @@ class ValueEstimates:
 
     def values_after(self, point: int) -> NDArray[np.float64]:
         """Returns (seeds, *cells): the values at one of the recorded points, by its index."""
-        shape = self.shape
-        rows: Any = self.rows
-        return _summed(self.weights[:, point], rows.T).reshape(len(self.seeds), *shape)
+        shape, weights = self.shape, self.weights[:, point]
+        if self.feature_vectors is not None:
+            return weighted_sum(self.feature_vectors, weights.T).T.reshape(len(self.seeds), *shape)
+        return _summed(weights, required("rows", self.rows).T).reshape(len(self.seeds), *shape)
 
     def rms_error(
         self,
@@ -201,9 +225,9 @@ class ValueEstimates:
         """
         from qtab.prediction.plot import draw_values
 
-        if true_values is not None and (self.rows is None or len(self.shape) > 1):
+        if true_values is not None and (not self.of_cells or len(self.shape) > 1):
             raise ValueError(f"true_values must be None for values that are drawn as a map, got {shown(true_values)}")
-        if self.rows is None or (self.discretizer is not None and len(self.shape) > 1):
+        if not self.of_cells or (self.discretizer is not None and len(self.shape) > 1):
             from qtab.plots import values
 
             return values(self, ax)
@@ -253,13 +277,14 @@ class ValueEstimates:
             "time": f"{self.seconds:.3g} s",
         }
         title = f"Estimated values in {self.env}"
-        if self.rows is None:
+        if not self.of_cells:
             return html.summary(title, facts)
         return html.summary(title, facts, html.state_values("Mean values", self.mean))
 
     def _size(self, times: str) -> str:
-        if self.rows is None:
-            return f"{self.n_active} of {self.weights.shape[2]:,} features"
+        if not self.of_cells:
+            count = f"{self.weights.shape[2]:,} features"
+            return count if self.is_weighted else f"{self.n_active} of {count}"
         return f"{times.join(map(str, self.shape))} states"
 
 

@@ -1,4 +1,4 @@
-"""The features of state values: a table, groups of states, tilings of numbered states, or given rows."""
+"""The features of state values: a table, groups of states, tilings of numbered states, given rows or given vectors."""
 
 from typing import Any
 
@@ -6,10 +6,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qtab._utils import checks
-from qtab._utils.shown import shown
+from qtab._utils.arrays import numbers
+from qtab._utils.shown import counted, shown
 
 Rows = NDArray[np.uint32]
 """(states, n_active): the active rows of each state."""
+Vectors = NDArray[np.float64]
+"""(states, d): the feature vector of each state."""
 
 
 def state_aggregation(states: int, size: int) -> Rows:
@@ -76,7 +79,10 @@ def feature_rows(features: ArrayLike | None, states: int) -> tuple[Rows, int]:
     except ValueError:  # rows of different lengths
         given = np.asarray(None)
     if given.dtype.kind not in "iu":
-        raise TypeError(f"features must be None or an array of integers, got {shown(features)}")
+        raise TypeError(
+            "features must be None or an array of integers, or of floats with a vector for each state, got "
+            f"{shown(features)}"
+        )
     if given.ndim not in (1, 2) or len(given) != states or given.size == 0:
         raise ValueError(f"features must have a row of numbers for each of the {states} states, got {given.shape}")
     least, most = int(given.min()), int(given.max())
@@ -84,3 +90,34 @@ def feature_rows(features: ArrayLike | None, states: int) -> tuple[Rows, int]:
         raise ValueError(f"features must hold numbers from 0 to {2**31 - 1}, got {least if least < 0 else most}")
     rows = np.ascontiguousarray(given.reshape(states, -1).astype(np.uint32))
     return rows, int(rows.max()) + 1
+
+
+def feature_vectors(features: ArrayLike, states: int, shape: tuple[int, ...] | None = None) -> Vectors:
+    """Returns the feature vector of each state.
+
+    Args:
+        features: (states, d) floats.
+        states: The number of states.
+        shape: The shape of the states, which may replace the first axis of the feature vectors; None means one axis.
+
+    Raises:
+        TypeError: if the features are not numbers.
+        ValueError: for another shape, or a number that is not finite.
+    """
+    given = numbers("features", features)
+    if shape is not None and given.shape[:-1] == shape:
+        given = given.reshape(states, -1)
+    if given.ndim != 2 or len(given) != states or given.size == 0:
+        raise ValueError(
+            f"features must have a feature vector for each of the {counted(states, 'state')}, in an array of shape "
+            f"({states}, d), got {given.shape}"
+        )
+    return np.ascontiguousarray(given)
+
+
+def are_floats(features: Any) -> bool:
+    """Returns whether features are an array of floats."""
+    try:
+        return np.asarray(features).dtype.kind == "f"
+    except ValueError:  # rows of different lengths
+        return False

@@ -11,10 +11,20 @@ from qtab.config.implied import implied_schedule
 from qtab.config.options import Option, listed
 from qtab.config.value_checks import Check
 
-ONE_STEP_SIZE = ("td_lambda", "true_online_td_lambda")
-"""The methods with traces, which need a single step size for all weights."""
+ONE_STEP_SIZE = (
+    "td_lambda",
+    "true_online_td_lambda",
+    "off_policy_td",
+    "off_policy_td_lambda",
+    "gtd2",
+    "tdc",
+    "emphatic_td",
+)
+"""The methods that need a learning rate, which does not depend on visits: each update moves many weights together."""
 AVERAGES_ONLY = ("importance_sampling", "batch_td")
-"""The methods without a learning rate."""
+"""The methods that average in each state, without a learning rate."""
+LEAST_SQUARES = "lstd"
+"""The method that solves equations, without a learning rate."""
 LARGEST = 2.0
 """The largest learning rate, which is divided among the active features."""
 
@@ -37,10 +47,11 @@ def checked_learning_rate(method: str, episodes: int, given: Mapping[str, Any]) 
     value, schedule = given["learning_rate"], given["learning_rate_schedule"]
     if schedule is not None:
         checks.choice("learning_rate_schedule", schedule, get_args(LearningRateSchedule))
-    if method in AVERAGES_ONLY:
+    if method in (*AVERAGES_ONLY, LEAST_SQUARES):
+        does = "averages" if method in AVERAGES_ONLY else "has no step size"
         for name in ("learning_rate", "learning_rate_schedule", *OPTIONS):
             if given[name] is not None:
-                raise ValueError(f"{name} must be None for method {method!r}, which averages, got {shown(given[name])}")
+                raise ValueError(f"{name} must be None for method {method!r}, which {does}, got {shown(given[name])}")
         return {}
     if method in ONE_STEP_SIZE and schedule == "visits":
         raise ValueError(
@@ -96,9 +107,10 @@ def applied(
 def rate_settings(given: Mapping[str, Any]) -> dict[str, Any]:
     """Returns the learning rate of checked settings as settings of :class:`qtab.Config`, with their defaults."""
     value = given["learning_rate"]
+    is_constant = value is not None or given["method"] == LEAST_SQUARES
     return {
         "learning_rate": 1.0 if value is None else value,
-        "learning_rate_schedule": given["learning_rate_schedule"] or ("visits" if value is None else "constant"),
+        "learning_rate_schedule": given["learning_rate_schedule"] or ("constant" if is_constant else "visits"),
         "min_learning_rate": given["min_learning_rate"] or 0.0,
         "learning_rate_decay": given["learning_rate_decay"],
         "learning_rate_warm_up": given["learning_rate_warm_up"] or 0,

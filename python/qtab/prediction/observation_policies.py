@@ -137,8 +137,10 @@ def observation_policy(name: str, policy: GivenPolicy, cells: Discretizer, actio
     if callable(policy):
         return FunctionPolicy(name, policy, actions)
     if not cells.has_cells:
+        kind = "weighted features" if cells.is_weighted else "tile coding"
+        lack = "have" if cells.is_weighted else "has"
         raise ValueError(
-            f"{name} must be a function, a run, an optimum or 'random' for tile coding, which has no cells, got "
+            f"{name} must be a function, a run, an optimum or 'random' for {kind}, which {lack} no cells, got "
             f"{shown(policy)}"
         )
     return TablePolicy(as_followed(probabilities(name, policy, None, cells, actions)))

@@ -26,13 +26,14 @@ def subject_of_values(estimates: "ValueEstimates") -> Subject:
     if discretizer is None:
         raise ValueError("run must be estimates with their discretizer, got those of numbered states from a file")
     settings, count = estimates.settings, len(estimates.seeds)
-    of_states = estimates.rows is not None
-    values = estimates.values.reshape(count, -1) if of_states else estimates.weights[:, -1]
-    initial = settings.initial_value / (1 if of_states else estimates.n_active)
+    of_cells = estimates.of_cells
+    values = estimates.values.reshape(count, -1) if of_cells else estimates.weights[:, -1]
+    initial = settings.initial_value / (1 if of_cells else estimates.n_active)
     env_kwargs = {} if estimates.config is None else estimates.config.env_kwargs
     which = "1 seed" if count == 1 else f"{count:,} seeds"
     name = f"{estimates.env}: values by {settings.method}, {which}"
-    known = values != initial
+    # With weighted features every value has a meaning.
+    known = None if estimates.is_weighted else values != initial
     return Subject(
         estimates,
         estimates.env,

@@ -14,13 +14,14 @@ from qtab._utils import checks
 from qtab._utils.memory import check_memory, memory_left, memory_limit
 from qtab._utils.progress import ProgressBar
 from qtab._utils.shown import counted, shown
+from qtab.config.options import listed
 from qtab.discretizers import Discretizer
 from qtab.planning.policies import GivenPolicy, as_followed, probabilities
 from qtab.prediction.estimates import ValueEstimates
-from qtab.prediction.features import Rows, feature_rows
-from qtab.prediction.learning_rates import AVERAGES_ONLY, rate_settings
+from qtab.prediction.learning_rates import LEAST_SQUARES, rate_settings
 from qtab.prediction.observation_policies import ObservationPolicies, observation_policy, reads_observations
-from qtab.prediction.settings import PredictionSettings
+from qtab.prediction.settings import NEEDS_BEHAVIOR, OFF_POLICY, PredictionSettings
+from qtab.prediction.state_features import initial_weights, state_features
 from qtab.training.setup.resolved_run import ResolvedRun
 
 BYTES_PER_WEIGHT = 8 + 4
@@ -32,8 +33,14 @@ BYTES_OF_METHOD = {
     "monte_carlo": 8,
     "importance_sampling": 16,
     "batch_td": 32,
+    "off_policy_td": 16,
+    "off_policy_td_lambda": 13,
+    "gtd2": 24,
+    "tdc": 24,
+    "emphatic_td": 16,
+    "lstd": 40,
 }
-"""The additional memory of a method for each weight: traces, the last visits, or sums over the visits."""
+"""The additional memory of a method for each weight: traces, the last visits, sums over the visits, other vectors."""
 
 
 def run_prediction(
@@ -48,6 +55,7 @@ def run_prediction(
     threads: int,
     limit: int,
     progress: bool | None = False,
+    weights_before: ArrayLike | None = None,
 ) -> tuple[ValueEstimates, list[tuple[int, Exception]]]:
     """Runs a prediction. Returns the estimates and the runs that failed, whose missing weights are NaN."""
     cells, actions = resolved.discretizer, resolved.actions
@@ -63,14 +71,12 @@ def run_prediction(
         if behavior is not None:
             followed = as_followed(probabilities("behavior", behavior, space, cells, actions))
         _check_covered(target, followed)
-    rows, n_weights = _features(features, cells, settings)
-    n_active = cells.n_active if rows is None else rows.shape[1]
-    if n_active == 1 and settings.learning_rate is not None and settings.learning_rate > 1.0:
-        raise ValueError(f"learning_rate must lie in [0, 1] for a table, got {shown(settings.learning_rate)}")
+    found = state_features(features, cells, settings)
+    n_weights, initial = found.n_weights, initial_weights(weights_before, found, settings)
     if not resolved.is_native and len(seeds) > 1:
         raise ValueError(f"seeds must be one seed for an environment that is stepped in Python, got {len(seeds)}")
     in_progress = n_weights * (BYTES_PER_WEIGHT + BYTES_OF_METHOD.get(settings.method, 0))
-    in_progress += 0 if rows is None else rows.nbytes
+    in_progress += found.nbytes + _matrices(settings) * 8 * n_weights**2
     size = n_weights * len(seeds) * len(points) * 8 + min(threads, len(seeds)) * in_progress
     runs, recorded = counted(len(seeds), "run"), counted(len(points), "recorded episode")
     check_memory(f"{runs} of {settings.method!r} with {recorded} (record= keeps fewer)", size, limit)
@@ -78,13 +84,13 @@ def run_prediction(
     began = time.perf_counter()
     spec: Any = resolved.spec()
     spec["settings"] = {**spec["settings"], **rate_settings(vars(settings))}
-    initial = np.full(n_weights, settings.initial_value / n_active)
     prediction: Any = {
         "method": settings.method_spec(),
         "target": target,
         "behavior": followed,
         "policies": None if policies is None else policies.spec(),
-        "rows": rows,
+        "rows": found.rows,
+        "vectors": found.vectors,
         "initial_weights": initial,
     }
     bar = ProgressBar(len(seeds) * settings.episodes, "episode", progress)
@@ -101,25 +107,25 @@ def run_prediction(
         seeds=tuple(seeds),
         episodes=points.astype(np.int64),
         weights=weights,
-        rows=rows,
+        rows=found.rows,
         probabilities=_by_cell(target, cells),
         behavior=_by_cell(followed, cells),
         config=resolved.config,
         seconds=time.perf_counter() - began,
         discretizer=cells,
         policies=policies,
+        feature_vectors=found.vectors,
+        initial_weights=initial,
     ), failed
 
 
 def _check_behavior(behavior: GivenPolicy | None, settings: PredictionSettings) -> None:
     """Rejects a missing ``behavior`` off policy, and a given one for a method that evaluates the policy that acts."""
-    off_policy = settings.method == "importance_sampling"
-    if behavior is None and off_policy:
-        raise ValueError("behavior must be given for method 'importance_sampling', got None")
-    if behavior is not None and not off_policy:
-        raise ValueError(
-            f"behavior applies to method 'importance_sampling', not to {settings.method!r}, got {shown(behavior)}"
-        )
+    method = settings.method
+    if behavior is None and method in NEEDS_BEHAVIOR:
+        raise ValueError(f"behavior must be given for method {method!r}, got None")
+    if behavior is not None and method not in OFF_POLICY:
+        raise ValueError(f"behavior applies to method {listed(OFF_POLICY)}, not to {method!r}, got {shown(behavior)}")
 
 
 def _check_covered(target: NDArray[np.float64], followed: NDArray[np.float64]) -> None:
@@ -132,26 +138,9 @@ def _check_covered(target: NDArray[np.float64], followed: NDArray[np.float64]) -
         )
 
 
-def _features(features: ArrayLike | None, cells: Discretizer, settings: PredictionSettings) -> tuple[Rows | None, int]:
-    """Returns the active rows of each cell, None with tile coding of the observations, and the number of weights."""
-    method = settings.method
-    if cells.has_cells:
-        rows, n_weights = feature_rows(features, cells.n_rows)
-        if method in AVERAGES_ONLY and rows.shape[1] > 1:
-            raise ValueError(f"features must have one active row for method {method!r}, got {rows.shape[1]}")
-        return rows, n_weights
-    if features is not None:
-        raise ValueError(
-            f"features must be None for discretizer 'tiles', whose tiles are the features, got {shown(features)}"
-        )
-    if method in AVERAGES_ONLY:
-        raise ValueError(
-            f"discretizer must be 'round', 'bins' or 'edges' for method {method!r}, which averages in each cell, got "
-            "'tiles'"
-        )
-    if settings.first_visit:
-        raise ValueError("first_visit must be False for discretizer 'tiles', where no state is visited twice, got True")
-    return None, cells.n_rows
+def _matrices(settings: PredictionSettings) -> int:
+    """The number of (n_weights, n_weights) arrays of a method."""
+    return 0 if settings.method != LEAST_SQUARES else 1 if settings.recursive else 2
 
 
 def _by_cell(table: NDArray[np.float64] | None, cells: Discretizer) -> NDArray[np.float64] | None:

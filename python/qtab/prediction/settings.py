@@ -7,10 +7,12 @@ from typing import Any, Literal, TypeAlias, get_args
 
 from qtab._utils import checks
 from qtab._utils.fields import with_fields
+from qtab._utils.shown import shown
 from qtab.config import value_checks as check
 from qtab.config.choices import BitGenerator, LearningRateSchedule, OnTruncation
 from qtab.config.options import Option
-from qtab.prediction.learning_rates import applied, checked_learning_rate
+from qtab.prediction.learning_rates import LARGEST, LEAST_SQUARES, applied, checked_learning_rate
+from qtab.prediction.linear.lstd import checked_epsilon
 
 Method: TypeAlias = Literal[
     "td",
@@ -21,18 +23,34 @@ Method: TypeAlias = Literal[
     "monte_carlo",
     "importance_sampling",
     "batch_td",
+    "off_policy_td",
+    "off_policy_td_lambda",
+    "gtd2",
+    "tdc",
+    "emphatic_td",
+    "lstd",
 ]
 METHODS: tuple[str, ...] = get_args(Method)
 """The names of the methods."""
 
-_WITH_LAMBDA = ("td_lambda", "true_online_td_lambda", "offline_lambda_return")
+OFF_POLICY = ("importance_sampling", "off_policy_td", "off_policy_td_lambda", "gtd2", "tdc", "emphatic_td")
+"""The methods that use the importance sampling ratios of a behavior policy."""
+NEEDS_BEHAVIOR = OFF_POLICY[:3]
+"""The methods that differ from others only with a behavior policy, which must be given."""
+
+_WITH_LAMBDA = ("td_lambda", "true_online_td_lambda", "offline_lambda_return", "off_policy_td_lambda", "lstd")
 _OPTIONS: Mapping[str, Option] = {
     "n_steps": Option(check.count, "method", ("n_step_td",), None),
     "trace_decay": Option(check.real(0.0, 1.0), "method", _WITH_LAMBDA, None),
+    "second_learning_rate": Option(check.real(0.0, LARGEST), "method", ("gtd2", "tdc"), None),
+    "epsilon": Option(checks.finite, "method", ("lstd",), 1e-3),
+    "recursive": Option(checks.boolean, "method", ("lstd",), True),
     "first_visit": Option(checks.boolean, "method", ("monte_carlo", "importance_sampling"), False),
     "weighted": Option(checks.boolean, "method", ("importance_sampling",), True),
 }
 """The options of the methods; one without a default must be given."""
+_DEFAULTS: Mapping[str, Mapping[str, Any]] = {"lstd": {"trace_decay": 0.0}}
+"""The defaults of single methods."""
 
 
 @with_fields
@@ -49,7 +67,8 @@ class PredictionSettings:
     """The method: td is TD(0), equation 6.2; n_step_td equation 7.2; td_lambda and true_online_td_lambda the boxes in
     sections 12.2 and 12.5; offline_lambda_return equation 12.4; monte_carlo equation 6.1 and the box in section 5.1;
     importance_sampling equations 5.5 and 5.6, off-policy; batch_td section 6.3 (batch Monte Carlo is monte_carlo
-    without a learning rate)."""
+    without a learning rate); off_policy_td equation 11.2; off_policy_td_lambda equation 12.25; gtd2 and tdc section
+    11.7; emphatic_td section 11.8; lstd section 9.8."""
     episodes: int = 100
     """The number of episodes."""
     learning_rate: float | None = None
@@ -65,16 +84,23 @@ class PredictionSettings:
     """The factor of the exponential schedule after each episode, in [0, 1]."""
     learning_rate_warm_up: int | None = None
     """The number of episodes before the linear or exponential schedule begins."""
+    second_learning_rate: float | None = None
+    """β: the step size of the second weight vector of gtd2 and tdc, in [0, 2], constant and divided like the learning
+    rate."""
     discount: float = 1.0
     """γ: the discount factor, in [0, 1]."""
     n_steps: int | None = None
     """n: the number of rewards in a target of n_step_td."""
     trace_decay: float | None = None
-    """λ: the decay of traces and of λ-returns, in [0, 1]."""
+    """λ: the decay of traces and of λ-returns, in [0, 1]; 0 for lstd unless it is given."""
     first_visit: bool | None = None
     """Whether only the first visit of a state in an episode counts, for monte_carlo and importance_sampling."""
     weighted: bool | None = None
     """Whether importance sampling is weighted (equation 5.6, the default) or ordinary (equation 5.5)."""
+    epsilon: float | None = None
+    """ε: the matrix A of lstd begins as ε times the identity."""
+    recursive: bool | None = None
+    """Whether lstd updates A⁻¹ at each step (equation 9.22, the default), or solves equations after each episode."""
     initial_value: float = 0.0
     """The value of every state before the first episode."""
     on_truncation: OnTruncation = "bootstrap"
@@ -97,7 +123,18 @@ class PredictionSettings:
             "on_truncation": checks.choice("on_truncation", self.on_truncation, get_args(OnTruncation)),
             "bit_generator": checks.choice("bit_generator", self.bit_generator, get_args(BitGenerator)),
         }
-        options = applied(method, _OPTIONS, given, lambda name, value: _OPTIONS[name].check(name, value))
+        if method == LEAST_SQUARES and checked["initial_value"] != 0.0:
+            raise ValueError(
+                f"initial_value must be 0 for method 'lstd', whose weights follow from the steps, got "
+                f"{shown(self.initial_value)}"
+            )
+        asked = {
+            **given,
+            **{name: default for name, default in _DEFAULTS.get(method, {}).items() if given[name] is None},
+        }
+        options = applied(method, _OPTIONS, asked, lambda name, value: _OPTIONS[name].check(name, value))
+        if method == LEAST_SQUARES:
+            checked_epsilon("epsilon", options["epsilon"], recursive=options["recursive"])
         given.update(checked | options)
 
     def replace(self, **changes: Any) -> "PredictionSettings":

@@ -8,18 +8,19 @@ import gymnasium as gym
 from gymnasium.envs.registration import EnvSpec
 
 from qtab._utils.shown import shown
-from qtab.discretizers.base import check_binary
+from qtab.config.options import WEIGHTED
 from qtab.discretizers.box import BoxDiscretizer
 from qtab.planning.classic_control import GridSolver
 from qtab.planning.optimum import Optimum
 from qtab.planning.policies import GivenPolicy
+from qtab.prediction.learning_rates import LEAST_SQUARES
 from qtab.prediction.settings import PredictionSettings
-from qtab.prediction.storage import DISCRETIZER
+from qtab.prediction.storage import DISCRETIZER, OF_WEIGHTED
 from qtab.results.run import Run
 from qtab.training.setup.resolve import resolve
 from qtab.training.setup.resolved_run import ResolvedRun
 
-OF_OBSERVATIONS = (*DISCRETIZER, "actions")
+OF_OBSERVATIONS = (*DISCRETIZER, *OF_WEIGHTED, "actions")
 """The settings of a run that map observations to features, and actions to columns."""
 
 
@@ -37,9 +38,10 @@ def resolve_prediction(
         made = env()
         if not isinstance(made, gym.Env):
             raise TypeError(f"env must make an environment, got {shown(made)}")
+    if settings.method == LEAST_SQUARES and given.get("discretizer") in WEIGHTED:
+        given = {"scale_step_sizes": False, **given}  # there are none
     resolved = resolve(made, {**settings.config(), **brought, **given, "seed": seed}, owns_env=made is not env)
     cells = resolved.discretizer
-    check_binary("discretizer", cells, "estimate values")
     if cells.reads_space or not (cells.has_cells or isinstance(cells, BoxDiscretizer)):
         raise ValueError(f"env must have discrete observations or a Box with one axis of floats, got {cells!r}")
     if isinstance(made, gym.Env) or not callable(policy) or isinstance(cells, BoxDiscretizer):
@@ -53,7 +55,7 @@ def _of_policy(policy: GivenPolicy, given: Mapping[str, Any]) -> dict[str, Any]:
     """Returns the settings that come with the policy: a run's actions and, if none is given, its discretizer."""
     if isinstance(policy, Run):
         config = policy.config
-        names = ("shape", *OF_OBSERVATIONS) if given.keys().isdisjoint(DISCRETIZER) else ("actions",)
+        names = ("shape", *OF_OBSERVATIONS) if given.keys().isdisjoint(OF_OBSERVATIONS[:-1]) else ("actions",)
         return {name: getattr(config, name) for name in names}
     if isinstance(policy, Optimum) and isinstance(policy.solver, GridSolver) and policy.solver.has_continuous_actions:
         return {"actions": policy.q_values.shape[-1]}

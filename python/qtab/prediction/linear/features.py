@@ -1,13 +1,9 @@
 """Feature matrices: a vector of real numbers for each state."""
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from qtab._utils.arrays import numbers
-from qtab._utils.shown import counted
-from qtab.prediction.features import feature_rows
+from qtab.prediction.features import are_floats, feature_rows, feature_vectors
 
 
 def feature_matrix(
@@ -25,25 +21,10 @@ def feature_matrix(
         TypeError: if the features are not numbers.
         ValueError: for another shape, or a number that is not finite.
     """
-    if not _are_floats(features):
+    if features is None or not are_floats(features):
         rows, count = feature_rows(features, states)
         matrix = np.zeros((states, count))
         # A feature that is listed twice counts twice, as in the sum of the weights.
         np.add.at(matrix, (np.arange(states)[:, None], rows), 1.0)
         return matrix
-    given = numbers("features", features)
-    if shape is not None and given.shape[:-1] == shape:
-        given = given.reshape(states, -1)
-    if given.ndim != 2 or len(given) != states or given.size == 0:
-        raise ValueError(
-            f"features must have a feature vector for each of the {counted(states, 'state')}, in an array of shape "
-            f"({states}, d), got {given.shape}"
-        )
-    return np.ascontiguousarray(given)
-
-
-def _are_floats(features: Any) -> bool:
-    try:
-        return np.asarray(features).dtype.kind == "f"
-    except ValueError:  # rows of different lengths
-        return False
+    return feature_vectors(features, states, shape)

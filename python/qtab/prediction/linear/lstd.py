@@ -48,13 +48,9 @@ class LSTD:
         count = checks.integer("n_features", n_features, least=1)
         self.discount = checks.real("discount", discount, 0.0, 1.0)
         self.trace_decay = checks.real("trace_decay", trace_decay, 0.0, 1.0)
-        self.epsilon = checks.finite("epsilon", epsilon)
-        if self.epsilon <= 0.0:
-            raise ValueError(f"epsilon must be above 0, got {self.epsilon:g}")
         self.recursive = checks.boolean("recursive", recursive)
+        self.epsilon = checked_epsilon("epsilon", epsilon, recursive=self.recursive)
         scale = 1.0 / self.epsilon if self.recursive else self.epsilon
-        if not math.isfinite(scale):
-            raise ValueError(f"epsilon must have a finite reciprocal if recursive, got {self.epsilon:g}")
         self._matrix = scale * np.eye(count)  # A⁻¹ if recursive, else A
         self._b, self._trace = np.zeros(count), np.zeros(count)
 
@@ -65,12 +61,7 @@ class LSTD:
         Raises:
             ValueError: if A is singular, or if numbers overflowed.
         """
-        try:
-            weights: NDArray[Any] = (
-                _product(self._matrix, self._b) if self.recursive else np.linalg.solve(self._matrix, self._b)
-            )
-        except np.linalg.LinAlgError:
-            raise ValueError(_SINGULAR) from None
+        weights = _product(self._matrix, self._b) if self.recursive else _solution(self._matrix, self._b)
         if not np.isfinite(weights).all():
             raise ValueError("the weights are not finite: A is singular, or numbers overflowed; another epsilon helps")
         return weights
@@ -155,9 +146,49 @@ class LSTD:
         )
 
 
+def checked_epsilon(name: str, value: Any, *, recursive: bool = True) -> float:
+    """Returns ε as a float.
+
+    Raises:
+        TypeError: if it is not a number.
+        ValueError: if it is not finite and above 0 or, if recursive, its reciprocal is infinite.
+    """
+    epsilon = checks.finite(name, value)
+    if epsilon <= 0.0:
+        raise ValueError(f"{name} must be above 0, got {epsilon:g}")
+    if recursive and not math.isfinite(1.0 / epsilon):
+        raise ValueError(f"{name} must have a finite reciprocal if recursive, got {epsilon:g}")
+    return epsilon
+
+
 def _product(matrix: FloatArray, vector: FloatArray) -> FloatArray:
     """Returns the product of a matrix and a vector, added from left to right, so that the bits are always the same."""
     total: FloatArray = matrix[:, 0] * vector[0]
     for column in range(1, len(vector)):
         total += matrix[:, column] * vector[column]
     return total
+
+
+def _solution(matrix: FloatArray, vector: FloatArray) -> FloatArray:
+    """Returns x with matrix x = vector, by Gaussian elimination with partial pivoting.
+
+    The bits are always the same, unlike those of ``np.linalg.solve``.
+
+    Raises:
+        ValueError: if the matrix is singular.
+    """
+    rows, b = matrix.copy(), vector.copy()
+    with np.errstate(all="ignore"):  # the caller checks the numbers
+        for column in range(len(b)):
+            pivot = column + int(np.argmax(np.abs(rows[column:, column])))
+            if rows[pivot, column] == 0.0:
+                raise ValueError(_SINGULAR)
+            rows[[column, pivot]], b[[column, pivot]] = rows[[pivot, column]], b[[pivot, column]]
+            factors = rows[column + 1 :, column] / rows[column, column]
+            rows[column + 1 :, column:] -= factors[:, None] * rows[column, column:]
+            b[column + 1 :] -= factors * b[column]
+        solution = np.empty_like(b)
+        for column in reversed(range(len(b))):
+            solution[column] = b[column] / rows[column, column]
+            b[:column] -= rows[:column, column] * solution[column]
+    return solution

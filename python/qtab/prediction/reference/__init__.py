@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 
 from qtab.config import Config
 from qtab.prediction.reference.common import Prediction
+from qtab.prediction.reference.linear import emphatic_td, gtd2, lstd, off_policy_td, tdc
 from qtab.prediction.reference.returns import importance_sampling, monte_carlo, offline_lambda_return
 from qtab.prediction.reference.td import batch_td, n_step_td, td
-from qtab.prediction.reference.traces import td_lambda, true_online_td_lambda
+from qtab.prediction.reference.traces import off_policy_td_lambda, td_lambda, true_online_td_lambda
 
 if TYPE_CHECKING:
     from qtab.prediction.estimates import ValueEstimates
@@ -27,6 +28,12 @@ METHODS: Mapping[str, Callable[[Prediction], None]] = {
         monte_carlo,
         importance_sampling,
         batch_td,
+        off_policy_td,
+        off_policy_td_lambda,
+        gtd2,
+        tdc,
+        emphatic_td,
+        lstd,
     )
 }
 """Each method by its name."""

@@ -198,6 +198,9 @@ fn build_learner<R>(
 where
     R: ActiveRows + Send + 'static,
 {
+    if R::WEIGHTED && spec.prediction.is_some() {
+        return Err(invalid("policies", "those of observations for weighted features", "those of states"));
+    }
     if let Some(prediction) = &spec.prediction
         && !R::WEIGHTED
     {

@@ -15,7 +15,7 @@ use super::{AnyRecordings, Run, RunFactory};
 use crate::convert::Seed;
 use crate::error::RunError;
 use crate::rng::{agent_pcg64, environment_rng};
-use crate::spec::{BoxFeatures, DiscretizerSpec, PredictionSpec, RunSpec};
+use crate::spec::{BoxFeatures, DiscretizerSpec, PredictionSpec, RunSpec, match_capacity};
 
 /// Runs of any method; those of TD(0) are compiled for the method, too.
 pub(super) fn predicting<E, F>(
@@ -57,6 +57,10 @@ where
             tiles.tilings,
             N => factory(env, fixed_tiles::<M, N>(tiles)?, spec, prediction),
             _ => factory(env, any_features(&spec.discretizer)?, spec, prediction),
+        ),
+        DiscretizerSpec::Fourier(fourier) => match_capacity!(
+            fourier.n_features(),
+            ROOM => factory(env, fourier.basis::<f32, ROOM>()?, spec, prediction)
         ),
         grid => factory(env, any_features(grid)?, spec, prediction),
     })

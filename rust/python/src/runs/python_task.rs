@@ -97,9 +97,20 @@ impl PythonTaskBuilder<'_> {
             PyResult::Ok(BoxReader::new(BoxFeatures::new(discretizer, &to_dtype)?, dimensions))
         };
         let policies = prediction.policies(spec, reader)?;
-        let task = PythonTask { keeps_observation: true, ..self.task(reader(&spec.discretizer)?) };
-        let run = observed_run(task, policies, seed, spec, prediction, stop)?;
+        let run = if let DiscretizerSpec::Fourier(fourier) = &spec.discretizer {
+            match_capacity!(fourier.n_features(), ROOM => {
+                let task = self.observed_task(BoxReader::new(fourier.basis::<T, ROOM>()?, dimensions));
+                observed_run(task, policies, seed, spec, prediction, stop)?
+            })
+        } else {
+            observed_run(self.observed_task(reader(&spec.discretizer)?), policies, seed, spec, prediction, stop)?
+        };
         Ok(BuiltRun { run, recordings: AnyRecordings::None, steps_python: true })
+    }
+
+    /// A task that keeps its last observation for a policy.
+    fn observed_task<R>(self, reader: R) -> PythonTask<R> {
+        PythonTask { keeps_observation: true, ..self.task(reader) }
     }
 
     fn task<R>(self, reader: R) -> PythonTask<R> {

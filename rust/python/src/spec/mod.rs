@@ -198,7 +198,7 @@ impl RunSpec {
             ("action_masks", !action_masks.is_none()),
             ("terminal_update", *terminal_update != TerminalUpdate::Target),
             ("visits", *count_visits),
-            ("estimate_values", prediction.is_some()),
+            ("method", prediction.as_ref().is_some_and(|prediction| !prediction.takes_weighted())),
         ];
         match refused.iter().find(|(_, is_given)| *is_given) {
             Some((name, _)) => Err(invalid(name, "a setting that works with weighted features", "another")),

@@ -181,37 +181,42 @@ impl ExternalEnv {
         T: Number + Float + numpy::Element + Send + Sync + 'static,
         BoxFeatures<T>: ReadRows<Vec<T>>,
     {
-        if let Some(prediction) = spec.prediction_by_observation() {
-            return self.observed_runs(to_dtype, spec, prediction);
+        let prediction = spec.prediction_by_observation();
+        if let DiscretizerSpec::Fourier(fourier) = &spec.discretizer {
+            return match_capacity!(fourier.n_features(), ROOM => {
+                let features = fourier.basis::<T, ROOM>()?;
+                match prediction {
+                    Some(prediction) => self.observed_runs(features, to_dtype, spec, prediction),
+                    None => self.runs_with::<T, _>(features, spec),
+                }
+            });
+        }
+        if let Some(prediction) = prediction {
+            return self.observed_runs(BoxFeatures::new(&spec.discretizer, to_dtype)?, to_dtype, spec, prediction);
         }
         if let DiscretizerSpec::Tiles(tiles) = &spec.discretizer {
             return self.runs_with::<T, _>(tiles.tile_coding::<T, MAX_TILINGS>(), spec);
-        }
-        if let DiscretizerSpec::Fourier(fourier) = &spec.discretizer {
-            return match_capacity!(
-                fourier.n_features(),
-                ROOM => self.runs_with::<T, _>(fourier.basis::<T, ROOM>()?, spec)
-            );
         }
         self.cell_runs::<T, _>(spec.discretizer.grid(to_dtype)?, spec)
     }
 
     /// Runs that estimate the values of a policy that reads the observations.
-    fn observed_runs<T>(
+    fn observed_runs<T, F>(
         self: &Arc<Self>,
+        features: F,
         to_dtype: fn(f64) -> T,
         spec: &Arc<RunSpec>,
         prediction: &Arc<PredictionSpec>,
     ) -> PyResult<Box<dyn RunFactory>>
     where
         T: Number + Float + numpy::Element + Send + Sync + 'static,
+        F: Features<[T], Active: Send> + Clone + Send + Sync + 'static,
         BoxFeatures<T>: ReadRows<Vec<T>>,
     {
         let (env, spec, prediction) = (Arc::clone(self), Arc::clone(spec), Arc::clone(prediction));
         let options = self.options(&spec)?;
         let build = move |seed: &Seed, stop: &StopFlag<'_>| {
-            let features = BoxFeatures::new(&spec.discretizer, to_dtype)?;
-            let task = ExternalTask::<T, _>::new(&env, features, options, seed)?;
+            let task = ExternalTask::<T, _>::new(&env, features.clone(), options, seed)?;
             let policies = prediction.policies(&spec, |own| BoxFeatures::new(own, to_dtype))?;
             Ok((observed_run(task, policies, seed, &spec, &prediction, stop)?, AnyRecordings::None))
         };

@@ -1,6 +1,7 @@
 //! The specs of predictions: the values of given policies, estimated by a method.
 
 mod box_features;
+mod method;
 mod observation_policy;
 mod py_observation;
 mod spec;

@@ -7,47 +7,15 @@ use pyo3::prelude::*;
 use qtab_core::StopFlag;
 use qtab_core::memory::collect;
 use qtab_core::prediction::{
-    ActionFromTask, BatchTd, FixedPolicy, ImportanceSampling, LinearValues, NStepTd, OfflineLambdaReturn,
-    PredictionRule, Predictor, StateFeatures, TdLambda, TdZero, TrueOnlineTdLambda,
+    ActionFromTask, FixedPolicy, LinearValues, PredictionRule, Predictor, StateFeatures, TdZero,
 };
+use qtab_core::schedules::{LearningRate, Schedule};
 
+use super::method::{METHODS, MethodSpec};
 use super::observation_policy::{ObservationPolicies, ObservationPolicySpec, POLICIES, check_probabilities};
 use crate::convert::in_c_order;
 use crate::error::{allocation, invalid};
-use crate::spec::{DiscretizerSpec, Fields, RunSpec, Variant};
-
-/// A method with its options.
-#[derive(Clone, Copy, Debug)]
-enum MethodSpec {
-    TdZero,
-    NStepTd { n_steps: usize },
-    TdLambda { trace_decay: f64 },
-    TrueOnlineTdLambda { trace_decay: f64 },
-    OfflineLambdaReturn { trace_decay: f64 },
-    MonteCarlo { first_visit: bool },
-    ImportanceSampling { weighted: bool, first_visit: bool },
-    BatchTd,
-}
-
-/// Every method by its name. `qtab.prediction.methods` lists the same names.
-const METHODS: &[Variant<MethodSpec>] = &[
-    ("td", |_| Ok(MethodSpec::TdZero)),
-    ("n_step_td", |fields| match fields.get("n_steps")? {
-        0 => Err(invalid(&fields.path("n_steps"), "at least 1", 0)),
-        n_steps => Ok(MethodSpec::NStepTd { n_steps }),
-    }),
-    ("td_lambda", |fields| Ok(MethodSpec::TdLambda { trace_decay: fields.get("trace_decay")? })),
-    ("true_online_td_lambda", |fields| Ok(MethodSpec::TrueOnlineTdLambda { trace_decay: fields.get("trace_decay")? })),
-    ("offline_lambda_return", |fields| Ok(MethodSpec::OfflineLambdaReturn { trace_decay: fields.get("trace_decay")? })),
-    ("monte_carlo", |fields| Ok(MethodSpec::MonteCarlo { first_visit: fields.get("first_visit")? })),
-    ("importance_sampling", |fields| {
-        Ok(MethodSpec::ImportanceSampling {
-            weighted: fields.get("weighted")?,
-            first_visit: fields.get("first_visit")?,
-        })
-    }),
-    ("batch_td", |_| Ok(MethodSpec::BatchTd)),
-];
+use crate::spec::{DiscretizerSpec, Fields, RunSpec};
 
 /// The policy that acts, and the policy that is evaluated.
 #[derive(Clone, Debug)]
@@ -75,18 +43,11 @@ impl PredictionSpec {
     pub(crate) fn parse(fields: &Fields<'_>, num_actions: usize) -> PyResult<Self> {
         let initial: PyReadonlyArray1<'_, f64> = fields.get("initial_weights")?;
         let initial = in_c_order(&initial)?;
-        let rows: Option<PyReadonlyArray2<'_, u32>> = fields.get("rows")?;
-        let features = match rows {
-            None => None,
-            Some(rows) => {
-                let rows = rows.as_array();
-                let numbers = collect(rows.iter().copied()).map_err(allocation)?;
-                let features = StateFeatures::of_states(numbers, rows.ncols(), initial.len());
-                let expected = || format!("an array (states, n_active) of rows below {}", initial.len());
-                Some(features.ok_or_else(|| invalid("rows", expected(), "others"))?)
-            }
-        };
-        let method = fields.nested("method")?.tagged(METHODS)?;
+        let features = parse_features(fields, initial.len())?;
+        let method: MethodSpec = fields.nested("method")?.tagged(METHODS)?;
+        if features.as_ref().is_some_and(StateFeatures::is_weighted) && !method.takes_weighted() {
+            return Err(invalid("method", "one that works with weighted features", "another"));
+        }
         let policies = if fields.any("policies")?.is_none() {
             let probabilities = |name| {
                 let array: PyReadonlyArray2<'_, f64> = fields.get(name)?;
@@ -96,8 +57,7 @@ impl PredictionSpec {
             };
             let behavior = FixedPolicy::new(probabilities("behavior")?, num_actions);
             let target = probabilities("target")?;
-            let is_off_policy = matches!(method, MethodSpec::ImportanceSampling { .. });
-            PoliciesSpec::OfStates(if is_off_policy { behavior.evaluating(target) } else { behavior })
+            PoliciesSpec::OfStates(if method.uses_ratios() { behavior.evaluating(target) } else { behavior })
         } else {
             let policies = fields.nested("policies")?;
             let target = policies.any("target")?;
@@ -108,6 +68,11 @@ impl PredictionSpec {
             return Err(invalid("rows", "given for policies of numbered states", "None"));
         }
         Ok(Self { method, policies, features, initial })
+    }
+
+    /// Whether the method has a meaning for features with values other than 1.
+    pub(crate) fn takes_weighted(&self) -> bool {
+        self.method.takes_weighted()
     }
 
     /// Whether the policies read observations instead of state numbers.
@@ -160,7 +125,7 @@ impl PredictionSpec {
     /// A learner for numbered states, before its first episode.
     pub(crate) fn of_states(&self, spec: &RunSpec, stop: &StopFlag<'_>) -> PyResult<AnyPredictor<FixedPolicy>> {
         let (behavior, features) = self.numbered()?;
-        self.predictor(self.rule(), behavior, features, spec, stop)
+        self.predictor(self.rule(spec, stop)?, behavior, features, spec, stop)
     }
 
     /// Like [`Self::of_states`], with a separate type for TD(0), whose steps are the shortest; `None` for other
@@ -177,16 +142,28 @@ impl PredictionSpec {
         spec: &RunSpec,
         stop: &StopFlag<'_>,
     ) -> PyResult<AnyPredictor<ActionFromTask>> {
-        let (rule, num_rows) = (self.rule(), spec.discretizer.num_rows());
+        let (rule, num_rows) = (self.rule(spec, stop)?, spec.discretizer.num_rows());
         let features = match &self.features {
+            Some(_) if spec.discretizer.weighted().is_some() => {
+                return Err(invalid(
+                    "discretizer",
+                    "one with a cell for each observation, with features of cells",
+                    "another",
+                ));
+            }
             Some(features) => {
                 self.check_states(num_rows)?;
                 features.try_clone().map_err(allocation)?
             }
-            None if self.n_weights() == num_rows => {
+            None if self.n_weights() != num_rows => {
+                return Err(invalid("initial_weights", format!("{num_rows} of them"), self.n_weights()));
+            }
+            None if spec.discretizer.weighted().is_some() => {
+                StateFeatures::of_weighted_visits(num_rows, rule.look_back()).map_err(allocation)?
+            }
+            None => {
                 StateFeatures::of_visits(spec.discretizer.n_active(), num_rows, rule.look_back()).map_err(allocation)?
             }
-            None => return Err(invalid("initial_weights", format!("{num_rows} of them"), self.n_weights())),
         };
         self.predictor(rule, ActionFromTask, features, spec, stop)
     }
@@ -201,20 +178,40 @@ impl PredictionSpec {
         }
     }
 
-    fn rule(&self) -> Box<dyn PredictionRule + Send> {
-        let (states, weights) = (self.num_states(), self.n_weights());
-        match self.method {
-            MethodSpec::TdZero => Box::new(TdZero),
-            MethodSpec::NStepTd { n_steps } => Box::new(NStepTd::new(n_steps)),
-            MethodSpec::TdLambda { trace_decay } => Box::new(TdLambda::new(trace_decay, weights)),
-            MethodSpec::TrueOnlineTdLambda { trace_decay } => Box::new(TrueOnlineTdLambda::new(trace_decay, weights)),
-            MethodSpec::OfflineLambdaReturn { trace_decay } => Box::new(OfflineLambdaReturn::new(trace_decay, states)),
-            MethodSpec::MonteCarlo { first_visit } => Box::new(OfflineLambdaReturn::monte_carlo(first_visit, states)),
-            MethodSpec::ImportanceSampling { weighted, first_visit } => {
-                Box::new(ImportanceSampling::new(weighted, first_visit, (states, weights)))
+    fn rule(&self, spec: &RunSpec, stop: &StopFlag<'_>) -> PyResult<Box<dyn PredictionRule + Send>> {
+        let divisors = self.divisors(spec)?;
+        let constant = |value| {
+            let schedule = Schedule::constant(value);
+            match divisors {
+                Some(divisors) if divisors.is_empty() => LearningRate::scheduled(schedule, 1),
+                Some(divisors) => LearningRate::scaled_by_row(schedule, divisors),
+                None => LearningRate::scheduled(schedule, self.n_active(spec)),
             }
-            MethodSpec::BatchTd => Box::new(BatchTd::new(weights)),
+        };
+        self.method.rule((self.num_states(), self.n_weights()), constant, stop)
+    }
+
+    /// The numbers that divide the step sizes of weighted features; empty for one step size, `None` for binary features.
+    fn divisors(&self, spec: &RunSpec) -> PyResult<Option<Vec<f64>>> {
+        match &self.features {
+            Some(features) => Ok(features.is_weighted().then(Vec::new)),
+            None => spec.discretizer.weighted().map(|features| features.step_size_divisors()).transpose(),
         }
+    }
+
+    /// The number of active rows, which share the step size of binary features.
+    fn n_active(&self, spec: &RunSpec) -> usize {
+        self.features.as_ref().map_or_else(|| spec.discretizer.n_active(), StateFeatures::n_active)
+    }
+
+    /// The learning rate α.
+    fn learning_rate(&self, spec: &RunSpec, stop: &StopFlag<'_>) -> PyResult<LearningRate> {
+        let Some(divisors) = self.divisors(spec)? else {
+            let rate = spec.learning_rate.build(spec.episodes, self.n_weights(), self.n_active(spec), stop);
+            return rate.map_err(allocation);
+        };
+        let rate = spec.learning_rate.build_weighted(spec.episodes, divisors);
+        rate.ok_or_else(|| invalid("learning_rate", "a schedule by the episode for weighted features", "'visits'"))
     }
 
     fn predictor<U: ?Sized, B>(
@@ -225,9 +222,31 @@ impl PredictionSpec {
         spec: &RunSpec,
         stop: &StopFlag<'_>,
     ) -> PyResult<Predictor<U, B>> {
-        let n_active = features.n_active();
-        let rate = spec.learning_rate.build(spec.episodes, self.n_weights(), n_active, stop).map_err(allocation)?;
+        let rate = self.learning_rate(spec, stop)?;
         let weights = collect(self.initial.iter().copied()).map_err(allocation)?;
         Ok(Predictor::new(LinearValues::new(weights, features, rate, spec.discount), behavior, rule))
     }
+}
+
+/// The features of each state: active rows, or vectors of numbers; `None` if those of an observation are the features.
+fn parse_features(fields: &Fields<'_>, n_weights: usize) -> PyResult<Option<StateFeatures>> {
+    let rows: Option<PyReadonlyArray2<'_, u32>> = fields.get("rows")?;
+    let vectors: Option<PyReadonlyArray2<'_, f64>> = fields.get("vectors")?;
+    let (features, name, expected) = match (rows, vectors) {
+        (None, None) => return Ok(None),
+        (Some(rows), None) => {
+            let rows = rows.as_array();
+            let numbers = collect(rows.iter().copied()).map_err(allocation)?;
+            let expected = format!("an array (states, n_active) of rows below {n_weights}");
+            (StateFeatures::of_states(numbers, rows.ncols(), n_weights), "rows", expected)
+        }
+        (None, Some(vectors)) => {
+            let vectors = vectors.as_array();
+            let numbers = collect(vectors.iter().copied()).map_err(allocation)?;
+            let features = StateFeatures::weighted(numbers, n_weights).filter(|_| vectors.ncols() == n_weights);
+            (features, "vectors", format!("an array (states, {n_weights}) of finite numbers"))
+        }
+        (Some(_), Some(_)) => return Err(invalid("vectors", "None with rows", "an array")),
+    };
+    features.map(Some).ok_or_else(|| invalid(name, expected, "others"))
 }

@@ -1,0 +1,275 @@
+"""Features with values other than 1: equal to plain NumPy to the bit, for every method that has a meaning with them."""
+
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+import qtab
+from qtab.envs.book.random_mdp import random_mdp
+from qtab.prediction import METHODS
+from qtab.prediction.learning_rates import AVERAGES_ONLY
+from qtab.prediction.settings import OFF_POLICY
+from qtab.prediction.verification import verify_values
+from support.learners.box_prediction import CAR, PENDULUM, POLE, with_the_velocity
+
+WEIGHTED = [method for method in METHODS if method not in AVERAGES_ONLY]
+FOURIER: dict[str, Any] = {"discretizer": "fourier", "learning_rate": 0.01, "episodes": 3, "max_episode_steps": 40}
+TARGET = np.random.default_rng(0).dirichlet(np.ones(3), size=6)
+LIMITS: dict[str, Any] = {"low": [-2.4, -3.0, -0.2, -3.0], "high": [2.4, 3.0, 0.2, 3.0], "coupled": False}
+BOXES: dict[str, tuple[list[Any], dict[str, Any]]] = {
+    CAR: (["random", with_the_velocity, lambda at: [0.7, 0.2, 0.1] if at[1] < 0 else [0.1, 0.2, 0.7]], {}),
+    POLE: (["random", lambda at: int(at[2] + at[3] > 0)], LIMITS),
+    PENDULUM: (["random", lambda at: 1], {"actions": 3}),
+}
+
+
+def options_of(method: str, data: st.DataObject, behavior: Any = "random") -> dict[str, Any]:
+    """Options of a method, with step sizes that are small enough for features up to 1."""
+    options: dict[str, Any] = {}
+    if method == "lstd":
+        options["epsilon"] = data.draw(st.floats(1e-3, 2.0))
+        options["recursive"] = data.draw(st.booleans())
+    else:
+        options["learning_rate"] = data.draw(st.floats(0.0, 1e-4 if method == "emphatic_td" else 0.02))
+        if data.draw(st.booleans()):
+            options["learning_rate_schedule"] = "linear"
+    if method in ("gtd2", "tdc"):
+        options["second_learning_rate"] = data.draw(st.floats(0.0, 0.02))
+    if "lambda" in method or method == "lstd":
+        options["trace_decay"] = data.draw(st.floats(0.0, 1.0))
+    if method == "n_step_td":
+        options["n_steps"] = data.draw(st.integers(1, 30) | st.just(2000))
+    if method in OFF_POLICY:
+        options["behavior"] = behavior
+    return options
+
+
+@given(data=st.data())
+def test_vectors_of_states_equal_plain_numpy(data: st.DataObject) -> None:
+    method: Any = data.draw(st.sampled_from(WEIGHTED))
+    options = options_of(method, data)
+    count, limit = data.draw(st.integers(1, 7)), data.draw(st.sampled_from([3, 30]))
+    vectors = np.random.default_rng(count).uniform(-1.0, 1.0, (6, count))
+    if method == "monte_carlo":
+        options["first_visit"] = data.draw(st.booleans())
+    if method != "lstd" and data.draw(st.booleans()):
+        options["initial_weights"] = np.linspace(-1.0, 2.0, count)
+    found = qtab.estimate_values(
+        random_mdp(6, 2, actions=3),
+        TARGET,
+        method=method,
+        features=vectors,
+        episodes=4,
+        discount=data.draw(st.sampled_from([0.0, 0.9, 1.0])),
+        max_episode_steps=limit,
+        on_truncation=data.draw(st.sampled_from(["bootstrap", "terminate"])),
+        bit_generator=data.draw(st.sampled_from(["PCG64", "MT19937"])),
+        seeds=[data.draw(st.integers(0, 1000))],
+        **options,
+    )
+    assert verify_values(found, None, None, gym.wrappers.TimeLimit(random_mdp(6, 2, actions=3), limit)).equal
+
+
+@given(data=st.data())
+def test_a_fourier_basis_equals_plain_numpy(data: st.DataObject) -> None:
+    method: Any = data.draw(st.sampled_from(WEIGHTED))
+    env = data.draw(st.sampled_from(list(BOXES)))
+    policies, given = BOXES[env]
+    options = {**given, **options_of(method, data)}
+    if method != "lstd":
+        options["scale_step_sizes"] = data.draw(st.booleans())
+    found = qtab.estimate_values(
+        env,
+        data.draw(st.sampled_from(policies)),
+        method=method,
+        discretizer="fourier",
+        order=data.draw(st.integers(1, 3)),
+        episodes=2,
+        discount=data.draw(st.sampled_from([0.0, 0.9])),
+        max_episode_steps=data.draw(st.sampled_from([5, 40])),
+        on_truncation=data.draw(st.sampled_from(["bootstrap", "terminate"])),
+        seeds=[data.draw(st.integers(0, 1000))],
+        **options,
+    )
+    assert found.verify().equal
+
+
+@pytest.mark.parametrize("method", WEIGHTED)
+def test_unit_vectors_are_a_table(method: Any) -> None:
+    given: dict[str, Any] = {"learning_rate": 0.25, "second_learning_rate": 0.125, "trace_decay": 0.5, "n_steps": 3}
+    taken = {
+        "td": "learning_rate",
+        "n_step_td": "learning_rate n_steps",
+        "monte_carlo": "learning_rate",
+        "off_policy_td": "learning_rate behavior",
+        "gtd2": "learning_rate second_learning_rate",
+        "tdc": "learning_rate second_learning_rate",
+        "emphatic_td": "learning_rate",
+        "lstd": "trace_decay",
+        "off_policy_td_lambda": "learning_rate trace_decay behavior",
+    }.get(method, "learning_rate trace_decay")
+    options = {name: value for name, value in {**given, "behavior": "random"}.items() if name in taken.split()}
+    arguments: dict[str, Any] = {"method": method, "episodes": 5, "discount": 0.5, "seeds": 2, **options}
+    walk: dict[str, Any] = {"env_kwargs": {"states": 7}}
+    lean = np.tile([0.4, 0.6], (7, 1))
+    table = qtab.estimate_values("qtab/RandomWalk-v0", lean, **arguments, **walk)
+    vectors = qtab.estimate_values("qtab/RandomWalk-v0", lean, features=np.eye(7), **arguments, **walk)
+    assert vectors.weights.tobytes() == table.weights.tobytes()
+    assert vectors.values.tobytes() == table.values.tobytes()
+    assert vectors.value(3).tolist() == table.value(3).tolist()
+
+
+def test_values_are_products_of_vectors_and_weights() -> None:
+    vectors = np.random.default_rng(1).standard_normal((7, 3))
+    walk: dict[str, Any] = {"env_kwargs": {"states": 7}}
+    found = qtab.estimate_values(
+        "qtab/RandomWalk-v0", "random", features=vectors, learning_rate=0.01, episodes=20, seeds=3, **walk
+    )
+    assert (found.weights.shape, found.n_active, found.rows) == ((3, 20, 3), 3, None)
+    np.testing.assert_allclose(found.values, found.weights[:, -1] @ vectors.T, rtol=1e-12)
+    assert np.array_equal(found.value(2), found.values[:, 2])
+    assert np.array_equal(found.value([2, 5]), found.values[:, [2, 5]])
+    assert found.rms_error(np.zeros(7)).shape == (3, 20)
+    assert len(found.plot(true_values=np.zeros(7)).lines) == 2
+    car = qtab.estimate_values(CAR, "random", **FOURIER, order=2, seeds=2)
+    observations = np.array([[-0.5, 0.0], [0.3, 0.05]], np.float32)
+    assert car.discretizer is not None
+    x: NDArray[np.float64] = car.discretizer.active_features(observations)
+    np.testing.assert_allclose(car.value(observations), car.weights[:, -1] @ x.T, rtol=1e-12)
+    assert car.value(observations[0]).shape == (2,)
+    assert repr(car) == "<ValueEstimates of MountainCar-v0: td, 9 features, 2 runs of 3 episodes>"
+    car.plot()
+
+
+def test_estimates_are_saved_with_their_features(tmp_path: Any) -> None:
+    path, at = tmp_path / "values.npz", np.array([[-0.5, 0.0], [0.3, 0.05]], np.float32)
+    bases: list[dict[str, Any]] = [{"order": 2}, {"order": 3, "coupled": False, "scale_step_sizes": False}]
+    for basis in bases:
+        car = qtab.estimate_values(CAR, with_the_velocity, **FOURIER, **basis)
+        car.save(path)
+        again = qtab.ValueEstimates.load(path)
+        assert np.array_equal(again.value(at), car.value(at))
+        assert repr(again) == repr(car)
+    vectors = np.random.default_rng(1).standard_normal((19, 3))
+    options: dict[str, Any] = {"method": "tdc", "learning_rate": 0.01, "second_learning_rate": 0.02, "episodes": 3}
+    found = qtab.estimate_values("qtab/RandomWalk-v0", "random", features=vectors, **options)
+    found.save(path)
+    again = qtab.ValueEstimates.load(path)
+    assert (again.settings, again.values.tobytes()) == (found.settings, found.values.tobytes())
+    with np.load(path) as file:
+        arrays = dict(file)
+    for damaged in (vectors[:5], vectors[:, :2], vectors.astype(np.float32), vectors[0]):
+        np.savez(path, **{**arrays, "feature_vectors": damaged})
+        with pytest.raises(ValueError, match="not a file of value estimates"):
+            qtab.ValueEstimates.load(path)
+
+
+class Slope(gym.Env[Any, Any]):
+    """A step of random length to either side, from 0 to the ends at -1 and 1, stepped in Python."""
+
+    action_space = gym.spaces.Discrete(2)
+    at = 0.0
+
+    def __init__(self, dtype: Any) -> None:
+        self.observation_space = gym.spaces.Box(-2.0, 2.0, (1,), dtype)
+
+    def reset(self, *, seed: int | None = None, options: Any = None) -> tuple[Any, dict[str, Any]]:
+        super().reset(seed=seed)
+        self.at = 0.0
+        return np.zeros(1, self.observation_space.dtype), {}
+
+    def step(self, action: int) -> tuple[Any, float, bool, bool, dict[str, Any]]:
+        self.at += (2 * action - 1) * 0.3 * self.np_random.random()
+        return np.array([self.at], self.observation_space.dtype), -1.0, abs(self.at) >= 1, False, {}
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize("policy", ["random", lambda at: int(at[0] >= 0)], ids=["random", "function"])
+def test_an_environment_in_python_is_stepped_there(dtype: Any, policy: Any) -> None:
+    methods: list[dict[str, Any]] = [
+        {"order": 2, "method": "td_lambda", "trace_decay": 0.8},
+        {"order": 70, "method": "monte_carlo"},
+    ]
+    for options in methods:
+        found = qtab.estimate_values(Slope(dtype), policy, **FOURIER, **options)
+        assert verify_values(found, None, None, gym.wrappers.TimeLimit(Slope(dtype), 40)).equal
+
+
+WALK: dict[str, Any] = {"env": "qtab/RandomWalk-v0", "features": np.ones((19, 2)), "learning_rate": 0.1}
+MOUNTAIN: dict[str, Any] = {"env": CAR, **FOURIER}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "message"),
+    [
+        ({**WALK, "features": np.ones((18, 2))}, ValueError, r"features must have a feature vector for .* 19 states"),
+        ({**WALK, "features": np.full((19, 2), np.nan)}, ValueError, "features must be finite"),
+        ({**WALK, "features": np.ones(19)}, TypeError, "features must be None or an array of integers, or of floats"),
+        ({**WALK, "learning_rate": None}, ValueError, "learning_rate must be given for features with values other"),
+        ({**WALK, "learning_rate_schedule": "visits"}, ValueError, "learning_rate_schedule must be 'constant', 'linea"),
+        ({**WALK, "initial_value": 1.0}, ValueError, r"initial_value must be 0 .*; initial_weights= sets each weight"),
+        (
+            {**WALK, "initial_weights": np.ones(3)},
+            ValueError,
+            r"initial_weights must have the shape \(2,\), got \(3,\)",
+        ),
+        (
+            {**WALK, "initial_weights": np.ones(2), "initial_value": 1.0},
+            ValueError,
+            "initial_value must be 0 with initial_weights, got 1.0",
+        ),
+        (
+            {**WALK, "method": "batch_td", "learning_rate": None},
+            ValueError,
+            "features must be None or an array of integers for method 'batch_td', which averages in each cell",
+        ),
+        (
+            {**WALK, "method": "lstd", "learning_rate": None, "initial_weights": [1, 2]},
+            ValueError,
+            "initial_weights must be None for method 'lstd', whose weights follow from the steps",
+        ),
+        (
+            {**MOUNTAIN, "features": np.ones((9, 2))},
+            ValueError,
+            "features must be None for discretizer 'fourier', which",
+        ),
+        ({**MOUNTAIN, "learning_rate": None}, ValueError, "learning_rate must be given for features with values other"),
+        ({**MOUNTAIN, "initial_value": 1.0}, ValueError, "initial_value must be 0 for features with values other"),
+        ({**MOUNTAIN, "method": "monte_carlo", "first_visit": True}, ValueError, "first_visit must be False for disc"),
+        (
+            {**MOUNTAIN, "method": "importance_sampling", "behavior": "random", "learning_rate": None},
+            ValueError,
+            "discretizer must be 'round', 'bins' or 'edges' for method 'importance_sampling'",
+        ),
+        (
+            {**MOUNTAIN, "method": "lstd", "learning_rate": None, "scale_step_sizes": True},
+            ValueError,
+            "scale_step_sizes must be False for method 'lstd', which has no step size",
+        ),
+        ({**MOUNTAIN, "order": 50}, ValueError, "order must give at most 1,024 features, got 50"),
+        ({**MOUNTAIN, "bins": 3}, ValueError, "bins applies to discretizer 'bins', not to 'fourier'"),
+        ({**MOUNTAIN, "policy": np.zeros(16, int)}, ValueError, "policy must be a function, .* for weighted features"),
+    ],
+)
+def test_what_does_not_fit_is_refused_by_name(arguments: dict[str, Any], error: type[Exception], message: str) -> None:
+    with pytest.raises(error, match=message):
+        qtab.estimate_values(**{"policy": "random", **arguments})
+
+
+def test_a_fourier_basis_has_no_array_of_values() -> None:
+    found = qtab.estimate_values(CAR, "random", **FOURIER)
+    with pytest.raises(
+        ValueError, match=r"values need cells, which weighted features do not have; value\(observation\)"
+    ):
+        found.values  # noqa: B018
+
+
+def test_a_step_size_that_diverges_is_an_error_with_the_seed() -> None:
+    given = {**FOURIER, "learning_rate": 2.0, "episodes": 50, "max_episode_steps": 200}
+    with pytest.raises(OverflowError, match="the values diverged in episode"):
+        qtab.estimate_values(CAR, "random", order=9, scale_step_sizes=False, **given)
