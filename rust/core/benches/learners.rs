@@ -1,4 +1,4 @@
-//! The time per step of each learner on `MountainCar`, on a grid, on eight tilings and with a Fourier basis.
+//! The time per step of each learner on `MountainCar`, on a grid and on eight tilings.
 //!
 //! `cargo bench --bench learners`, or `cargo bench --bench learners -- tilings` for the tilings only. All learners use
 //! a policy and a learning rate chosen at run time.
@@ -12,9 +12,7 @@ use std::fmt::Debug;
 use benchmarks::Benchmarks;
 use mountain_car_task::{MountainCarTask, rounding, task};
 use qtab_core::batch::BatchRule;
-use qtab_core::features::{
-    FeatureVector, Features, FixedTileCoding, FixedTiles, FourierBasis, OutOfBounds, TileCoding,
-};
+use qtab_core::features::{Features, FixedTileCoding, FixedTiles, OutOfBounds, TileCoding};
 use qtab_core::learners::{
     Agent, DoubleQLearning, DynaQ, DynaQPlus, ExpectedSarsa, Model, NStepSarsa, QLearning, Sarsa, SarsaLambda,
     TdLearner, TraceKind, Traces, TrueOnlineSarsaLambda, UpdateRule, WatkinsQLambda,
@@ -153,32 +151,9 @@ fn boxed_tilings<const N: usize>(benchmarks: &mut Benchmarks, group: &'static st
     add("Sarsa(0.9), cut off", Some(CUTOFF));
 }
 
-/// Benchmarks learners with the coupled Fourier basis of order 5, 36 features, on a boxed task, as the Python package runs
-/// them.
-fn boxed_fourier(benchmarks: &mut Benchmarks) {
-    const ROOM: usize = 64;
-    let basis = FourierBasis::<f32, ROOM>::try_new(&[-1.2, -0.07], &[0.6, 0.07], 5, true, true).expect("36 features");
-    let run = || {
-        let mut agent = optimistic_agent(basis.n_features(), 1);
-        agent.learning_rate = LearningRate::scaled_by_row(Schedule::constant(0.005), basis.divisors());
-        let boxed: BoxedTask<FeatureVector<ROOM>, OutOfBounds> = BoxedTask::new(task(basis.clone()));
-        (agent, boxed, mountain_car_task::agent_rng())
-    };
-    let group = "36 Fourier features, boxed";
-    benchmarks.add(group, "Q-learning", || {
-        let (agent, boxed, rng) = run();
-        train(Trainer::new(boxed, TdLearner { agent, rule: QLearning }, rng), BUDGET)
-    });
-    benchmarks.add(group, "Sarsa", || {
-        let (agent, boxed, rng) = run();
-        train(Trainer::new(boxed, TdLearner { agent, rule: Sarsa }, rng), BUDGET)
-    });
-}
-
 fn main() {
     let mut benchmarks = Benchmarks::from_env();
     grid(&mut benchmarks);
     tilings(&mut benchmarks);
-    boxed_fourier(&mut benchmarks);
     benchmarks.finish();
 }

@@ -12,6 +12,7 @@ pub(crate) const MAX_EPISODE_STEPS: u64 = 200;
 pub(crate) type AnyGrid = Rounding<f32, [Axis<f32>; 2]>;
 pub(crate) type MountainCarTask<F = AnyGrid> = NativeTask<MountainCar, F>;
 
+#[allow(dead_code, reason = "not every benchmark program uses it")]
 pub(crate) fn rounding() -> AnyGrid {
     Rounding::new([Axis::new(-1.2, 0.6, 10.0), Axis::new(-0.07, 0.07, 100.0)])
 }

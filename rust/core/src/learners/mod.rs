@@ -16,7 +16,7 @@ pub(crate) use common::StepInParts;
 #[cfg(test)]
 use common::test_support;
 pub use common::{ActionMasks, Agent, CountBonus, Learner, TdLearner, TransformedSteps, UpdateRule};
-use common::{MAX_WORK_PER_CALL, VALUES_PER_WORK, masked_values, row_work};
+use common::{MAX_WORK_PER_CALL, VALUES_PER_WORK, learn_borrowed, masked_values, row_work};
 use models::single_row;
 pub use models::{DynaModel, DynaQ, DynaQPlus, Model, ModelEntry, PrioritizedSweeping, StochasticModel};
 pub use monte_carlo::{MonteCarloControl, OffPolicyMonteCarlo};

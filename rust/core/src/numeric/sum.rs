@@ -30,5 +30,35 @@ pub(crate) fn sum_products<const A: usize>(x: &[f64], weights: impl Fn(usize) ->
     for ((index, part), &x) in parts.iter_mut().enumerate().zip(rest) {
         add(part, weights(PARTS * blocks.len() + index), x);
     }
+    add_parts(parts)
+}
+
+/// [`sum_products`] with as many rows of weights as features, of each of which `pick` takes `A` columns. Whole blocks of rows
+/// are read without a check of their bounds, and the products of a block fit into vector registers.
+#[inline(always)]
+pub(crate) fn sum_row_products<const N: usize, const A: usize>(
+    x: &[f64],
+    rows: &[[f64; N]],
+    pick: impl Fn(&[f64; N]) -> [f64; A],
+) -> [f64; A] {
+    let mut parts = [[0.0; A]; PARTS];
+    let add = |parts: &mut [[f64; A]; PARTS], x: &[f64], rows: &[[f64; N]]| {
+        for (part, (x, row)) in parts.iter_mut().zip(x.iter().zip(rows)) {
+            for (sum, weight) in part.iter_mut().zip(pick(row)) {
+                *sum += weight * x;
+            }
+        }
+    };
+    let ((blocks, x), (row_blocks, rows)) = (x.as_chunks::<PARTS>(), rows.as_chunks::<PARTS>());
+    for (x, rows) in blocks.iter().zip(row_blocks) {
+        add(&mut parts, x, rows);
+    }
+    add(&mut parts, x, rows);
+    add_parts(parts)
+}
+
+/// The sums of the four partial sums of each column.
+#[inline(always)]
+fn add_parts<const A: usize>(parts: [[f64; A]; PARTS]) -> [f64; A] {
     std::array::from_fn(|column| (parts[0][column] + parts[1][column]) + (parts[2][column] + parts[3][column]))
 }

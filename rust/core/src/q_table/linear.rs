@@ -18,11 +18,13 @@ pub enum TerminalUpdate {
 
 impl<const N: usize> QTable<N> {
     /// The action values of an observation with these active rows.
-    #[inline]
+    #[inline(always)]
     pub fn action_values<R: ActiveFeatures + ?Sized>(&mut self, rows: &R) -> &[f64] {
-        if R::WEIGHTED {
-            return self.weighted_action_values(rows.values());
-        }
+        if R::WEIGHTED { self.weighted_action_values(rows.values()) } else { self.binary_action_values(rows) }
+    }
+
+    #[inline]
+    fn binary_action_values<R: ActiveFeatures + ?Sized>(&mut self, rows: &R) -> &[f64] {
         let rows = rows.as_ref();
         if let &[row] = rows {
             return self.row(row);
@@ -49,11 +51,13 @@ impl<const N: usize> QTable<N> {
     }
 
     /// The value of one action with these active rows.
-    #[inline]
+    #[inline(always)]
     pub fn value<R: ActiveFeatures + ?Sized>(&self, rows: &R, action: usize) -> f64 {
-        if R::WEIGHTED {
-            return self.weighted_value(rows.values(), action);
-        }
+        if R::WEIGHTED { self.weighted_value(rows.values(), action) } else { self.binary_value(rows, action) }
+    }
+
+    #[inline]
+    fn binary_value<R: ActiveFeatures + ?Sized>(&self, rows: &R, action: usize) -> f64 {
         // The bounds check of the action is then that of `value_mut`.
         if N > 0
             && let &[row] = rows.as_ref()
@@ -71,7 +75,7 @@ impl<const N: usize> QTable<N> {
 
     /// Q ← Q + α (target - Q). Each active row moves by its step size times the error, and with weighted features times
     /// the value of its feature.
-    #[inline]
+    #[inline(always)]
     pub fn update<R: ActiveFeatures + ?Sized>(
         &mut self,
         rows: &R,
@@ -79,10 +83,22 @@ impl<const N: usize> QTable<N> {
         target: f64,
         step_size: &mut impl StepSize,
     ) {
-        let error = target - self.value(rows, action);
         if R::WEIGHTED {
-            return self.update_weighted(rows, action, (target, error), step_size);
+            self.update_weighted(rows, action, target, step_size);
+        } else {
+            self.update_binary(rows, action, target, step_size);
         }
+    }
+
+    #[inline]
+    fn update_binary<R: ActiveFeatures + ?Sized>(
+        &mut self,
+        rows: &R,
+        action: usize,
+        target: f64,
+        step_size: &mut impl StepSize,
+    ) {
+        let error = target - self.value(rows, action);
         let rows = rows.as_ref();
         if rows.len() != 1 {
             self.check_finite(error);
@@ -139,7 +155,9 @@ impl<const N: usize> QTable<N> {
         step_size: &mut impl StepSize,
     ) {
         match update {
-            TerminalUpdate::Target => self.update(rows, action, reward, step_size),
+            TerminalUpdate::Target if R::WEIGHTED => self.update(rows, action, reward, step_size),
+            // The rows as a slice: a second call of the update for this type would keep it from being inlined.
+            TerminalUpdate::Target => self.update(rows.as_ref(), action, reward, step_size),
             TerminalUpdate::Assign => {
                 let active = rows.as_ref();
                 assert!(active.len() == 1 && !R::WEIGHTED, "TerminalUpdate::Assign needs exactly one active row");

@@ -3,12 +3,12 @@
 
 use super::QTable;
 use crate::features::ActiveFeatures;
-use crate::numeric::sum_products;
+use crate::numeric::{sum_products, sum_row_products};
 use crate::schedules::StepSize;
 
 impl<const N: usize> QTable<N> {
-    /// The action values Σᵢ wᵢ xᵢ.
-    #[inline]
+    /// The action values Σᵢ wᵢ xᵢ. These functions are inlined into code for wide vector registers.
+    #[inline(always)]
     pub(super) fn weighted_action_values(&mut self, x: &[f64]) -> &[f64] {
         match self.num_actions() {
             2 => self.sum_products::<2>(x),
@@ -24,54 +24,104 @@ impl<const N: usize> QTable<N> {
     }
 
     /// The sums for all of `A` actions at once, in registers.
-    #[inline]
+    #[inline(always)]
     fn sum_products<const A: usize>(&mut self, x: &[f64]) {
         let weights = &self.values.as_chunks::<A>().0[..x.len()];
-        let sums = sum_products(x, |row| weights[row]);
+        let sums = sum_row_products(x, weights, |row| *row);
         self.sums.copy_from_slice(&sums);
     }
 
     /// The value Σᵢ wᵢ xᵢ of one action.
-    #[inline]
+    #[inline(always)]
     pub(super) fn weighted_value(&self, x: &[f64], action: usize) -> f64 {
-        match self.num_actions() {
-            2 => self.sum_column::<2>(x, action),
-            3 => self.sum_column::<3>(x, action),
-            4 => self.sum_column::<4>(x, action),
-            num_actions => sum_products(x, |row| [self.values[row * num_actions + action]])[0],
-        }
-    }
-
-    /// The value of one of `A` actions.
-    #[inline]
-    fn sum_column<const A: usize>(&self, x: &[f64], action: usize) -> f64 {
-        assert!(action < A, "there are {A} actions");
-        let weights = &self.values.as_chunks::<A>().0[..x.len()];
-        sum_products(x, |row| [weights[row][action]])[0]
+        sum_column(&self.values, self.num_actions(), action, x)
     }
 
     /// wᵢ ← wᵢ + (αᵢ error) xᵢ.
+    #[inline(always)]
     pub(super) fn update_weighted<R: ActiveFeatures + ?Sized>(
+        &mut self,
+        features: &R,
+        action: usize,
+        target: f64,
+        step_size: &mut impl StepSize,
+    ) {
+        let error = target - self.value(features, action);
+        self.check_finite(error);
+        if step_size.log().is_some() {
+            return self.update_logged(features, action, (target, error), step_size);
+        }
+        self.add_features(features.values(), action, error, step_size);
+    }
+
+    /// The update of a learner whose updates are logged.
+    #[cold]
+    fn update_logged<R: ActiveFeatures + ?Sized>(
         &mut self,
         features: &R,
         action: usize,
         (target, error): (f64, f64),
         step_size: &mut impl StepSize,
     ) {
-        self.check_finite(error);
-        let old = step_size.log().is_some().then(|| self.value(features, action));
-        let (x, num_actions) = (features.values(), self.num_actions());
-        let weights = self.values[action..].iter_mut().step_by(num_actions).zip(x);
+        let old = self.value(features, action);
+        self.add_features(features.values(), action, error, step_size);
+        self.log(features, action, (old, target, None), step_size);
+    }
+
+    /// wᵢ ← wᵢ + (αᵢ scale) xᵢ.
+    #[inline(always)]
+    pub(crate) fn add_features(&mut self, x: &[f64], action: usize, scale: f64, step_size: &impl StepSize) {
+        let num_actions = self.num_actions();
         if let Some(steps) = step_size.of_rows() {
-            weights.zip(steps).for_each(|((weight, x), step)| *weight += step * error * x);
+            let numbers = x.iter().zip(steps).map(|(x, step)| step * scale * x);
+            add_to_column(&mut self.values, num_actions, action, numbers);
         } else {
-            let change = step_size.at(0) * error;
-            weights.for_each(|(weight, x)| *weight += change * x);
-        }
-        if let Some(old) = old {
-            self.log(features, action, (old, target, None), step_size);
+            let change = step_size.at(0) * scale;
+            add_to_column(&mut self.values, num_actions, action, x.iter().map(|x| change * x));
         }
     }
+}
+
+/// Σᵢ wᵢ xᵢ of a column of rows of `num_actions` weights.
+#[inline(always)]
+fn sum_column(weights: &[f64], num_actions: usize, action: usize, x: &[f64]) -> f64 {
+    match num_actions {
+        2 => sum_one_of::<2>(weights, action, x),
+        3 => sum_one_of::<3>(weights, action, x),
+        4 => sum_one_of::<4>(weights, action, x),
+        _ => sum_products(x, |row| [weights[row * num_actions + action]])[0],
+    }
+}
+
+/// Σᵢ wᵢ xᵢ of one of `A` columns.
+#[inline(always)]
+fn sum_one_of<const A: usize>(weights: &[f64], action: usize, x: &[f64]) -> f64 {
+    assert!(action < A, "there are {A} actions");
+    sum_row_products(x, &weights.as_chunks::<A>().0[..x.len()], |row| [row[action]])[0]
+}
+
+/// Adds a number to each weight of a column of rows of `num_actions` weights.
+#[inline(always)]
+pub(crate) fn add_to_column(
+    weights: &mut [f64],
+    num_actions: usize,
+    action: usize,
+    numbers: impl ExactSizeIterator<Item = f64>,
+) {
+    match num_actions {
+        2 => add_to_one_of::<2>(weights, action, numbers),
+        3 => add_to_one_of::<3>(weights, action, numbers),
+        4 => add_to_one_of::<4>(weights, action, numbers),
+        _ => weights[action..].iter_mut().step_by(num_actions).zip(numbers).for_each(|(weight, add)| *weight += add),
+    }
+}
+
+/// Adds a number to each weight of one of `A` columns.
+#[inline(always)]
+fn add_to_one_of<const A: usize>(weights: &mut [f64], action: usize, numbers: impl ExactSizeIterator<Item = f64>) {
+    assert!(action < A, "there are {A} actions");
+    let rows = &mut weights.as_chunks_mut::<A>().0[..numbers.len()];
+    rows.iter_mut().zip(numbers).for_each(|(row, add)| row[action] += add);
 }
 
 #[cfg(test)]

@@ -14,6 +14,18 @@ pub enum Next<R> {
     Terminal,
 }
 
+impl<R: Copy> Next<&R> {
+    /// The next state with a copy of its active rows.
+    #[inline]
+    pub fn copied(self) -> Next<R> {
+        match self {
+            Self::NonTerminal(rows) => Next::NonTerminal(*rows),
+            Self::Truncated(rows) => Next::Truncated(*rows),
+            Self::Terminal => Next::Terminal,
+        }
+    }
+}
+
 /// [`Next`] without the active rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NextKind {

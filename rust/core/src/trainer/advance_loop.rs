@@ -1,6 +1,7 @@
-//! The training loop, compiled for wide vector registers too if the learner or the task benefits from them.
+//! The training loop, compiled for wide vector registers too if the learner, the task or its features benefit from them.
 
 use super::{Budget, Trainer};
+use crate::features::ActiveFeatures;
 use crate::learners::Learner;
 use crate::random::Rng;
 use crate::simd::{Simd, SimdCode, SimdLevel};
@@ -18,7 +19,8 @@ impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> AdvanceLoop<'_, T, L, R> {
     /// multiplications and additions are never fused.
     #[inline(always)]
     pub(super) fn dispatch(self) -> Result<(), T::Error> {
-        let level = if L::HAS_VECTOR_PASSES || T::USES_VECTORS { SimdLevel::detect() } else { SimdLevel::PLAIN };
+        let uses_vectors = L::HAS_VECTOR_PASSES || T::USES_VECTORS || T::Active::WEIGHTED;
+        let level = if uses_vectors { SimdLevel::detect() } else { SimdLevel::PLAIN };
         level.run(self)
     }
 }

@@ -1,6 +1,7 @@
 //! A training run, and the only training loop.
 
 mod advance_loop;
+mod borrowed_steps;
 mod builder;
 mod checkpoint;
 mod episode_log;
@@ -18,6 +19,7 @@ pub use self::evaluate::{EvaluationError, evaluate};
 pub use self::load_error::LoadError;
 use crate::checkpoint::RunIdentity;
 use crate::errors::TrainingError;
+use crate::features::ActiveFeatures;
 use crate::learners::Learner;
 use crate::memory::{AllocationError, MemoryRoom, RunMemory};
 use crate::random::Rng;
@@ -190,6 +192,10 @@ impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> Trainer<T, L, R> {
                 Some(episode) => episode,
                 None => self.begin_episode(rng)?,
             };
+            if T::Active::WEIGHTED {
+                self.take_borrowed_steps(episode, rng, &mut work)?;
+                continue;
+            }
             let EpisodeState { mut state, mut active, mut action, mut episode_return, mut length, .. } = episode;
             loop {
                 let transition = if Self::WRITES_ROWS {

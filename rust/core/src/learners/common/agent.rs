@@ -139,10 +139,10 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
         self.table.value(&rows, action)
     }
 
-    /// Counts a visit to a state-action pair.
+    /// Counts a visit to a state-action pair. Weighted features have no visits: they are active in every state.
     #[inline]
-    pub fn visit(&mut self, rows: impl ActiveFeatures, action: usize) {
-        if self.learning_rate.uniform().is_some() {
+    pub fn visit<R: ActiveFeatures>(&mut self, rows: R, action: usize) {
+        if R::WEIGHTED || self.learning_rate.uniform().is_some() {
             return;
         }
         for &row in rows.as_ref() {
@@ -167,6 +167,12 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
     #[inline]
     pub fn work(&self) -> u64 {
         if N > 0 { 1 } else { row_work(self.table.num_actions()) }
+    }
+
+    /// [`work`](Self::work) with active rows `R`: weighted features read the whole table.
+    #[inline]
+    pub(in crate::learners) fn work_of<R: ActiveFeatures>(&self) -> u64 {
+        if R::WEIGHTED { row_work(self.table.values().len()) } else { self.work() }
     }
 
     /// Saves or restores the counts of the learning rate and the action masks.

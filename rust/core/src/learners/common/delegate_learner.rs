@@ -4,8 +4,8 @@
 /// the type's `impl Learner<R>`.
 ///
 /// `$pattern` matches the type and binds `$learner`: a wrapper has one such pattern, an enum one for each variant.
-/// `rest` leaves out the methods that a wrapper may change, `learn`, `resume`, `end_episode` and `persist`; `all`
-/// includes them.
+/// `rest` leaves out the methods that a wrapper may change, `learn`, `learn_borrowed`, `resume`, `end_episode` and
+/// `persist`; `all` includes them.
 ///
 /// ```
 /// use qtab_core::learners::{Learner, QLearning, Sarsa, TdLearner};
@@ -100,6 +100,20 @@ macro_rules! delegate_learner {
             rng: &mut impl $crate::random::Rng,
         ) -> usize {
             match self { $($pattern => $crate::Learner::<$active>::learn($learner, state, action, reward, next, rng)),+ }
+        }
+
+        #[inline]
+        fn learn_borrowed(
+            &mut self,
+            state: &$active,
+            action: usize,
+            reward: f64,
+            next: $crate::tasks::Next<&$active>,
+            rng: &mut impl $crate::random::Rng,
+        ) -> usize {
+            match self {
+                $($pattern => $crate::Learner::<$active>::learn_borrowed($learner, state, action, reward, next, rng)),+
+            }
         }
 
         fn resume(&mut self, next: $crate::tasks::Next<$active>, rng: &mut impl $crate::random::Rng) -> usize {

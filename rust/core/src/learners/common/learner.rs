@@ -18,6 +18,16 @@ pub trait Learner<R> {
     /// Learns from one step and returns the next action. The result is ignored at the end of an episode.
     fn learn(&mut self, state: R, action: usize, reward: f64, next: Next<R>, rng: &mut impl Rng) -> usize;
 
+    /// [`learn`](Self::learn) with borrowed active rows, which then are not copied. The trainer calls it for weighted
+    /// features, of which each state has hundreds of bytes.
+    #[inline(always)]
+    fn learn_borrowed(&mut self, state: &R, action: usize, reward: f64, next: Next<&R>, rng: &mut impl Rng) -> usize
+    where
+        R: Copy,
+    {
+        self.learn(*state, action, reward, next.copied(), rng)
+    }
+
     /// Records the action mask of a state, as reported by the task, before an action is chosen in this state or learned
     /// from.
     #[inline]

@@ -21,3 +21,4 @@ pub(crate) use step_in_parts::StepInParts;
 pub use td_learner::TdLearner;
 pub use transformed_steps::TransformedSteps;
 pub use update_rule::UpdateRule;
+pub(super) use update_rule::learn_borrowed;

@@ -40,6 +40,11 @@ where
         self.rule.learn(&mut self.agent, state, action, reward, next, rng)
     }
 
+    #[inline(always)]
+    fn learn_borrowed(&mut self, state: &R, action: usize, reward: f64, next: Next<&R>, rng: &mut impl Rng) -> usize {
+        self.rule.learn_borrowed(&mut self.agent, state, action, reward, next, rng)
+    }
+
     #[inline]
     fn set_action_mask(&mut self, state: R, mask: &[bool]) {
         self.agent.set_action_mask(state, mask);
@@ -51,7 +56,7 @@ where
 
     #[inline]
     fn work(&self) -> u64 {
-        self.rule.work(self.agent.work())
+        self.rule.work(self.agent.work_of::<R>())
     }
 
     fn reserve(&mut self, work: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {

@@ -50,6 +50,18 @@ impl<R: ActiveFeatures, L: Learner<R>> Learner<R> for TransformedSteps<L> {
         self.learner.learn(state, action, reward, next, rng)
     }
 
+    #[inline(always)]
+    fn learn_borrowed(&mut self, state: &R, action: usize, reward: f64, next: Next<&R>, rng: &mut impl Rng) -> usize
+    where
+        R: Copy,
+    {
+        if self.bonus.is_some() {
+            return self.learn(*state, action, reward, next.copied(), rng);
+        }
+        let next = self.as_learned(next);
+        self.learner.learn_borrowed(state, action, reward, next, rng)
+    }
+
     fn resume(&mut self, next: Next<R>, rng: &mut impl Rng) -> usize {
         let next = self.as_learned(next);
         self.learner.resume(next, rng)

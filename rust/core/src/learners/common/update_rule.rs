@@ -31,6 +31,24 @@ pub trait UpdateRule<R, G> {
         rng: &mut impl Rng,
     ) -> usize;
 
+    /// As [`Learner::learn_borrowed`](super::Learner::learn_borrowed). Rules that store no active rows implement it with
+    /// the macro `learn_borrowed`.
+    #[inline(always)]
+    fn learn_borrowed(
+        &mut self,
+        agent: &mut G,
+        state: &R,
+        action: usize,
+        reward: f64,
+        next: Next<&R>,
+        rng: &mut impl Rng,
+    ) -> usize
+    where
+        R: Copy,
+    {
+        self.learn(agent, *state, action, reward, next.copied(), rng)
+    }
+
     /// As [`Learner::work`](super::Learner::work), given the work of updating a row: that alone for a one-step method.
     #[inline]
     fn work(&self, row_work: u64) -> u64 {
@@ -95,3 +113,24 @@ pub trait UpdateRule<R, G> {
         Ok(())
     }
 }
+
+/// Implements [`UpdateRule::learn_borrowed`] for an agent of this type by a rule that learns with any active rows: references
+/// to active rows are active rows, too.
+macro_rules! learn_borrowed {
+    ($agent:ty) => {
+        #[inline(always)]
+        fn learn_borrowed(
+            &mut self,
+            agent: &mut $agent,
+            state: &R,
+            action: usize,
+            reward: f64,
+            next: Next<&R>,
+            rng: &mut impl Rng,
+        ) -> usize {
+            UpdateRule::<&R, $agent>::learn(self, agent, state, action, reward, next, rng)
+        }
+    };
+}
+
+pub(crate) use learn_borrowed;

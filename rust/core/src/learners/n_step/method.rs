@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
-use crate::features::{ActiveRows, persist_rows};
+use crate::features::{ActiveFeatures, ActiveRows, persist_rows};
 use crate::learners::VALUES_PER_WORK;
 use crate::learners::{Agent, StepInParts, UpdateRule};
 use crate::memory::{AllocationError, RunMemory};
@@ -29,11 +29,16 @@ pub trait NStepMethod<R> {
     type Memo: Copy + Default + Persist;
 
     /// The data to store when an action is chosen, before any value changes.
-    fn memo(&self, agent: &mut Agent, rows: R, action: usize) -> Self::Memo;
+    fn memo<F: Copy + ActiveFeatures>(&self, agent: &mut Agent, rows: F, action: usize) -> Self::Memo;
 
     /// Updates the oldest pair, the first of the visits. `following` is the pair after the newest reward, or `None`
-    /// after a terminal state.
-    fn update(&self, agent: &mut Agent, visits: &VecDeque<NStepVisit<R, Self::Memo>>, following: Option<(R, usize)>);
+    /// after a terminal state; its active rows can be borrowed.
+    fn update<F: Copy + ActiveFeatures>(
+        &self,
+        agent: &mut Agent,
+        visits: &VecDeque<NStepVisit<R, Self::Memo>>,
+        following: Option<(F, usize)>,
+    );
 
     /// The work of an update with this many visits, given that of reading a row.
     #[inline]
@@ -68,12 +73,37 @@ impl<R: ActiveRows, M: NStepMethod<R>> NStep<R, M> {
         Self { method, n, visits, memo, following: None, end: StepInParts::new() }
     }
 
+    /// Learns from a step with the active rows of its next state, or references to them, of which `owned` returns a copy.
+    #[inline(always)]
+    fn step<F: Copy + ActiveFeatures>(
+        &mut self,
+        agent: &mut Agent,
+        (rows, action, reward): (R, usize, f64),
+        next: Next<F>,
+        owned: impl Fn(F) -> R,
+        rng: &mut impl Rng,
+    ) -> usize {
+        self.visits.push_back(NStepVisit { rows, action, reward, memo: self.memo });
+        let following = agent.sample_next(next, rng);
+        if let Some((rows, next_action)) = following {
+            self.memo = self.method.memo(agent, rows, next_action);
+        }
+        if !matches!(next, Next::NonTerminal(_)) {
+            self.following = following.map(|(rows, action)| (owned(rows), action));
+            self.update_remaining(agent);
+        } else if self.visits.len() == self.n {
+            self.method.update(agent, &self.visits, following);
+            self.visits.pop_front();
+        }
+        following.map_or(0, |(_, next_action)| next_action)
+    }
+
     /// Updates the last pairs of an episode, or a part of them if there are many.
     #[inline(never)]
     fn update_remaining(&mut self, agent: &mut Agent) {
         let Self { method, visits, following, end, .. } = self;
         end.advance(|| {
-            let work = M::work(agent.work(), visits.len());
+            let work = M::work(agent.work_of::<R>(), visits.len());
             method.update(agent, visits, *following);
             visits.pop_front();
             (work, !visits.is_empty())
@@ -99,19 +129,20 @@ impl<R: ActiveRows, M: NStepMethod<R>> UpdateRule<R, Agent> for NStep<R, M> {
         next: Next<R>,
         rng: &mut impl Rng,
     ) -> usize {
-        self.visits.push_back(NStepVisit { rows: state, action, reward, memo: self.memo });
-        let following = agent.sample_next(next, rng);
-        if let Some((rows, next_action)) = following {
-            self.memo = self.method.memo(agent, rows, next_action);
-        }
-        if !matches!(next, Next::NonTerminal(_)) {
-            self.following = following;
-            self.update_remaining(agent);
-        } else if self.visits.len() == self.n {
-            self.method.update(agent, &self.visits, following);
-            self.visits.pop_front();
-        }
-        following.map_or(0, |(_, next_action)| next_action)
+        self.step(agent, (state, action, reward), next, |rows| rows, rng)
+    }
+
+    #[inline]
+    fn learn_borrowed(
+        &mut self,
+        agent: &mut Agent,
+        state: &R,
+        action: usize,
+        reward: f64,
+        next: Next<&R>,
+        rng: &mut impl Rng,
+    ) -> usize {
+        self.step(agent, (*state, action, reward), next, |rows| *rows, rng)
     }
 
     #[inline]

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use super::{NStep, NStepMethod, NStepVisit, TargetPolicy};
-use crate::features::ActiveRows;
+use crate::features::{ActiveFeatures, ActiveRows};
 use crate::learners::Agent;
 
 /// Q(Sₜ, Aₜ) ← Q(Sₜ, Aₜ) + α [Gₜ - Q(Sₜ, Aₜ)] with the return, from the last of n steps backwards,
@@ -35,17 +35,22 @@ impl<R: ActiveRows> NStepMethod<R> for QSigma {
     /// The importance sampling ratio.
     type Memo = f64;
 
-    fn memo(&self, agent: &mut Agent, rows: R, action: usize) -> f64 {
+    fn memo<F: Copy + ActiveFeatures>(&self, agent: &mut Agent, rows: F, action: usize) -> f64 {
         self.target_policy.ratio(agent, rows, action)
     }
 
-    fn update(&self, agent: &mut Agent, visits: &VecDeque<NStepVisit<R, f64>>, following: Option<(R, usize)>) {
+    fn update<F: Copy + ActiveFeatures>(
+        &self,
+        agent: &mut Agent,
+        visits: &VecDeque<NStepVisit<R, f64>>,
+        following: Option<(F, usize)>,
+    ) {
         let weight = |probability: f64, ratio: &f64| self.sigma * ratio + (1.0 - self.sigma) * probability;
         let target = self.target_policy.backed_up(agent, visits, following, weight);
         // Ratios above 1 can push a value beyond the range of its targets.
         agent.table.check_finite(target);
-        let NStepVisit { rows, action, .. } = visits[0];
-        agent.update(rows, action, target);
+        let NStepVisit { rows, action, .. } = &visits[0];
+        agent.update(rows, *action, target);
     }
 
     #[inline]
@@ -77,8 +82,8 @@ mod tests {
         let mut agent = agent(&[2.0, 3.0]);
         agent.policy = crate::policies::AnyPolicy::softmax(1.0, 2);
         let method = QSigma { sigma: 1.0, target_policy: TargetPolicy::Greedy };
-        assert_eq!(method.memo(&mut agent, [0], 0), 0.0);
-        let probability = agent.probability([0], 1);
-        assert_eq!(method.memo(&mut agent, [0], 1), 1.0 / probability);
+        let mut memo = |action| NStepMethod::<[u32; 1]>::memo(&method, &mut agent, [0], action);
+        let (exploring, greedy) = (memo(0), memo(1));
+        assert_eq!((exploring, greedy), (0.0, 1.0 / agent.probability([0], 1)));
     }
 }

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use super::{NStep, NStepMethod, NStepVisit};
-use crate::features::ActiveRows;
+use crate::features::{ActiveFeatures, ActiveRows};
 use crate::learners::Agent;
 
 /// Q(Sₜ, Aₜ) ← Q(Sₜ, Aₜ) + α [G - Q(Sₜ, Aₜ)] with the n-step return
@@ -31,11 +31,16 @@ impl<R: ActiveRows> NStepMethod<R> for NStepReturn {
     type Memo = ();
 
     #[inline]
-    fn memo(&self, _agent: &mut Agent, _rows: R, _action: usize) {}
+    fn memo<F: Copy + ActiveFeatures>(&self, _agent: &mut Agent, _rows: F, _action: usize) {}
 
     #[expect(clippy::inline_always, reason = "a call takes 4 % more instructions per step on a grid")]
     #[inline(always)]
-    fn update(&self, agent: &mut Agent, visits: &VecDeque<NStepVisit<R, ()>>, following: Option<(R, usize)>) {
+    fn update<F: Copy + ActiveFeatures>(
+        &self,
+        agent: &mut Agent,
+        visits: &VecDeque<NStepVisit<R, ()>>,
+        following: Option<(F, usize)>,
+    ) {
         let (mut target, mut power) = (0.0, 1.0);
         for visit in visits {
             target += power * visit.reward;
@@ -44,8 +49,9 @@ impl<R: ActiveRows> NStepMethod<R> for NStepReturn {
         if let Some((rows, action)) = following {
             target += power * agent.value(rows, action);
         }
-        if let Some(&NStepVisit { rows, action, .. }) = visits.front() {
-            agent.update(rows, action, target);
+        if let Some(NStepVisit { rows, action, .. }) = visits.front() {
+            // A few binary rows are copied: they would be read again after each change of the table.
+            if R::WEIGHTED { agent.update(rows, *action, target) } else { agent.update(*rows, *action, target) }
         }
     }
 }

@@ -4,7 +4,7 @@
 use std::collections::VecDeque;
 
 use super::{NStep, NStepMethod, NStepVisit, TargetPolicy};
-use crate::features::ActiveRows;
+use crate::features::{ActiveFeatures, ActiveRows};
 use crate::learners::Agent;
 
 /// Q(Sₜ, Aₜ) ← Q(Sₜ, Aₜ) + α [Gₜ - Q(Sₜ, Aₜ)] with the return, from the last of n steps backwards,
@@ -34,12 +34,17 @@ impl<R: ActiveRows> NStepMethod<R> for TreeBackup {
     type Memo = ();
 
     #[inline]
-    fn memo(&self, _agent: &mut Agent, _rows: R, _action: usize) {}
+    fn memo<F: Copy + ActiveFeatures>(&self, _agent: &mut Agent, _rows: F, _action: usize) {}
 
-    fn update(&self, agent: &mut Agent, visits: &VecDeque<NStepVisit<R, ()>>, following: Option<(R, usize)>) {
+    fn update<F: Copy + ActiveFeatures>(
+        &self,
+        agent: &mut Agent,
+        visits: &VecDeque<NStepVisit<R, ()>>,
+        following: Option<(F, usize)>,
+    ) {
         let target = self.target_policy.backed_up(agent, visits, following, |probability, ()| probability);
-        let NStepVisit { rows, action, .. } = visits[0];
-        agent.update(rows, action, target);
+        let NStepVisit { rows, action, .. } = &visits[0];
+        agent.update(rows, *action, target);
     }
 
     #[inline]

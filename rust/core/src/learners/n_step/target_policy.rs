@@ -51,11 +51,11 @@ impl TargetPolicy {
     /// Gₜ = Rₜ₊₁ + γ [Σₐ π(a|Sₜ₊₁) Q(Sₜ₊₁, a) + w (Gₜ₊₁ - Q(Sₜ₊₁, Aₜ₊₁))]. `weight` is w, given π(Aₜ₊₁|Sₜ₊₁) and the
     /// memo of the visit.
     #[inline]
-    pub(in crate::learners) fn backed_up<R: ActiveRows, M>(
+    pub(in crate::learners) fn backed_up<R: ActiveRows, M, F: ActiveFeatures>(
         self,
         agent: &mut Agent,
         visits: &VecDeque<NStepVisit<R, M>>,
-        following: Option<(R, usize)>,
+        following: Option<(F, usize)>,
         weight: impl Fn(f64, &M) -> f64,
     ) -> f64 {
         let mut value = following.map(|(rows, _)| self.expected_value(agent, rows));
@@ -63,9 +63,9 @@ impl TargetPolicy {
         for (index, visit) in visits.iter().enumerate().rev() {
             target = value.map_or(visit.reward, |value| visit.reward + agent.discount * value);
             if index > 0 {
-                let weight = weight(self.probability(agent, visit.rows, visit.action), &visit.memo);
-                let correction = weight * (target - agent.value(visit.rows, visit.action));
-                value = Some(self.expected_value(agent, visit.rows) + correction);
+                let weight = weight(self.probability(agent, &visit.rows, visit.action), &visit.memo);
+                let correction = weight * (target - agent.value(&visit.rows, visit.action));
+                value = Some(self.expected_value(agent, &visit.rows) + correction);
             }
         }
         target

@@ -2,7 +2,7 @@
 
 use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::features::ActiveFeatures;
-use crate::learners::{Agent, UpdateRule, masked_values};
+use crate::learners::{Agent, UpdateRule, learn_borrowed, masked_values};
 use crate::numeric::argmax;
 use crate::policies::{Policy, assert_takes};
 use crate::q_table::QTable;
@@ -79,6 +79,8 @@ impl<R: Copy + ActiveFeatures> UpdateRule<R, Agent> for DoubleQLearning {
         }
         if let Next::NonTerminal(next_state) = next { self.choose(agent, &next_state, rng) } else { 0 }
     }
+
+    learn_borrowed!(Agent);
 
     fn second_table(&self) -> Option<&QTable> {
         Some(&self.second_table)

@@ -1,7 +1,7 @@
 //! Expected Sarsa (H. van Seijen et al., 2009; Sutton & Barto, equation 6.9).
 
 use crate::features::ActiveFeatures;
-use crate::learners::{Agent, UpdateRule};
+use crate::learners::{Agent, UpdateRule, learn_borrowed};
 use crate::policies::Policy;
 use crate::random::Rng;
 use crate::schedules::StepSize;
@@ -37,6 +37,8 @@ where
         }
         agent.next_action(next, rng)
     }
+
+    learn_borrowed!(Agent<N, P, A>);
 }
 
 #[cfg(test)]

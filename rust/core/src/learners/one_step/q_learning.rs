@@ -1,7 +1,7 @@
 //! Q-learning: off-policy temporal-difference control (C. Watkins, 1989; Sutton & Barto, equation 6.8).
 
 use crate::features::ActiveFeatures;
-use crate::learners::{Agent, UpdateRule};
+use crate::learners::{Agent, UpdateRule, learn_borrowed};
 use crate::numeric::maximum;
 use crate::policies::Policy;
 use crate::random::Rng;
@@ -47,6 +47,8 @@ where
             }
         }
     }
+
+    learn_borrowed!(Agent<N, P, A>);
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Sarsa: on-policy temporal-difference control (G. Rummery and M. Niranjan, 1994; Sutton & Barto, equation 6.7).
 
 use crate::features::ActiveFeatures;
-use crate::learners::{Agent, UpdateRule};
+use crate::learners::{Agent, UpdateRule, learn_borrowed};
 use crate::policies::Policy;
 use crate::random::Rng;
 use crate::schedules::StepSize;
@@ -36,6 +36,8 @@ where
         agent.update(state, action, target);
         next_action
     }
+
+    learn_borrowed!(Agent<N, P, A>);
 }
 
 #[cfg(test)]
