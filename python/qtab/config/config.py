@@ -106,7 +106,8 @@ class Config(WithOrigin):
     """λ: the decay of the eligibility traces, in [0, 1]."""
     traces: Traces | None = None
     """The effect of a visit on the trace of a state and action: accumulating adds 1 to it, replacing sets it to 1,
-    clearing also sets the traces of the state's other actions to 0."""
+    clearing also sets the traces of the state's other actions to 0. With weighted features, such as those of fourier,
+    accumulating adds their values and is the only choice."""
     trace_cutoff: float | None = None
     """Traces at or below this value are dropped, in [0, 1]. With 0, only traces that underflow to 0 are dropped."""
     n_steps: int | None = None
@@ -129,8 +130,8 @@ class Config(WithOrigin):
     baseline: bool | None = None
     """Whether the gradient bandit algorithm compares rewards with their average in the state, or with 0."""
     value_learning_rate: float | None = None
-    """α of the state values that are learned besides a policy: the baseline of REINFORCE, the critic of
-    actor-critic."""
+    """α of the state values that are learned besides a policy: the baseline of REINFORCE, the critic of actor-critic.
+    The default is 0.1, or 0.005 with weighted features."""
     initial_q: float | tuple[float, float] | NDArray[np.float64] = (-1.0, 1.0)
     """The initial Q table, or preferences: drawn uniformly from a range (low, high), one number everywhere, or an array
     to continue from. In an array, -inf marks an action that a state does not have; it is never chosen. For Fourier

@@ -107,8 +107,14 @@ LEARNS_WEIGHTED = (
     "n_step_sarsa",
     *_WITH_TARGET_POLICY,
     *AVERAGE_REWARD,
+    *_WITH_TRACES,
+    "true_online_sarsa_lambda",
+    "reinforce",
+    *WITH_STATE_VALUES,
 )
 """The algorithms that learn with weighted features."""
+DEFAULTS_OF_WEIGHTED: Mapping[str, Any] = {"traces": "accumulating", "value_learning_rate": 0.005}
+"""The defaults of options that differ with weighted features."""
 NO_MASKED_TILES = (*PREFERENCES, *_WITH_TARGET_POLICY)
 """The algorithms that do not work with action masks and tile coding together.
 

@@ -9,6 +9,7 @@ from qtab._utils import checks
 from qtab._utils.shown import did_you_mean, shown
 from qtab.config.choices import CHOICES, FUNCTION, MAPPING
 from qtab.config.options import (
+    DEFAULTS_OF_WEIGHTED,
     FIXED,
     LEARNS_WEIGHTED,
     NO_MASKED_TILES,
@@ -24,7 +25,7 @@ from qtab.config.options import (
     is_set,
     listed,
 )
-from qtab.config.value_checks import not_negative
+from qtab.config.value_checks import check_limits, not_negative
 
 _CHECKED = (
     *("terminal_update", "learning_rate_schedule", "discount", "algorithm", "exploration", "action_mask"),
@@ -95,6 +96,11 @@ def _mismatch_with_weighted(name: str, value: Any, discretizer: str) -> str | No
         return other_choice(name, value, (value,), f"{where}, whose features are active in every state")
     if name == "algorithm" and value not in LEARNS_WEIGHTED:
         return f"algorithm must be {listed(LEARNS_WEIGHTED)} {where}, got {shown(value)}"
+    if name == "traces" and value in ("replacing", "clearing"):
+        return (
+            f"traces must be 'accumulating' {where}, because the others set traces to 1, and its features are not 1, "
+            f"got {shown(value)}; algorithm 'true_online_sarsa_lambda' has dutch traces"
+        )
     if name == "action_mask" and value is not False:
         return f"action_mask must be False {where}, got {shown(value)}"
     if name == "count_bonus" and value != 0:
@@ -136,7 +142,8 @@ def defaults(fields: Mapping[str, Any]) -> dict[str, Any]:
         if option.default is None or is_set(complete[name]):
             continue
         if _effective(option.choice, complete) in option.values:
-            complete[name] = filled[name] = option.default
+            of_weighted = DEFAULTS_OF_WEIGHTED if uses_weighted(complete["discretizer"]) else {}
+            complete[name] = filled[name] = of_weighted.get(name, option.default)
     return filled
 
 
@@ -197,20 +204,6 @@ def checked_discretizer(name: str, value: Any) -> Any:
     if callable(value):
         return value
     return checks.choice(name, value, CHOICES[name])
-
-
-def check_limits(low: tuple[float, ...] | None, high: tuple[float, ...] | None) -> None:
-    """Checks that upper limits lie above lower ones, if both are given.
-
-    Raises:
-        ValueError: if one does not, or their numbers differ.
-    """
-    if low is None or high is None:
-        return
-    if len(low) != len(high):
-        raise ValueError(f"high must hold as many numbers as low, got {shown(high)}")
-    if not all(first < last for first, last in zip(low, high, strict=True)):
-        raise ValueError(f"high must lie above low = {low!r}, got {shown(high)}")
 
 
 def _key(name: str, key: Any) -> str:

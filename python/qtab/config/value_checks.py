@@ -165,3 +165,17 @@ def _holds_numbers(array: NDArray[Any]) -> bool:
     if array.dtype.kind == "O":
         return all(hasattr(part, "__float__") and not isinstance(part, str | bytes) for part in array.flat)
     return array.dtype.kind in "iuf"
+
+
+def check_limits(low: tuple[float, ...] | None, high: tuple[float, ...] | None) -> None:
+    """Checks that upper limits lie above lower ones, if both are given.
+
+    Raises:
+        ValueError: if one does not, or their numbers differ.
+    """
+    if low is None or high is None:
+        return
+    if len(low) != len(high):
+        raise ValueError(f"high must hold as many numbers as low, got {shown(high)}")
+    if not all(first < last for first, last in zip(low, high, strict=True)):
+        raise ValueError(f"high must lie above low = {low!r}, got {shown(high)}")

@@ -1,6 +1,8 @@
 """The parts of the equations of an update: symbols, and numbers as text."""
 
 from collections.abc import Sequence
+from functools import reduce
+from operator import add
 
 BOOTSTRAP = {
     "q_learning": "max Q(S', a)",
@@ -51,15 +53,37 @@ def power(base: str, exponent: int, times: str = " ") -> str:
     return f"{base}{times}" if exponent == 1 else f"{base}^{exponent}{times}"
 
 
-def gain(rows: Sequence[int], step_sizes: Sequence[float], traces: Sequence[float]) -> float:
-    """Returns the change of Q(S, A) for an error of 1. With hashing a row can be active several times."""
+def gain(
+    rows: Sequence[int], step_sizes: Sequence[float], traces: Sequence[float], features: Sequence[float] = ()
+) -> float:
+    """Returns the change of Q(S, A) for an error of 1. With hashing a row can be active several times.
+
+    It is Σ α x², or Σ α z x with traces, if the features x are weighted.
+    """
+    if features:
+        changes = zip(step_sizes, traces or features, features, strict=True)
+        return sum(size * trace * x for size, trace, x in changes)
     if traces:  # a value changes once, however often its row is active
         return sum(size * trace for size, trace in zip(step_sizes, traces, strict=True))
     return sum(rows.count(row) * size for row, size in zip(rows, step_sizes, strict=True))
 
 
-def total(weights: tuple[float, ...]) -> float:
-    """Returns a value: the sum of its weights, from left to right."""
+def gain_symbol(features: Sequence[float], *, traced: bool = False) -> str:
+    """Returns the symbol of :func:`gain` in front of an error; the number of active rows is left out."""
+    if features:
+        return "Σ α z x" if traced else "Σ α x²"
+    return "α z" if traced else "α"
+
+
+def total(weights: tuple[float, ...], features: Sequence[float] = ()) -> float:
+    """Returns a value: the sum of its weights, from left to right.
+
+    With weighted features it is the sum of w x: every fourth product from left to right, and the four sums in pairs.
+    """
+    if features:
+        products = [weight * x for weight, x in zip(weights, features, strict=True)]
+        first, second, third, fourth = (reduce(add, products[part::4], 0.0) for part in range(4))
+        return (first + second) + (third + fourth)
     value, *others = weights
     for weight in others:
         value += weight

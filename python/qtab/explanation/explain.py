@@ -14,7 +14,6 @@ from qtab._utils import checks
 from qtab._utils.progress import ProgressBar
 from qtab.config import Config
 from qtab.config.options import AVERAGE_REWARD, MONTE_CARLO
-from qtab.discretizers.base import check_binary
 from qtab.explanation.explanation import Explanation
 from qtab.explanation.fast_forward import Start, start_of
 from qtab.explanation.records import ExplainedStep, Trace, Update
@@ -70,11 +69,10 @@ def explain(
     Raises:
         RuntimeError: if the reference does not repeat the run's episodes, so that nothing can be explained.
         TypeError: for an argument of the wrong type.
-        ValueError: for an argument out of range, or a run with weighted features, such as those of a Fourier basis. If
-            a run was resumed with more episodes while a rate fell, only the episodes before can be explained.
+        ValueError: for an argument out of range. If a run was resumed with more episodes while a rate fell, only the
+            episodes before can be explained.
     """
     checks.instance("run", run, Run)
-    check_binary("run", run.discretizer, "be explained")
     finished = len(run.episode_returns)
     if finished == 0:
         raise ValueError("run must have a finished episode, got one that was stopped during its first")
@@ -233,6 +231,7 @@ class _Watched(gym.Wrapper[Any, Any, Any, Any]):
         self._begun = self._steps = 0
         self._observation: Any = None
         self._rows: tuple[int, ...] = ()
+        self._features: tuple[float, ...] = ()
 
     def reset(self, **kwargs: Any) -> Any:
         self._progress(self._begun)
@@ -246,14 +245,15 @@ class _Watched(gym.Wrapper[Any, Any, Any, Any]):
         observation, info = self.env.reset(**kwargs)
         if self._watcher.active:
             self._steps = 0
-            self._observation, self._rows = observation, self._active_rows(observation)
+            self._observation = observation
+            self._rows, self._features = self._active_rows(observation)
         return observation, info
 
     def step(self, action: Any) -> Any:
         observation, reward, terminated, truncated, info = self.env.step(action)
         if self._watcher.active:
             self._steps += 1
-            rows = self._active_rows(observation)
+            rows, features = self._active_rows(observation)
             self._watcher.record(
                 SeenStep(
                     observation=self._observation,
@@ -263,10 +263,14 @@ class _Watched(gym.Wrapper[Any, Any, Any, Any]):
                     next_rows=rows,
                     terminated=bool(terminated),
                     truncated=bool(truncated),
+                    features=self._features,
+                    next_features=features,
                 )
             )
-            self._observation, self._rows = observation, rows
+            self._observation, self._rows, self._features = observation, rows, features
         return observation, reward, terminated, truncated, info
 
-    def _active_rows(self, observation: Any) -> tuple[int, ...]:
-        return tuple(rows_of(self._run, observation, self._steps).tolist())
+    def _active_rows(self, observation: Any) -> tuple[tuple[int, ...], tuple[float, ...]]:
+        """Returns the active rows of an observation, and their features if they are weighted."""
+        found = tuple(rows_of(self._run, observation, self._steps).tolist())
+        return (tuple(range(len(found))), found) if self._run.discretizer.is_weighted else (found, ())

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from qtab.config import Config
-from qtab.explanation.equations import gain, number, power, term, total
+from qtab.explanation.equations import gain, gain_symbol, number, power, term, total
 
 Rows = tuple[tuple[float, ...], ...]
 
@@ -47,7 +47,7 @@ class PolicyUpdate:
     power: float
     """γ to the power of ``step``; 1 for a bandit."""
     step_size: float
-    """α, divided by the number of active rows."""
+    """α, divided by the number of active rows; with weighted features that of the first one."""
     gradient: tuple[float, ...]
     """(actions,): the gradient of ln π(A | S) for the preference of each action, the same for each active row."""
     traces: Rows
@@ -68,6 +68,18 @@ class PolicyUpdate:
     """The equations of the update."""
     numbers: tuple[str, ...]
     """The same equations with their numbers, rounded to six digits."""
+    step_sizes: tuple[float, ...] = ()
+    """(n_active,): the step size of each active row."""
+    features: tuple[float, ...] = ()
+    """(n_active,): the features x of S, of which the gradient is a multiple; empty if each is 1."""
+
+    @property
+    def preferences(self) -> tuple[float, float]:
+        """H(S, A) before and after the update."""
+        before, after = (
+            total(tuple(row[self.action] for row in rows), self.features) for rows in (self.before, self.after)
+        )
+        return before, after
 
     @property
     def policy(self) -> str:
@@ -82,14 +94,17 @@ class PolicyUpdate:
 def equations_of(config: Config, update: PolicyUpdate) -> list[tuple[str, str]]:
     """Returns the equations of an update and their numbers; ``update`` has neither yet."""
     algorithm, action = config.algorithm, update.action
-    if update.traces:
+    traces = tuple(row[action] for row in update.traces)
+    if update.features and traces:
+        size, factor = gain(update.rows, update.step_sizes, traces, update.features), 1.0
+    elif traces:
         # A preference changes once, however often its row is active.
         size = update.step_size * len(update.rows)
-        factor = sum(row[action] for row in update.traces) / len(update.traces)
+        factor = sum(traces) / len(traces)
     else:
-        size = gain(update.rows, (update.step_size,) * len(update.rows), ())
+        size = gain(update.rows, update.step_sizes, (), update.features)
         factor = update.gradient[action]
-    before, after = (total(tuple(row[action] for row in one)) for one in (update.before, update.after))
+    before, after = update.preferences
     symbols = ERROR[algorithm]
     if update.reward is None or algorithm == "gradient_bandit":
         shown = number(update.target)
@@ -105,13 +120,17 @@ def equations_of(config: Config, update: PolicyUpdate) -> list[tuple[str, str]]:
     symbol = SYMBOL.get(algorithm, "δ")
     with_traces = algorithm == "actor_critic_lambda"
     discounts = "" if algorithm == "gradient_bandit" or with_traces else power("γ", update.step, " ")
-    direction = "z" if with_traces else "∇ ln π(A | S)"
     step_of = f"{number(size)} · "
     discount = power(number(config.discount), update.step, " · ") if discounts else ""
+    if with_traces and update.features:
+        gained, direction, times = gain_symbol(update.features, traced=True), "", ""
+    else:
+        gained, direction = gain_symbol(update.features), " z" if with_traces else " ∇ ln π(A | S)"
+        times = f" · {term(factor)}"
     lines.append(
         (
-            f"H(S, A) <- H(S, A) + α {discounts}{symbol} {direction}",
-            f"H(S, A) <- {number(before)} + {step_of}{discount}{term(update.error)} · {term(factor)} = {number(after)}",
+            f"H(S, A) <- H(S, A) + {gained} {discounts}{symbol}{direction}",
+            f"H(S, A) <- {number(before)} + {step_of}{discount}{term(update.error)}{times} = {number(after)}",
         )
     )
     return lines

@@ -98,9 +98,9 @@ class Update:
     average_reward: float | None
     """The average reward in the target of a differential method, (R - average reward) + bootstrap. None for others."""
     before: float
-    """Q(S, A) before the update: the sum of ``weights_before``."""
+    """Q(S, A) before the update: the sum of ``weights_before``, each times its feature."""
     after: float
-    """Q(S, A) after it: the sum of ``weights_after``."""
+    """Q(S, A) after it: the sum of ``weights_after``, each times its feature."""
     weights_before: tuple[float, ...]
     """(n_active,): the values of the active rows before the update."""
     weights_after: tuple[float, ...]
@@ -113,6 +113,8 @@ class Update:
     """S in words, for planning updates; empty for others, whose state is that of their step."""
     action_name: str = ""
     """The name of A, for planning updates."""
+    features: tuple[float, ...] = ()
+    """(n_active,): the features x of S, which multiply the weights; empty if each is 1."""
 
     @property
     def assigned(self) -> bool:
@@ -189,6 +191,10 @@ class ExplainedStep:
     """The reason why no value changed; empty if one did."""
     action_names: tuple[str, ...] = ()
     """The names of all actions, in the order of ``choice.values``."""
+    features: tuple[float, ...] = ()
+    """(n_active,): the features of the observation, if they are weighted; else empty, because each is 1."""
+    next_features: tuple[float, ...] = ()
+    """(n_active,): the features of the next observation, if they are weighted."""
 
     @property
     def reward_text(self) -> str:

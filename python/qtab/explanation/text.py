@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from qtab._utils.html import sentences
-from qtab.explanation.equations import number, total
+from qtab.explanation.equations import number
 from qtab.explanation.policy_update import PolicyUpdate
 from qtab.explanation.records import ExplainedStep, Update
 
@@ -32,7 +32,7 @@ def html(heading: str, steps: Sequence[ExplainedStep]) -> str:
 def details(step: ExplainedStep) -> list[tuple[str, str]]:
     """Returns the lines of a step, each with its label."""
     lines = [
-        ("state", f"{step.state}; {place(step.rows, step.cell)}"),
+        ("state", f"{step.state}; {place(step.rows, step.cell, step.features)}"),
         ("action", f"{step.action_name}; values {_values(step)}"),
         ("why", str(step.choice)),
         ("reward", f"{step.reward_text}, then {step.next_state}; {ending(step)}"),
@@ -100,13 +100,15 @@ def update_lines(step: ExplainedStep, update: Update) -> list[tuple[str, str]]:
     return lines
 
 
-def place(rows: Sequence[int], cell: tuple[int, ...] | None) -> str:
-    """Returns the cell of a state, or its active rows."""
+def place(rows: Sequence[int], cell: tuple[int, ...] | None, features: Sequence[float] = ()) -> str:
+    """Returns the cell of a state, its active rows, or its weighted features."""
     if cell is not None:
         return f"cell {cell[0]}" if len(cell) == 1 else f"cell ({', '.join(map(str, cell))})"
-    if len(rows) == 1:
+    if len(rows) == 1 and not features:
         return f"row {rows[0]}"
     more = ", ..." if len(rows) > SHOWN_ROWS else ""
+    if features:
+        return f"features {', '.join(map(number, features[:SHOWN_ROWS]))}{more}"
     return f"rows {', '.join(map(str, rows[:SHOWN_ROWS]))}{more}"
 
 
@@ -114,7 +116,7 @@ def ending(step: ExplainedStep) -> str:
     """Describes the kind of the next state, and whether the episode ended."""
     if step.terminated:
         return "a terminal state"
-    where = place(step.next_rows, step.next_cell)
+    where = place(step.next_rows, step.next_cell, step.next_features)
     if not step.truncated:
         return where
     return f"{where}; the time limit ends the episode" + (", and counts as a terminal state" if step.terminal else "")
@@ -133,9 +135,8 @@ def _cells(step: ExplainedStep) -> list[str]:
     if update is not None:
         numbers = [number(value) for value in (update.target, update.error, update.before, update.after)]
     for change in step.policy_updates:
-        before, after = (total(tuple(row[change.action] for row in rows)) for rows in (change.before, change.after))
-        numbers = [number(value) for value in (change.target, change.error, before, after)]
+        numbers = [number(value) for value in (change.target, change.error, *change.preferences)]
     lines = details(step)[4:]
     equation = "\n".join(f"{name}: {line}" if name else line for name, line in lines)
-    state = f"{step.state}; {place(step.rows, step.cell)}"
+    state = f"{step.state}; {place(step.rows, step.cell, step.features)}"
     return [str(step.step), state, step.action_name, str(step.choice), number(step.reward), *numbers, equation]

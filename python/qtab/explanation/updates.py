@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from qtab._utils.checks import required
 from qtab.config import Config
-from qtab.explanation.equations import bootstrap_symbol, gain, number, power, term
+from qtab.explanation.equations import bootstrap_symbol, gain, gain_symbol, number, power, term
 from qtab.explanation.records import Trace, Update
 
 SHOWN_REWARDS = 4
@@ -74,15 +74,16 @@ def _update(name: str, update: Update) -> tuple[str, str]:
     before, target, after = number(update.before), number(update.target), number(update.after)
     if update.assigned:
         return f"{name} <- target", f"{name} <- {after}"
+    gained = gain_symbol(update.features, traced=bool(update.traces))
     if update.old_value is not None:
         own, old = _gain_numbers(update, ()), term(update.old_value)
-        traced = number(gain(update.rows, update.step_sizes, update.traces))
+        traced = number(gain(update.rows, update.step_sizes, update.traces, update.features))
         return (
-            f"{name} <- {name} + α z [target - Q_old] - α [{name} - Q_old]",
+            f"{name} <- {name} + {gained} [target - Q_old] - {gain_symbol(update.features)} [{name} - Q_old]",
             f"{name} <- {before} + {traced} · [{target} - {old}] - {own} · [{before} - {old}] = {after}",
         )
     return (
-        f"{name} <- {name} + α{' z' if update.traces else ''} [target - {name}]",
+        f"{name} <- {name} + {gained} [target - {name}]",
         f"{name} <- {before} + {_gain_numbers(update, update.traces)} · [{target} - {term(update.before)}] = {after}",
     )
 
@@ -90,8 +91,8 @@ def _update(name: str, update: Update) -> tuple[str, str]:
 def _gain_numbers(update: Update, traces: Sequence[float]) -> str:
     """Returns the factor of the error: the learning rate, times the number of active rows, times the trace."""
     rows, step_sizes = update.rows, update.step_sizes
-    if len(set(step_sizes)) > 1 or len(set(traces)) > 1 or len(set(rows)) < len(rows):
-        return number(gain(rows, step_sizes, traces))
+    if update.features or len(set(step_sizes)) > 1 or len(set(traces)) > 1 or len(set(rows)) < len(rows):
+        return number(gain(rows, step_sizes, traces, update.features))
     shares = f"{len(rows)} · " if len(rows) > 1 else ""
     trace = f" · {term(traces[0])}" if traces else ""
     return f"{shares}{number(step_sizes[0])}{trace}"

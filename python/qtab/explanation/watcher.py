@@ -17,11 +17,12 @@ from qtab.explanation.policy_update import PolicyUpdate
 from qtab.explanation.records import Choice, Trace, Update
 from qtab.explanation.updates import changed, largest_traces
 from qtab.reference.parts.actions import ActionMasks
+from qtab.reference.parts.discretizers import WeightedRows
 from qtab.reference.parts.observer import Observer
 from qtab.reference.parts.policies import Policy
 from qtab.reference.parts.schedules import LearningRate, Schedule
 from qtab.reference.parts.streams import AgentStream
-from qtab.reference.parts.task import value, values
+from qtab.reference.parts.task import Rows, value, values
 
 Table = NDArray[np.float64]
 Cell = tuple[int, ...] | None
@@ -48,6 +49,8 @@ class SeenStep:
     traces: tuple[Trace, ...] = ()
     n_traces: int = 0
     future_return: float | None = None
+    features: tuple[float, ...] = ()
+    next_features: tuple[float, ...] = ()
 
 
 class Watcher(Observer):
@@ -72,6 +75,7 @@ class Watcher(Observer):
         self._advantage: dict[str, Any] = {}
         """The target and the error of the next policy update, by the names of the fields of PolicyUpdate."""
         self._policy_update: PolicyUpdate
+        self._state: Rows
 
     def masks(self, masks: ActionMasks) -> None:
         """Keeps the action masks, which are filled in as states are seen."""
@@ -133,7 +137,7 @@ class Watcher(Observer):
         if self.active:
             self.choices.append(exploring_start(self._policy, values, action, valid))
 
-    def advantage(self, state: Sequence[int], target: float, reference: float, power: float) -> None:
+    def advantage(self, state: Rows, target: float, reference: float, power: float) -> None:
         """Keeps the target and the reference of an action, and their difference."""
         if self.active:
             reported = self._reported()
@@ -151,31 +155,33 @@ class Watcher(Observer):
     def before_ascent(
         self,
         H: Table,  # noqa: N803 - the book's name
-        state: Sequence[int],
+        state: Rows,
         action: int,
-        step_size: float,
+        step_sizes: Sequence[float],
         gradient: Sequence[float],
         z: Table | None,
     ) -> None:
         """Begins an update of preferences."""
         if not self.active:
             return
-        rows = tuple(state)
+        self._state, rows = state, tuple(state)
         self._policy_update = PolicyUpdate(
             **self._advantage,
             rows=rows,
             cell=self.cell(rows[0]),
             action=action,
-            step_size=step_size,
+            step_size=step_sizes[0],
             gradient=tuple(gradient),
             traces=() if z is None else _rows(z, rows),
             before=_rows(H, rows),
-            probabilities_before=self._probabilities(H, rows),
+            probabilities_before=self._probabilities(H, state),
             after=(),
             probabilities_after=(),
             value_after=None,
             equations=(),
             numbers=(),
+            step_sizes=tuple(step_sizes),
+            features=_features(state),
         )
         if z is not None:
             seen = self.steps[self._policy_update.step]
@@ -188,18 +194,18 @@ class Watcher(Observer):
             update = replace(
                 self._policy_update,
                 after=_rows(H, rows),
-                probabilities_after=self._probabilities(H, rows),
-                value_after=self._state_value(rows),
+                probabilities_after=self._probabilities(H, self._state),
+                value_after=self._state_value(self._state),
             )
             symbols, numbers = zip(*policy_update.equations_of(self.config, update), strict=True)
             seen.policy_updates.append(replace(update, equations=symbols, numbers=numbers))
             seen.traces = changed(seen.traces, H)
 
-    def before_update(self, Q: Table, state: Sequence[int], action: int, target: float) -> None:  # noqa: N803
+    def before_update(self, Q: Table, state: Rows, action: int, target: float) -> None:  # noqa: N803
         """Begins an update: of this step, of an earlier one for n-step methods, or in planning."""
         if self.active:
             weights = tuple(Q[list(state), action].tolist())
-            before = total(weights)
+            before = total(weights, _features(state))
             self._update = Update(
                 **self._reported(),
                 table=next(index for index, known in enumerate(self.tables) if known is Q),
@@ -218,6 +224,7 @@ class Watcher(Observer):
                 weights_after=weights,
                 equations=(),
                 numbers=(),
+                features=_features(state),
             )
 
     def traces(self, z: Table, old_value: float | None = None) -> None:
@@ -234,7 +241,8 @@ class Watcher(Observer):
             return
         begun, seen = self._update, self.steps[-1] if self.steps else None
         weights = tuple(Q[list(begun.rows), begun.action].tolist())
-        update = replace(begun, step_sizes=tuple(step_sizes or ()), after=total(weights), weights_after=weights)
+        after = total(weights, begun.features)
+        update = replace(begun, step_sizes=tuple(step_sizes or ()), after=after, weights_after=weights)
         symbols, numbers = zip(*updates.equations_of(self.config, update), strict=True)
         update = replace(update, equations=symbols, numbers=numbers)
         if seen is None:
@@ -262,12 +270,16 @@ class Watcher(Observer):
             drawn = self._draws[0] if self._draws else float("nan")
             self.choices.append(explained(self._policy, values, state, bounds, action, drawn))
 
-    def _probabilities(self, H: Table, rows: Sequence[int]) -> tuple[float, ...]:  # noqa: N803
-        state = list(rows)
+    def _probabilities(self, H: Table, state: Rows) -> tuple[float, ...]:  # noqa: N803
         return tuple(map(float, self._policy.probabilities(self._masks.masked(state, values(H, state)), state)))
 
-    def _state_value(self, rows: Sequence[int]) -> float | None:
-        return value(self.tables[1], list(rows), 0) if self.config.algorithm in WITH_STATE_VALUES else None
+    def _state_value(self, state: Rows) -> float | None:
+        return value(self.tables[1], state, 0) if self.config.algorithm in WITH_STATE_VALUES else None
+
+
+def _features(state: Rows) -> tuple[float, ...]:
+    """Returns the features of a state; none if each is 1."""
+    return tuple(state.x) if isinstance(state, WeightedRows) else ()
 
 
 def _rows(table: Table, rows: Sequence[int]) -> tuple[tuple[float, ...], ...]:

@@ -5,8 +5,9 @@ import numpy as np
 
 from qtab._utils.checks import required
 from qtab.config import Config
-from qtab.reference.parts.task import Result, Rows, Step, Task
-from qtab.reference.policy_gradient import Critic, ascend, log_gradient, step_size
+from qtab.reference.parts.discretizers import WeightedRows
+from qtab.reference.parts.task import Result, Rows, Step, Task, features
+from qtab.reference.policy_gradient import Critic, ascend, log_gradient, step_sizes
 
 
 def actor_critic(env: gym.Env, config: Config, stop_after: int | None = None) -> Result:
@@ -51,15 +52,16 @@ def actor_critic_lambda(env: gym.Env, config: Config, stop_after: int | None = N
             z_w *= decay
             z_theta *= decay
             gradient = log_gradient(task, theta, state, action)
-            for row in state:
-                z_w[row] += 1.0
+            for row, x in zip(state, features(state), strict=True):
+                z_w[row] += x
                 for other, part in enumerate(gradient):
-                    z_theta[row, other] += power * part
+                    z_theta[row, other] += power * part * x
             # w <- w + α δ z_w, θ <- θ + α δ z_θ, I <- γ I
-            task.observer.before_ascent(theta, state, action, step_size(task), gradient, z_theta)
-            (traced,) = np.nonzero(z_w)
-            critic.w[traced] += (critic.step * error * z_w[traced])[:, np.newaxis]
-            theta[traced] += step_size(task) * error * z_theta[traced]
+            task.observer.before_ascent(theta, state, action, step_sizes(task, state), gradient, z_theta)
+            traced = np.array(state) if isinstance(state, WeightedRows) else np.nonzero(z_w)[0]
+            critic.w[traced] += (critic.step_sizes[traced] * error * z_w[traced])[:, np.newaxis]
+            steps = task.learning_rate.steps(traced, np.zeros_like(traced))
+            theta[traced] += (steps * error)[:, np.newaxis] * z_theta[traced]
             task.observer.after_ascent(theta)
             power *= task.discount
 

@@ -4,14 +4,15 @@ Sutton & Barto, 2nd ed., section 2.8, and the boxes in sections 13.3 and 13.4.
 """
 
 import gymnasium as gym
+import numpy as np
 
 from qtab._utils.checks import required
 from qtab.config import Config
-from qtab.reference.parts.task import Result, Rows, Table, Task
+from qtab.reference.parts.task import Result, Rows, Table, Task, features, value
 
 
 def log_gradient(task: Task, theta: Table, state: Rows, action: int) -> list[float]:
-    """Returns the gradient of ln π(A | S) for the preference of each action; it is the same for each active row."""
+    """Returns the gradient of ln π(A | S) for the preference of each action; for the weight of a row, it is times x."""
     temperature = required("temperature", task.config.temperature)
     probabilities = task.policy.probabilities(task.values(theta, state), state)
     return [((other == action) - share) / temperature for other, share in enumerate(probabilities)]
@@ -19,39 +20,36 @@ def log_gradient(task: Task, theta: Table, state: Rows, action: int) -> list[flo
 
 def ascend(task: Task, theta: Table, state: Rows, action: int, scale: float) -> None:
     """Updates θ <- θ + α scale ∇ ln π(A | S, θ); the active rows of S share the step."""
-    step = step_size(task) * scale
     gradient = log_gradient(task, theta, state, action)
-    task.observer.before_ascent(theta, state, action, step_size(task), gradient, None)
-    for row in state:
+    task.observer.before_ascent(theta, state, action, step_sizes(task, state), gradient, None)
+    for row, x, step_size in zip(state, features(state), step_sizes(task, state), strict=True):
         for other, part in enumerate(gradient):
-            theta[row, other] += step * part
+            theta[row, other] += step_size * scale * part * x
     task.observer.after_ascent(theta)
 
 
-def step_size(task: Task) -> float:
-    """Returns α, divided among the active rows."""
-    return float(task.learning_rate.schedule.value) / task.discretizer.n_active
+def step_sizes(task: Task, state: Rows) -> list[float]:
+    """Returns the step size α of each active row."""
+    return [float(task.learning_rate.step(row, 0)) for row in state]
 
 
 class Critic:
-    """State values v(S, w): the sum of the weights of the active rows."""
+    """State values v(S, w): the sum of the weights of the active rows, each times its feature."""
 
     def __init__(self, task: Task) -> None:
         # One column for each action, all equal, to store the values in the same shape as the preferences.
         self.w = task.critic_table()
-        self.step = required("value_learning_rate", task.config.value_learning_rate) / task.discretizer.n_active
+        rate = required("value_learning_rate", task.config.value_learning_rate)
+        self.step_sizes = rate / np.array(task.learning_rate.divisors or [task.discretizer.n_active] * task.n_rows)
 
     def value(self, state: Rows) -> float:
-        """Returns v(S, w), added from left to right."""
-        total = float(self.w[state[0], 0])
-        for row in state[1:]:
-            total += float(self.w[row, 0])
-        return total
+        """Returns v(S, w)."""
+        return value(self.w, state, 0)
 
     def update(self, state: Rows, error: float) -> None:
         """Updates w <- w + α δ ∇v(S, w)."""
-        for row in state:
-            self.w[row] += self.step * error
+        for row, x in zip(state, features(state), strict=True):
+            self.w[row] += self.step_sizes[row] * error * x
 
 
 def gradient_bandit(env: gym.Env, config: Config, stop_after: int | None = None) -> Result:

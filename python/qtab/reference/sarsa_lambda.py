@@ -6,14 +6,14 @@ import numpy as np
 from qtab.config import Config
 from qtab.config.choices import Traces
 from qtab.config.schedules import algorithm_options
-from qtab.reference.parts.task import Result, Rows, Table, Task, value
+from qtab.reference.parts.task import Result, Rows, Table, Task, features, value
 
 
 def mark(z: Table, state: Rows, action: int, kind: Traces) -> None:
-    """Adds 1 to an accumulating trace or sets a replacing one to 1; clearing also zeroes those of other actions."""
-    for row in state:
+    """Adds x to an accumulating trace or sets a replacing one to 1; clearing also zeroes those of other actions."""
+    for row, x in zip(state, features(state), strict=True):
         if kind == "accumulating":
-            z[row, action] += 1.0
+            z[row, action] += x
         else:
             if kind == "clearing":
                 z[row] = 0.0

@@ -129,7 +129,7 @@ def cell_in_words(run: Run, row: int, columns: int | None = None) -> str:
     """
     discretizer = run.discretizer
     if not discretizer.has_cells:
-        return f"row {row}"
+        return f"feature {row}" if discretizer.is_weighted else f"row {row}"
     if not discretizer.has_component_axes:
         return f"cell {row}"
     cell = [int(index) for index in np.unravel_index(row, discretizer.shape)]

@@ -10,15 +10,18 @@ mod runs;
 use benchmarks::Benchmarks;
 use mountain_car_task::{agent_rng, task};
 use qtab_core::features::{FeatureVector, FourierBasis, OutOfBounds};
-use qtab_core::learners::{Agent, QLearning, Sarsa, TdLearner, UpdateRule};
+use qtab_core::learners::{
+    Agent, QLearning, Sarsa, SarsaLambda, TdLearner, TraceKind, Traces, TrueOnlineSarsaLambda, UpdateRule,
+};
 use qtab_core::policies::{AnyPolicy, TieBreaking};
 use qtab_core::schedules::{LearningRate, Schedule};
 use qtab_core::tasks::BoxedTask;
-use qtab_core::{Budget, Trainer};
+use qtab_core::{Budget, StopFlag, Trainer};
 use runs::{agent, train};
 
 const BUDGET: Budget = Budget { episodes: 100, work: u64::MAX };
 const ACTIONS: usize = 3;
+const TRACE_DECAY: f64 = 0.9;
 /// The capacity of the features.
 const ROOM: usize = 64;
 
@@ -42,7 +45,16 @@ fn rule<U: UpdateRule<FeatureVector<ROOM>, Agent>>(
 
 fn main() {
     let mut benchmarks = Benchmarks::from_env();
+    let traces = |agent: &Agent| {
+        Traces::new(agent.table.values().len(), 0.0, &StopFlag::new()).expect("small allocations succeed")
+    };
     rule(&mut benchmarks, "Q-learning", |_| QLearning);
     rule(&mut benchmarks, "Sarsa", |_| Sarsa);
+    rule(&mut benchmarks, "Sarsa(0.9)", |agent| SarsaLambda {
+        traces: traces(agent),
+        kind: TraceKind::Accumulating,
+        trace_decay: TRACE_DECAY,
+    });
+    rule(&mut benchmarks, "true online Sarsa(0.9)", |agent| TrueOnlineSarsaLambda::new(traces(agent), TRACE_DECAY));
     benchmarks.finish();
 }

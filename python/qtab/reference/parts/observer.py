@@ -66,7 +66,7 @@ class Observer:
     def exploring_start(self, values: Table, action: int, valid: int) -> None:
         """Called with the first action of an episode if it is drawn among all valid actions of the state."""
 
-    def advantage(self, state: Sequence[int], target: float, reference: float, power: float) -> None:
+    def advantage(self, state: list[int], target: float, reference: float, power: float) -> None:
         """Called before a state value and the preferences change.
 
         Args:
@@ -77,14 +77,20 @@ class Observer:
         """
 
     def before_ascent(
-        self, H: Table, state: Sequence[int], action: int, step_size: float, gradient: Sequence[float], z: Table | None
+        self,
+        H: Table,
+        state: list[int],
+        action: int,
+        step_sizes: Sequence[float],
+        gradient: Sequence[float],
+        z: Table | None,
     ) -> None:
         """Called before preferences change along the gradient of ln π(A | S), or by their traces."""
 
     def after_ascent(self, H: Table) -> None:
         """Called after the preferences changed."""
 
-    def before_update(self, Q: Table, state: Sequence[int], action: int, target: float) -> None:
+    def before_update(self, Q: Table, state: list[int], action: int, target: float) -> None:
         """Called before Q(S, A) changes towards a target."""
 
     def after_update(self, Q: Table, step_sizes: Sequence[float] | None) -> None:

@@ -75,4 +75,4 @@ class LearningRate:
             sizes = np.maximum(self.schedule.value / self.visits[rows, actions], self.schedule.minimum)
         else:
             sizes = np.full(len(rows), self.schedule.value)
-        return sizes / self.n_active
+        return sizes / (self.n_active if self.divisors is None else np.array(self.divisors)[rows])

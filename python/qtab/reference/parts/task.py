@@ -200,12 +200,8 @@ class Task:
         """Updates Q(S, A) <- Q(S, A) + α [target - Q(S, A)], with the step size of each active row of S."""
         self.observer.before_update(Q, state, action, target)
         error = target - value(Q, state, action)
-        if isinstance(state, WeightedRows):  # w <- w + (α error) x
-            for row, x, step_size in zip(state, state.x, step_sizes, strict=True):
-                Q[row, action] += step_size * error * x
-        else:
-            for row, step_size in zip(state, step_sizes, strict=True):
-                Q[row, action] += step_size * error
+        for row, x, step_size in zip(state, features(state), step_sizes, strict=True):
+            Q[row, action] += step_size * error * x
         self.observer.after_update(Q, step_sizes)
 
     def result(self, *tables: Table) -> Result:
@@ -234,3 +230,8 @@ def values(Q: Table, state: Rows) -> NDArray[np.float64]:
 def value(Q: Table, state: Rows, action: int) -> float:
     """Returns Q(S, A)."""
     return float(values(Q, state)[action])
+
+
+def features(state: Rows) -> list[float]:
+    """Returns the value x of the feature of each active row: 1, unless the features are weighted."""
+    return state.x if isinstance(state, WeightedRows) else [1.0] * len(state)

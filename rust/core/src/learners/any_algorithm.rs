@@ -7,7 +7,7 @@ use super::{
     OffPolicyMonteCarlo, PrioritizedSweeping, QLearning, Reinforce, Sarsa, SarsaLambda, StochasticModel,
     TrueOnlineSarsaLambda, WatkinsQLambda,
 };
-use super::{Agent, AnyLearner, LearnerVisitor, TargetPolicy, TraceOptions};
+use super::{Agent, AnyLearner, LearnerVisitor, TargetPolicy, TraceKind, TraceOptions};
 use crate::features::ActiveRows;
 use crate::memory::AllocationError;
 use crate::{QTable, StopFlag};
@@ -168,14 +168,17 @@ impl AnyAlgorithm {
             | Self::NStepTreeBackup { .. }
             | Self::NStepQSigma { .. }
             | Self::DifferentialSarsa { .. }
-            | Self::DifferentialQLearning { .. } => FeatureKinds::All,
-            Self::SarsaLambda(_)
+            | Self::DifferentialQLearning { .. }
             | Self::TrueOnlineSarsaLambda { .. }
-            | Self::WatkinsQLambda(_)
             | Self::Reinforce
             | Self::ReinforceWithBaseline { .. }
             | Self::ActorCritic { .. }
-            | Self::ActorCriticLambda { .. } => FeatureKinds::Binary,
+            | Self::ActorCriticLambda { .. } => FeatureKinds::All,
+            // Replacing traces set the traces of active features to 1.
+            Self::SarsaLambda(options) | Self::WatkinsQLambda(options) => match options.kind {
+                TraceKind::Accumulating => FeatureKinds::All,
+                TraceKind::Replacing | TraceKind::Clearing => FeatureKinds::Binary,
+            },
             Self::DynaQ { .. }
             | Self::DynaQPlus { .. }
             | Self::StochasticDynaQ { .. }

@@ -27,11 +27,10 @@ const fn is_single<R>() -> bool {
     size_of::<R>() == size_of::<u32>()
 }
 
-/// Defines the enum of all learners: those for any features, those for binary features, and those that need a single row.
+/// Defines the enum of all learners: those for any features, and those that need a single row.
 macro_rules! any_learner {
     (
         any { $($any:ident $any_rule:ty,)+ }
-        binary { $($binary:ident $binary_rule:ty,)+ }
         single { $($single:ident $single_rule:ty,)+ }
     ) => {
         /// The learner of any algorithm, for states with active rows `R`: what
@@ -42,8 +41,6 @@ macro_rules! any_learner {
         pub enum AnyLearner<R: ActiveRows> {
             $(#[doc = concat!("The learner with the rule `", stringify!($any_rule), "`.")]
             $any(TdLearner<$any_rule>),)+
-            $(#[doc = concat!("The learner with the rule `", stringify!($binary_rule), "`.")]
-            $binary(TdLearner<$binary_rule>),)+
             $(#[doc = concat!("The learner with the rule `", stringify!($single_rule), "`.")]
             $single(TdLearner<$single_rule>),)+
         }
@@ -51,13 +48,12 @@ macro_rules! any_learner {
         impl<R: ActiveRows> Learner<R> for AnyLearner<R> {
             delegate_learner!(
                 all R,
-                learner in $(Self::$any(learner),)+ $(Self::$binary(learner),)+ $(Self::$single(learner)),+
+                learner in $(Self::$any(learner),)+ $(Self::$single(learner)),+
             );
 
             fn identify(&self, identity: &mut RunIdentity) {
                 match self {
                     $(Self::$any(learner) => Learner::<R>::identify(learner, identity),)+
-                    $(Self::$binary(learner) => Learner::<R>::identify(learner, identity),)+
                     $(Self::$single(learner) => Learner::<R>::identify(learner, identity),)+
                 }
             }
@@ -68,21 +64,17 @@ macro_rules! any_learner {
             pub fn agent(&self) -> &Agent {
                 match self {
                     $(Self::$any(learner) => &learner.agent,)+
-                    $(Self::$binary(learner) => &learner.agent,)+
                     $(Self::$single(learner) => &learner.agent,)+
                 }
             }
         }
 
         impl<R: ActiveRows + Send + 'static> AnyLearner<R> {
-            /// Passes the learner to `visitor`; `None` if it needs a single active row and `R` may hold several, or binary
-            /// features and those of `R` are weighted.
+            /// Passes the learner to `visitor`; `None` if it needs a single active row and `R` may hold several.
             pub(super) fn visit<V: LearnerVisitor<R>>(self, visitor: V) -> Option<V::Output> {
                 match self {
                     $(Self::$any(learner) => Some(visitor.visit(learner)),)+
-                    $(Self::$binary(learner) if !R::WEIGHTED => Some(visitor.visit(learner)),)+
                     $(Self::$single(learner) if is_single::<R>() => Some(visitor.visit(learner)),)+
-                    $(Self::$binary(_) => None,)+
                     $(Self::$single(_) => None,)+
                 }
             }
@@ -101,8 +93,6 @@ any_learner! {
     NStepQSigma NStepQSigma<R>,
     DifferentialSarsa DifferentialSarsa<R>,
     DifferentialQLearning DifferentialQLearning<R>,
-    }
-    binary {
     SarsaLambda SarsaLambda,
     TrueOnlineSarsaLambda TrueOnlineSarsaLambda,
     WatkinsQLambda WatkinsQLambda,
@@ -147,10 +137,11 @@ impl<R: ActiveRows> AnyLearner<R> {
         }
         let (n_rows, num_actions) = agent.table.shape();
         let weights = n_rows * num_actions;
-        let n_active = agent.learning_rate.n_active();
         let new_model = || Model::new(n_rows, num_actions, stop);
-        let new_traces = |cutoff: f64| Traces::new(weights, cutoff, stop);
-        let new_critic = |table, learning_rate: f64| Critic { table, step_size: learning_rate / n_active };
+        // Dense traces take no places.
+        let places = if R::WEIGHTED { 0 } else { weights };
+        let new_traces = |cutoff: f64| Traces::new(places, cutoff, stop);
+        let new_critic = |table, learning_rate: f64| Critic::new(table, learning_rate, &agent.learning_rate);
         macro_rules! learner {
             ($variant:ident, $rule:expr) => {
                 Self::$variant(TdLearner { rule: $rule, agent })

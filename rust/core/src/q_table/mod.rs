@@ -8,3 +8,4 @@ mod weighted;
 pub use linear::TerminalUpdate;
 pub(crate) use linear::sum_rows;
 pub use table::QTable;
+pub(crate) use weighted::add_to_column;

@@ -59,12 +59,24 @@ impl LearningRate {
         Ok(Self { visits, min, uniform: false, ..Self::scheduled(Schedule::constant(initial), n_active) })
     }
 
-    /// A learning rate for weighted features, divided by a number for each row: αᵢ = α / dᵢ. It applies to the learners
-    /// that update a table by [`QTable::update`](crate::QTable::update).
+    /// A learning rate for weighted features, divided by a number for each row: αᵢ = α / dᵢ.
     #[must_use]
     pub fn scaled_by_row(schedule: Schedule, divisors: Vec<f64>) -> Self {
         let of_rows = divisors.iter().map(|divisor| schedule.value() / divisor).collect();
         Self { of_rows, divisors, uniform: false, ..Self::scheduled(schedule, 1) }
+    }
+
+    /// The step size of a row of weighted features.
+    #[inline(always)]
+    pub(crate) fn of_row(&self, row: u32) -> f64 {
+        self.of_rows.get(row as usize).copied().unwrap_or(self.step_size)
+    }
+
+    /// The step sizes of another learning rate, divided as this one: that which all rows share, and that of each row, which
+    /// is empty if they share one.
+    pub(crate) fn divided(&self, learning_rate: f64) -> (f64, Vec<f64>) {
+        let of_rows = self.divisors.iter().map(|divisor| learning_rate / divisor).collect();
+        (learning_rate / self.n_active, of_rows)
     }
 
     /// The number of active rows of an observation, which share the learning rate.

@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 use pyo3::prelude::*;
 use qtab_core::StopFlag;
-use qtab_core::learners::{AnyAlgorithm, FeatureKinds};
+use qtab_core::learners::{AnyAlgorithm, FeatureKinds, TraceKind};
 use qtab_core::memory::MemoryRoom;
 use qtab_core::q_table::TerminalUpdate;
 use qtab_core::schedules::LearningRate;
@@ -188,7 +188,14 @@ impl RunSpec {
         if discretizer.weighted().is_none() {
             return Ok(());
         }
+        let replaces_traces = match algorithm {
+            AnyAlgorithm::SarsaLambda(options) | AnyAlgorithm::WatkinsQLambda(options) => {
+                options.kind != TraceKind::Accumulating
+            }
+            _ => false,
+        };
         let refused = [
+            ("traces", replaces_traces),
             ("algorithm", algorithm.feature_kinds() != FeatureKinds::All),
             ("policy", matches!(policy, PolicySpec::Ucb { .. })),
             ("learning_rate", matches!(learning_rate, LearningRateSpec::Visits { .. })),

@@ -153,7 +153,7 @@ impl Setup {
         self.check(features, || TdLearner { agent: agent(), rule: rule() });
         if !self.visits {
             self.check(features, || TdLearner { agent: agent(), rule: TrueOnlineSarsaLambda::new(traces(), 0.8) });
-            let critic = || Critic { table: zeros(), step_size: 0.1 };
+            let critic = || Critic { table: zeros(), step_size: 0.1, row_step_sizes: Vec::new() };
             let actor = || Agent { policy: AnyPolicy::softmax(1.0, ACTIONS), ..agent() };
             self.check(features, || TdLearner { agent: actor(), rule: Reinforce::new(Some(critic())) });
             self.check(features, || TdLearner { agent: actor(), rule: ActorCritic::new(critic()) });

@@ -2,8 +2,8 @@
 
 use super::Critic;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
-use crate::features::{ActiveFeatures, assert_binary};
-use crate::learners::{Agent, UpdateRule};
+use crate::features::ActiveFeatures;
+use crate::learners::{Agent, UpdateRule, learn_borrowed};
 use crate::q_table::QTable;
 use crate::random::Rng;
 use crate::tasks::Next;
@@ -61,13 +61,14 @@ impl<R: Copy + ActiveFeatures> UpdateRule<R, Agent> for ActorCritic {
         next: Next<R>,
         rng: &mut impl Rng,
     ) -> usize {
-        assert_binary::<R>();
         let error = td_error(agent, &self.critic, state, reward, next);
         self.critic.update(state, error);
         agent.ascend(state, action, self.power * error);
         self.power *= agent.discount;
         agent.next_action(next, rng)
     }
+
+    learn_borrowed!(Agent);
 
     fn second_table(&self) -> Option<&QTable> {
         Some(&self.critic.table)
@@ -96,7 +97,7 @@ mod tests {
     #[test]
     fn two_steps_by_hand() {
         let agent = Agent { policy: AnyPolicy::softmax(1.0, 2), ..agent(&[0.0; 4]) };
-        let critic = Critic { table: QTable::new(vec![1.0, 1.0, 4.0, 4.0], 2), step_size: 0.25 };
+        let critic = Critic::new(QTable::new(vec![1.0, 1.0, 4.0, 4.0], 2), 0.25, &agent.learning_rate);
         let mut learner = TdLearner { agent, rule: ActorCritic::new(critic) };
         // δ = 3 + 0.5 · 4 - 1
         learner.learn([0], 0, 3.0, Next::NonTerminal([1]), &mut rng());

@@ -4,8 +4,8 @@ use super::Critic;
 use super::actor_critic::td_error;
 use crate::StopFlag;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
-use crate::features::{ActiveFeatures, assert_binary};
-use crate::learners::{Agent, UpdateRule, VALUES_PER_WORK};
+use crate::features::ActiveFeatures;
+use crate::learners::{Agent, UpdateRule, VALUES_PER_WORK, learn_borrowed};
 use crate::memory::{AllocationError, RunMemory, filled, reserve};
 use crate::q_table::QTable;
 use crate::random::Rng;
@@ -97,28 +97,31 @@ impl<R: Copy + ActiveFeatures> UpdateRule<R, Agent> for ActorCriticLambda {
         next: Next<R>,
         rng: &mut impl Rng,
     ) -> usize {
-        assert_binary::<R>();
         let error = td_error(agent, &self.critic, state, reward, next);
         let num_actions = agent.table.num_actions();
         let decay = agent.discount * self.trace_decay;
         for trace in self.value_traces.iter_mut().chain(&mut self.preference_traces) {
             *trace *= decay;
         }
+        // The value of an active row: 1 unless it is weighted, when all rows are active.
+        let value_of = |row: u32| if R::WEIGHTED { state.values()[row as usize] } else { 1.0 };
         for &row in state.as_ref() {
             let position = self.position(row, num_actions);
-            self.value_traces[position] += 1.0;
+            self.value_traces[position] += value_of(row);
         }
         let gradient = agent.log_gradient(state, action);
         for &row in state.as_ref() {
             let first = self.positions[row as usize] as usize * num_actions;
             for (trace, part) in self.preference_traces[first..][..num_actions].iter_mut().zip(gradient) {
-                *trace += self.power * part;
+                *trace += self.power * part * value_of(row);
             }
         }
         let step = agent.step_size() * error;
         let traces = self.value_traces.iter().zip(self.preference_traces.chunks_exact(num_actions));
         for (&row, (value_trace, preference_traces)) in self.visited.iter().zip(traces) {
-            self.critic.add(row, self.critic.step_size * error * value_trace);
+            let value_step = if R::WEIGHTED { self.critic.step_size_of(row) } else { self.critic.step_size };
+            let step = if R::WEIGHTED { agent.learning_rate.of_row(row) * error } else { step };
+            self.critic.add(row, value_step * error * value_trace);
             for (action, trace) in preference_traces.iter().enumerate() {
                 *agent.table.value_mut(row, action) += step * trace;
             }
@@ -137,6 +140,8 @@ impl<R: Copy + ActiveFeatures> UpdateRule<R, Agent> for ActorCriticLambda {
         let (n_rows, num_actions) = agent.table.shape();
         self.make_room(n_rows, num_actions)
     }
+
+    learn_borrowed!(Agent);
 
     fn second_table(&self) -> Option<&QTable> {
         Some(&self.critic.table)
@@ -182,7 +187,7 @@ mod tests {
     #[test]
     fn an_error_updates_earlier_states_along_the_traces() {
         let agent = Agent { policy: AnyPolicy::softmax(1.0, 2), ..agent(&[0.0; 4]) };
-        let critic = Critic { table: QTable::new(vec![1.0, 1.0, 4.0, 4.0], 2), step_size: 0.25 };
+        let critic = Critic::new(QTable::new(vec![1.0, 1.0, 4.0, 4.0], 2), 0.25, &agent.learning_rate);
         let rule = ActorCriticLambda::new(critic, 0.5, &StopFlag::new()).expect("two rows");
         let mut learner = TdLearner { agent, rule };
         learner.rule.make_room(2, 2).expect("two rows");

@@ -5,7 +5,8 @@ use crate::learners::{Agent, masked_values};
 use crate::schedules::StepSize;
 
 impl Agent {
-    /// The components of ∇ln π(A | S), one per action. They are the same for each active row.
+    /// The components of ∇ln π(A | S), one per action. They are the same for each active row, and multiplied by its value for
+    /// weighted features.
     #[inline]
     pub(in crate::learners) fn log_gradient(&mut self, rows: impl ActiveFeatures, action: usize) -> &[f64] {
         let values = masked_values::<0>(&mut self.masks, rows.as_ref(), self.table.action_values(&rows));
@@ -14,11 +15,20 @@ impl Agent {
 
     /// θ ← θ + α scale ∇ln π(A | S, θ)
     #[inline]
-    pub(in crate::learners) fn ascend(&mut self, rows: impl ActiveFeatures, action: usize, scale: f64) {
+    pub(in crate::learners) fn ascend<R: ActiveFeatures>(&mut self, rows: R, action: usize, scale: f64) {
         self.table.check_finite(scale);
         let step = self.step_size() * scale;
         let values = masked_values::<0>(&mut self.masks, rows.as_ref(), self.table.action_values(&rows));
         let gradient = self.policy.log_gradient(values, action);
+        if R::WEIGHTED {
+            for (&row, x) in rows.as_ref().iter().zip(rows.values()) {
+                let step = self.learning_rate.of_row(row) * scale;
+                for (preference, part) in self.table.row_mut(row).iter_mut().zip(gradient) {
+                    *preference += step * part * x;
+                }
+            }
+            return;
+        }
         for &row in rows.as_ref() {
             for (preference, part) in self.table.row_mut(row).iter_mut().zip(gradient) {
                 *preference += step * part;

@@ -2,7 +2,7 @@
 
 use super::Critic;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
-use crate::features::{ActiveRows, assert_binary, persist_rows};
+use crate::features::{ActiveRows, persist_rows};
 use crate::learners::{Agent, StepInParts, UpdateRule};
 use crate::memory::{AllocationError, RunMemory, reserve};
 use crate::q_table::QTable;
@@ -56,18 +56,18 @@ impl<R: ActiveRows> Reinforce<R> {
     fn update_remaining(&mut self, agent: &mut Agent) {
         let Self { baseline, steps, learned, power, end } = self;
         end.advance(|| {
-            let Some(&PastStep { rows, action, reward: episode_return }) = steps.get(*learned) else {
+            let Some(PastStep { rows, action, reward: episode_return }) = steps.get(*learned) else {
                 return (0, false);
             };
-            let mut error = episode_return;
+            let mut error = *episode_return;
             if let Some(critic) = baseline {
                 error -= critic.value(rows);
                 critic.update(rows, error);
             }
-            agent.ascend(rows, action, *power * error);
+            agent.ascend(rows, *action, *power * error);
             *power *= agent.discount;
             *learned += 1;
-            (agent.work(), *learned < steps.len())
+            (agent.work_of::<R>(), *learned < steps.len())
         });
     }
 }
@@ -85,7 +85,6 @@ impl<R: ActiveRows> UpdateRule<R, Agent> for Reinforce<R> {
         next: Next<R>,
         rng: &mut impl Rng,
     ) -> usize {
-        assert_binary::<R>();
         self.steps.push(PastStep { rows: state, action, reward });
         if !matches!(next, Next::NonTerminal(_)) {
             self.sum_rewards(agent.discount);
@@ -99,9 +98,9 @@ impl<R: ActiveRows> UpdateRule<R, Agent> for Reinforce<R> {
         row_work + self.end.work()
     }
 
-    /// Each step takes at least one unit of work.
-    fn reserve(&mut self, _agent: &mut Agent, work: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
-        memory.reserve(&mut self.steps, usize::try_from(work).unwrap_or(usize::MAX).min(1 << 20))
+    fn reserve(&mut self, agent: &mut Agent, work: u64, memory: &mut RunMemory) -> Result<(), AllocationError> {
+        let steps = work.div_ceil(agent.work_of::<R>());
+        memory.reserve(&mut self.steps, usize::try_from(steps).unwrap_or(usize::MAX).min(1 << 20))
     }
 
     #[inline]
@@ -161,6 +160,7 @@ mod tests {
     use crate::learners::test_support::{agent, rng};
     use crate::learners::{Learner, TdLearner};
     use crate::policies::AnyPolicy;
+    use crate::schedules::{LearningRate, Schedule};
 
     fn learner(critic: Option<Critic>) -> TdLearner<Reinforce<[u32; 1]>> {
         let agent = Agent { policy: AnyPolicy::softmax(1.0, 2), ..agent(&[0.0; 4]) };
@@ -179,7 +179,8 @@ mod tests {
 
     #[test]
     fn a_baseline_is_subtracted_and_learned() {
-        let mut learner = learner(Some(Critic { table: QTable::new(vec![2.0; 4], 2), step_size: 0.25 }));
+        let rate = LearningRate::scheduled(Schedule::constant(0.5), 1);
+        let mut learner = learner(Some(Critic::new(QTable::new(vec![2.0; 4], 2), 0.25, &rate)));
         learner.learn([0], 0, 4.0, Next::Terminal, &mut rng());
         assert_eq!(learner.agent.table.values(), [0.5, -0.5, 0.0, 0.0]);
         assert_eq!(learner.tables()[1], [2.5, 2.5, 2.0, 2.0]);

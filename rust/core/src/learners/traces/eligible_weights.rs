@@ -147,6 +147,7 @@ impl PartialEq for Traces {
         let parts = |traces: &Self| (traces.num_active(), traces.cutoff, traces.moved, traces.slots.len());
         let mut traces = self.weights.iter().zip(&*self.z).take(self.count);
         parts(self) == parts(other)
+            && self.dense == other.dense
             && traces.all(|(&weight, &trace)| trace == 0.0 || other.get(weight as usize) == trace)
     }
 }

@@ -1,9 +1,9 @@
 //! Sarsa(λ) (G. Rummery and M. Niranjan, 1994; Sutton & Barto, the box in section 12.7).
 
-use super::{TraceKind, Traces};
-use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
-use crate::features::{ActiveFeatures, assert_binary};
-use crate::learners::{Agent, UpdateRule, VALUES_PER_WORK};
+use super::{EligibilityTraces, TraceKind, Traces};
+use crate::checkpoint::{Checkpoint, CheckpointError};
+use crate::features::ActiveFeatures;
+use crate::learners::{Agent, UpdateRule, VALUES_PER_WORK, learn_borrowed};
 use crate::memory::{AllocationError, RunMemory};
 use crate::random::Rng;
 use crate::tasks::Next;
@@ -36,28 +36,24 @@ impl<R: Copy + ActiveFeatures> UpdateRule<R, Agent> for SarsaLambda {
         next: Next<R>,
         rng: &mut impl Rng,
     ) -> usize {
-        assert_binary::<R>();
         agent.visit(state, action);
-        self.traces.begin_step(&mut agent.table);
-        let value = self.traces.visit(self.kind, &mut agent.table, state, action);
-        let (next_action, target) = match self.traces.sample_next(agent, next, rng) {
-            Some((next_action, next_value)) => (next_action, reward + agent.discount * next_value),
-            None => (0, reward),
-        };
-        let error = target - value;
-        agent.table.check_finite(error);
-        let decay = agent.discount * self.trace_decay;
-        self.traces.apply_td_error_and_decay(&mut agent.table, &agent.learning_rate, error, decay);
-        next_action
+        let (options, pair) = ((self.kind, self.trace_decay), (state, action));
+        if R::WEIGHTED {
+            learn(&mut self.traces.dense, options, agent, pair, (reward, next), rng)
+        } else {
+            learn(&mut self.traces, options, agent, pair, (reward, next), rng)
+        }
     }
+
+    learn_borrowed!(Agent);
 
     #[inline]
     fn work(&self, row_work: u64) -> u64 {
-        row_work + self.traces.pass_len() as u64 / VALUES_PER_WORK
+        row_work + self.traces.pass_len_of::<R>() as u64 / VALUES_PER_WORK
     }
 
     fn end_episode(&mut self, agent: &mut Agent) {
-        self.traces.clear(&mut agent.table);
+        self.traces.clear_of::<R>(&mut agent.table);
     }
 
     fn complete_tables(&mut self, agent: &mut Agent) {
@@ -65,12 +61,35 @@ impl<R: Copy + ActiveFeatures> UpdateRule<R, Agent> for SarsaLambda {
     }
 
     fn reserve(&mut self, agent: &mut Agent, _work: u64, _memory: &mut RunMemory) -> Result<(), AllocationError> {
-        self.traces.reserve(&mut agent.table)
+        self.traces.reserve_of::<R>(&mut agent.table)
     }
 
-    fn persist(&mut self, _shape: (usize, usize), checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
-        self.traces.persist(checkpoint)
+    fn persist(&mut self, shape: (usize, usize), checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        self.traces.persist_of::<R>(shape, checkpoint)
     }
+}
+
+/// The step of Sarsa(λ) with any traces, given their kind and λ.
+#[inline(always)]
+fn learn<R: Copy + ActiveFeatures>(
+    traces: &mut impl EligibilityTraces,
+    (kind, trace_decay): (TraceKind, f64),
+    agent: &mut Agent,
+    (state, action): (R, usize),
+    (reward, next): (f64, Next<R>),
+    rng: &mut impl Rng,
+) -> usize {
+    traces.begin_step(&mut agent.table);
+    let value = traces.visit(kind, &mut agent.table, state, action);
+    let (next_action, target) = match traces.sample_next(agent, next, rng) {
+        Some((next_action, next_value)) => (next_action, reward + agent.discount * next_value),
+        None => (0, reward),
+    };
+    let error = target - value;
+    agent.table.check_finite(error);
+    let decay = agent.discount * trace_decay;
+    traces.apply_td_error_and_decay(&mut agent.table, &agent.learning_rate, error, decay);
+    next_action
 }
 
 #[cfg(test)]

@@ -4,18 +4,15 @@
 use std::hint::select_unpredictable;
 
 use super::aligned_vec::{AlignedVec, MAX_PADDING};
+use super::dense_traces::DenseTraces;
 use super::trace_changes::select;
 use super::trace_pass::BLOCK;
 use crate::StopFlag;
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::features::ActiveFeatures;
-use crate::learners::{Agent, masked_values};
 use crate::memory::{AllocationError, from_fn, reserve, with_capacity};
-use crate::policies::Policy;
 use crate::q_table::QTable;
-use crate::random::Rng;
 use crate::simd::SimdLevel;
-use crate::tasks::Next;
 
 /// The effect of a visit to a state-action pair on its traces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -81,6 +78,8 @@ pub struct Traces {
     pub(super) base: usize,
     /// Whether the values of the eligible weights are at their places.
     pub(super) moved: bool,
+    /// The traces of weighted features, which are used instead of all fields above.
+    pub(super) dense: DenseTraces,
 }
 
 impl Traces {
@@ -111,6 +110,7 @@ impl Traces {
             base: slots.len(),
             slots,
             moved: false,
+            dense: DenseTraces::new(cutoff),
         })
     }
 
@@ -191,25 +191,6 @@ impl Traces {
         table.value_at(&self.slots, rows, action)
     }
 
-    /// Samples A′ in the next state S′ and returns it with Q(S′, A′); `None` if S′ is terminal. If the episode is
-    /// truncated, A′ is sampled for its value and never taken.
-    #[inline(always)]
-    pub fn sample_next<R: ActiveFeatures>(
-        &self,
-        agent: &mut Agent,
-        next: Next<R>,
-        rng: &mut impl Rng,
-    ) -> Option<(usize, f64)> {
-        let (Next::NonTerminal(next_state) | Next::Truncated(next_state)) = next else { return None };
-        let values = self.action_values(&mut agent.table, &next_state);
-        let next_action = agent.policy.choose_in(
-            next_state.as_ref(),
-            masked_values::<0>(&mut agent.masks, next_state.as_ref(), values),
-            rng,
-        );
-        Some((next_action, values[next_action]))
-    }
-
     /// Subtracts a number from the weights of a state-action pair, whose traces must be active.
     #[inline(always)]
     pub fn subtract(&self, table: &mut QTable, rows: &[u32], action: usize, number: f64) {
@@ -248,7 +229,7 @@ impl Persist for Traces {
 }
 
 /// Saves or restores the index of a weight and its trace.
-fn persist_trace(
+pub(super) fn persist_trace(
     checkpoint: &mut Checkpoint<'_>,
     weights: usize,
     (mut weight, mut trace): (u32, f64),

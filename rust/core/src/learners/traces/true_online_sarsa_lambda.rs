@@ -1,20 +1,22 @@
 //! True online Sarsa(λ), with dutch traces (H. van Seijen et al., 2016; Sutton & Barto, the box in section 12.7).
 
-use super::Traces;
+use super::{EligibilityTraces, Traces};
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
-use crate::features::{ActiveFeatures, assert_binary};
-use crate::learners::{Agent, UpdateRule, VALUES_PER_WORK};
+use crate::features::ActiveFeatures;
+use crate::learners::{Agent, UpdateRule, VALUES_PER_WORK, learn_borrowed};
 use crate::memory::{AllocationError, RunMemory};
 use crate::random::Rng;
-use crate::schedules::StepSize;
 use crate::tasks::Next;
 
-/// With the weights w (the Q table), the traces z, the binary features x of (S, A), Q = wᵀx and Q′ = wᵀx′:
+/// With the weights w (the Q table), the traces z, the features x of (S, A), Q = wᵀx and Q′ = wᵀx′:
 ///
 /// - δ = R + γ Q′ - Q
 /// - z ← γλ z + (1 - αγλ zᵀx) x
 /// - w ← w + α (δ + Q - Qₒ) z - α (Q - Qₒ) x
 /// - Qₒ ← Q′
+///
+/// If each weight has a step size αᵢ, as with a Fourier basis, α zᵀx is Σᵢ αᵢ zᵢ xᵢ and the update of wᵢ has αᵢ: the
+/// equations of the online λ-return with a diagonal matrix in place of α.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrueOnlineSarsaLambda {
     /// The dutch traces z.
@@ -50,35 +52,26 @@ impl<R: Copy + ActiveFeatures> UpdateRule<R, Agent> for TrueOnlineSarsaLambda {
         next: Next<R>,
         rng: &mut impl Rng,
     ) -> usize {
-        assert_binary::<R>();
-        let (traces, rows) = (&mut self.traces, state.as_ref());
-        traces.begin_step(&mut agent.table);
-        let (next_action, next_value) = traces.sample_next(agent, next, rng).unwrap_or((0, 0.0));
-        let value = traces.value(&agent.table, rows, action);
-        let error = reward + agent.discount * next_value - value;
-        let change = value - self.q_old;
-        // The algorithm needs one step size for all weights, so visit counts are not supported.
-        let step_size = agent.learning_rate.at(0);
-        let decay = agent.discount * self.trace_decay;
-
-        let increment = 1.0 - step_size * decay * traces.sum(&agent.table, rows, action);
-        traces.decay(&mut agent.table, decay);
-        traces.update(&mut agent.table, state, action, |trace| trace + increment);
-        agent.table.check_finite(error);
-        traces.apply_td_error(&mut agent.table, &agent.learning_rate, error + change);
-        traces.subtract(&mut agent.table, rows, action, step_size * change);
+        let (constants, pair) = ((self.trace_decay, self.q_old), (state, action));
+        let (next_action, next_value) = if R::WEIGHTED {
+            learn(&mut self.traces.dense, constants, agent, pair, (reward, next), rng)
+        } else {
+            learn(&mut self.traces, constants, agent, pair, (reward, next), rng)
+        };
         self.q_old = next_value;
         next_action
     }
 
+    learn_borrowed!(Agent);
+
     #[inline]
     fn work(&self, row_work: u64) -> u64 {
-        row_work + self.traces.pass_len() as u64 / VALUES_PER_WORK
+        row_work + self.traces.pass_len_of::<R>() as u64 / VALUES_PER_WORK
     }
 
     fn end_episode(&mut self, agent: &mut Agent) {
         self.q_old = 0.0;
-        self.traces.clear(&mut agent.table);
+        self.traces.clear_of::<R>(&mut agent.table);
     }
 
     fn complete_tables(&mut self, agent: &mut Agent) {
@@ -86,13 +79,39 @@ impl<R: Copy + ActiveFeatures> UpdateRule<R, Agent> for TrueOnlineSarsaLambda {
     }
 
     fn reserve(&mut self, agent: &mut Agent, _work: u64, _memory: &mut RunMemory) -> Result<(), AllocationError> {
-        self.traces.reserve(&mut agent.table)
+        self.traces.reserve_of::<R>(&mut agent.table)
     }
 
-    fn persist(&mut self, _shape: (usize, usize), checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
-        self.traces.persist(checkpoint)?;
+    fn persist(&mut self, shape: (usize, usize), checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        self.traces.persist_of::<R>(shape, checkpoint)?;
         self.q_old.persist(checkpoint)
     }
+}
+
+/// The step of true online Sarsa(λ) with any traces, given λ and Qₒ. Returns A′ and Q′.
+#[inline(always)]
+fn learn<R: Copy + ActiveFeatures>(
+    traces: &mut impl EligibilityTraces,
+    (trace_decay, q_old): (f64, f64),
+    agent: &mut Agent,
+    (state, action): (R, usize),
+    (reward, next): (f64, Next<R>),
+    rng: &mut impl Rng,
+) -> (usize, f64) {
+    traces.begin_step(&mut agent.table);
+    let (next_action, next_value) = traces.sample_next(agent, next, rng).unwrap_or((0, 0.0));
+    let value = traces.value(&agent.table, &state, action);
+    let error = reward + agent.discount * next_value - value;
+    let change = value - q_old;
+    let decay = agent.discount * trace_decay;
+
+    let increment = 1.0 - traces.overlap(&agent.table, &agent.learning_rate, (&state, action), decay);
+    traces.decay(&mut agent.table, decay);
+    traces.add(&mut agent.table, (&state, action), increment);
+    agent.table.check_finite(error);
+    traces.apply_td_error(&mut agent.table, &agent.learning_rate, error + change);
+    traces.subtract(&mut agent.table, &agent.learning_rate, (&state, action), change);
+    (next_action, next_value)
 }
 
 #[cfg(test)]

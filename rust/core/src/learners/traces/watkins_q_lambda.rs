@@ -1,12 +1,12 @@
 //! Watkins's Q(λ) (C. Watkins, 1989; Sutton & Barto, section 12.10, and the box in section 7.6 of the first edition).
 
-use super::{TraceKind, Traces};
-use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
-use crate::features::{ActiveFeatures, assert_binary};
-use crate::learners::{Agent, UpdateRule, VALUES_PER_WORK, masked_values};
+use super::{EligibilityTraces, TraceKind, Traces};
+use crate::checkpoint::{Checkpoint, CheckpointError};
+use crate::features::ActiveFeatures;
+use crate::learners::{Agent, UpdateRule, VALUES_PER_WORK, learn_borrowed, masked_values};
 use crate::memory::{AllocationError, RunMemory};
 use crate::numeric::maximum;
-use crate::policies::Policy;
+use crate::policies::{Policy, assert_takes};
 use crate::random::Rng;
 use crate::tasks::Next;
 
@@ -38,40 +38,24 @@ impl<R: Copy + ActiveFeatures> UpdateRule<R, Agent> for WatkinsQLambda {
         next: Next<R>,
         rng: &mut impl Rng,
     ) -> usize {
-        assert_binary::<R>();
         agent.visit(state, action);
-        self.traces.begin_step(&mut agent.table);
-        let value = self.traces.visit(self.kind, &mut agent.table, state, action);
-        let (next_action, target, greedy) = match next {
-            Next::NonTerminal(next_state) | Next::Truncated(next_state) => {
-                let values = self.traces.action_values(&mut agent.table, next_state);
-                let values = masked_values::<0>(&mut agent.masks, next_state.as_ref(), values);
-                let next_action = agent.policy.choose_in(next_state.as_ref(), values, rng);
-                let largest = maximum(values);
-                // An action that ties for the maximum is greedy, even if it was chosen by exploring.
-                (next_action, reward + agent.discount * largest, values[next_action] == largest)
-            }
-            Next::Terminal => (0, reward, false),
-        };
-        let error = target - value;
-        agent.table.check_finite(error);
-        if greedy {
-            let decay = agent.discount * self.trace_decay;
-            self.traces.apply_td_error_and_decay(&mut agent.table, &agent.learning_rate, error, decay);
+        let (options, pair) = ((self.kind, self.trace_decay), (state, action));
+        if R::WEIGHTED {
+            learn(&mut self.traces.dense, options, agent, pair, (reward, next), rng)
         } else {
-            self.traces.apply_td_error(&mut agent.table, &agent.learning_rate, error);
-            self.traces.clear(&mut agent.table);
+            learn(&mut self.traces, options, agent, pair, (reward, next), rng)
         }
-        next_action
     }
+
+    learn_borrowed!(Agent);
 
     #[inline]
     fn work(&self, row_work: u64) -> u64 {
-        row_work + self.traces.pass_len() as u64 / VALUES_PER_WORK
+        row_work + self.traces.pass_len_of::<R>() as u64 / VALUES_PER_WORK
     }
 
     fn end_episode(&mut self, agent: &mut Agent) {
-        self.traces.clear(&mut agent.table);
+        self.traces.clear_of::<R>(&mut agent.table);
     }
 
     fn complete_tables(&mut self, agent: &mut Agent) {
@@ -79,12 +63,48 @@ impl<R: Copy + ActiveFeatures> UpdateRule<R, Agent> for WatkinsQLambda {
     }
 
     fn reserve(&mut self, agent: &mut Agent, _work: u64, _memory: &mut RunMemory) -> Result<(), AllocationError> {
-        self.traces.reserve(&mut agent.table)
+        self.traces.reserve_of::<R>(&mut agent.table)
     }
 
-    fn persist(&mut self, _shape: (usize, usize), checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
-        self.traces.persist(checkpoint)
+    fn persist(&mut self, shape: (usize, usize), checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
+        self.traces.persist_of::<R>(shape, checkpoint)
     }
+}
+
+/// The step of Watkins's Q(λ) with any traces, given their kind and λ.
+#[inline(always)]
+fn learn<R: Copy + ActiveFeatures>(
+    traces: &mut impl EligibilityTraces,
+    (kind, trace_decay): (TraceKind, f64),
+    agent: &mut Agent,
+    (state, action): (R, usize),
+    (reward, next): (f64, Next<R>),
+    rng: &mut impl Rng,
+) -> usize {
+    traces.begin_step(&mut agent.table);
+    let value = traces.visit(kind, &mut agent.table, state, action);
+    let (next_action, target, greedy) = match next {
+        Next::NonTerminal(next_state) | Next::Truncated(next_state) => {
+            assert_takes(&agent.policy, &next_state);
+            let values = traces.action_values(&mut agent.table, next_state);
+            let values = masked_values::<0>(&mut agent.masks, next_state.as_ref(), values);
+            let next_action = agent.policy.choose_in(next_state.as_ref(), values, rng);
+            let largest = maximum(values);
+            // An action that ties for the maximum is greedy, even if it was chosen by exploring.
+            (next_action, reward + agent.discount * largest, values[next_action] == largest)
+        }
+        Next::Terminal => (0, reward, false),
+    };
+    let error = target - value;
+    agent.table.check_finite(error);
+    if greedy {
+        let decay = agent.discount * trace_decay;
+        traces.apply_td_error_and_decay(&mut agent.table, &agent.learning_rate, error, decay);
+    } else {
+        traces.apply_td_error(&mut agent.table, &agent.learning_rate, error);
+        traces.clear(&mut agent.table);
+    }
+    next_action
 }
 
 #[cfg(test)]

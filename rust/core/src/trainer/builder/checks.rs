@@ -123,7 +123,7 @@ impl<E, F> TrainerBuilder<E, F> {
 
     fn check_algorithm(&self, shape: Shape) -> Result<(), BuildError> {
         let takes_weighted = self.algorithm.feature_kinds() == FeatureKinds::All;
-        let expected = "one that learns with weighted features";
+        let expected = "one that learns with weighted features, whose traces accumulate";
         BuildError::check(
             takes_weighted || !shape.weighted,
             "algorithm",
