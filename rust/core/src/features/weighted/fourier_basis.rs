@@ -1,8 +1,8 @@
 //! The Fourier basis (G. Konidaris, S. Osentoski and P. Thomas, 2011; Sutton & Barto, section 9.5.2).
 
-use std::f64::consts::PI;
 use std::marker::PhantomData;
 
+use super::complex_powers::{Powers, write_real_products, write_row};
 use super::scaled_box::ScaledBox;
 use super::{FeatureVector, MAX_FEATURES};
 use crate::errors::BuildError;
@@ -136,10 +136,19 @@ impl<T: Float, const M: usize> FourierBasis<T, M> {
             powers.compute(scaled, count);
             let (re, im) = (&powers.re[..count], &powers.im[..count]);
             if axis == last {
-                for (index, features) in features.chunks_exact_mut(count).enumerate() {
-                    let (product_re, product_im) = (products.re[index], products.im[index]);
-                    for ((feature, re), im) in features.iter_mut().zip(re).zip(im) {
-                        *feature = product_re * re - product_im * im;
+                // Orders up to 7 with constants, for vector registers.
+                match count {
+                    2 => write_real_products::<2, P>(features, &products, re, im),
+                    3 => write_real_products::<3, P>(features, &products, re, im),
+                    4 => write_real_products::<4, P>(features, &products, re, im),
+                    5 => write_real_products::<5, P>(features, &products, re, im),
+                    6 => write_real_products::<6, P>(features, &products, re, im),
+                    7 => write_real_products::<7, P>(features, &products, re, im),
+                    8 => write_real_products::<8, P>(features, &products, re, im),
+                    _ => {
+                        for (index, features) in features.chunks_exact_mut(count).enumerate() {
+                            write_row(features, (products.re[index], products.im[index]), re, im);
+                        }
                     }
                 }
                 return Ok(());
@@ -158,32 +167,6 @@ impl<T: Float, const M: usize> FourierBasis<T, M> {
         }
         features.copy_from_slice(&products.re[..features.len()]);
         Ok(())
-    }
-}
-
-/// The powers of a complex number: their real and their imaginary parts.
-struct Powers<const P: usize> {
-    re: [f64; P],
-    im: [f64; P],
-}
-
-impl<const P: usize> Powers<P> {
-    #[inline]
-    fn new() -> Self {
-        Self { re: [0.0; P], im: [0.0; P] }
-    }
-
-    /// The powers 0 to `count` - 1, at least 2, of e^(iπs).
-    #[inline]
-    fn compute(&mut self, s: f64, count: usize) {
-        let (re, im) = (&mut self.re[..count], &mut self.im[..count]);
-        let angle = PI * s;
-        (re[0], im[0]) = (1.0, 0.0);
-        (re[1], im[1]) = (angle.cos(), angle.sin());
-        for k in 2..count {
-            let (m, n) = (k / 2, k - k / 2);
-            (re[k], im[k]) = (re[n] * re[m] - im[n] * im[m], re[n] * im[m] + im[n] * re[m]);
-        }
     }
 }
 
@@ -221,6 +204,8 @@ impl<T: Float, O: AsRef<[T]> + ?Sized, const M: usize> Features<O> for FourierBa
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::PI;
+
     use super::*;
     use crate::features::ActiveFeatures;
 

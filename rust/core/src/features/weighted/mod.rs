@@ -1,5 +1,6 @@
 //! Features with values other than 1 (Sutton & Barto, section 9.5).
 
+mod complex_powers;
 mod feature_vector;
 mod fourier_basis;
 mod scaled_box;
