@@ -28,4 +28,4 @@ pub use multi_discrete_index::MultiDiscreteIndex;
 pub use product::{Factor, FactorFeatures, Product};
 pub use rounding::{Axis, Rounding};
 pub use tile_coding::{ActiveTiles, MAX_TILINGS, TileCoding};
-pub use weighted::{FeatureVector, FourierBasis, MAX_FEATURES};
+pub use weighted::{AnyBasis, CoarseCoding, FeatureVector, FourierBasis, MAX_FEATURES, PolynomialBasis, RadialBasis};

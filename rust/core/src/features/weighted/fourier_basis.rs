@@ -2,7 +2,10 @@
 
 use std::marker::PhantomData;
 
+use super::basis::features_of_basis;
+use super::combinations::SMALL;
 use super::complex_powers::{Powers, write_real_products, write_row};
+use super::multi_indices::MultiIndices;
 use super::scaled_box::ScaledBox;
 use super::{FeatureVector, MAX_FEATURES};
 use crate::errors::BuildError;
@@ -23,26 +26,12 @@ use crate::numeric::Float;
 #[derive(Clone, Debug, PartialEq)]
 pub struct FourierBasis<T = f64, const M: usize = MAX_FEATURES> {
     scaled: ScaledBox,
-    order: u32,
-    coupled: bool,
+    frequencies: MultiIndices,
     scales_step_sizes: bool,
-    len: u32,
-    /// Whether [`SMALL`] numbers are room enough for the powers and their products.
+    /// Whether [`SMALL`] numbers are room enough for the powers and their products, as for up to 16² features of two
+    /// components.
     is_small: bool,
     dtype: PhantomData<T>,
-}
-
-/// The room for powers and products of small bases, such as all with up to 16² features of two components. It is cleared
-/// at every step, so less is faster.
-const SMALL: usize = 16;
-
-/// The number of features of a Fourier basis; `None` if it is too large to count.
-pub(super) fn fourier_features(dimensions: usize, order: u32, coupled: bool) -> Option<usize> {
-    if coupled {
-        (order as usize).checked_add(1)?.checked_pow(u32::try_from(dimensions).ok()?)
-    } else {
-        dimensions.checked_mul(order as usize)?.checked_add(1)
-    }
 }
 
 impl<T: Float, const M: usize> FourierBasis<T, M> {
@@ -60,21 +49,15 @@ impl<T: Float, const M: usize> FourierBasis<T, M> {
         scales_step_sizes: bool,
     ) -> Result<Self, BuildError> {
         let scaled = ScaledBox::try_new(low, high)?;
-        BuildError::check(order > 0, "order", "at least 1", order)?;
-        let most = M.min(MAX_FEATURES);
-        let len = fourier_features(low.len(), order, coupled).filter(|&len| len <= most);
-        let Some(len) = len else {
-            let expected = format_args!("small enough for {most} features");
-            return Err(BuildError::invalid("order", expected, format_args!("{order} with {} components", low.len())));
-        };
-        let powers = order as usize + 1;
-        let is_small = powers <= SMALL && (!coupled || len / powers <= SMALL);
-        Ok(Self { scaled, order, coupled, scales_step_sizes, len: len as u32, is_small, dtype: PhantomData })
+        let frequencies = MultiIndices::try_new(low.len(), order, coupled, M.min(MAX_FEATURES))?;
+        let powers = frequencies.order() + 1;
+        let is_small = powers <= SMALL && (!coupled || frequencies.len() / powers <= SMALL);
+        Ok(Self { scaled, frequencies, scales_step_sizes, is_small, dtype: PhantomData })
     }
 
     /// The number of features.
     pub fn n_features(&self) -> usize {
-        self.len as usize
+        self.frequencies.len()
     }
 
     /// [`Features::step_size_divisors`].
@@ -87,42 +70,35 @@ impl<T: Float, const M: usize> FourierBasis<T, M> {
 
     /// The Euclidean length of the frequency vector of each feature, in their order.
     fn frequency_lengths(&self) -> Vec<f64> {
-        let dimensions = self.scaled.dimensions();
-        let order = self.order as usize;
-        let square = |feature: usize| {
-            if self.coupled {
-                let mut rest = feature;
-                (0..dimensions).fold(0, |sum, _| {
-                    let component = rest % (order + 1);
-                    rest /= order + 1;
-                    sum + component * component
-                })
-            } else {
-                let component = feature.checked_sub(1).map_or(0, |index| index % order + 1);
-                component * component
-            }
-        };
-        (0..self.len as usize).map(|feature| (square(feature) as f64).sqrt()).collect()
+        self.frequencies.squared_lengths().map(|square| (square as f64).sqrt()).collect()
+    }
+
+    /// Writes the features of an observation.
+    #[inline]
+    pub(super) fn write(&self, observation: &[T], features: &mut [f64]) -> Result<(), OutOfBounds> {
+        match (self.frequencies.is_coupled(), self.is_small) {
+            (true, true) => self.write_coupled::<SMALL>(observation, features),
+            (true, false) => self.write_coupled::<M>(observation, features),
+            (false, true) => self.write_uncoupled::<SMALL>(observation, features),
+            (false, false) => self.write_uncoupled::<M>(observation, features),
+        }
     }
 
     /// The features with at most one component of the frequency vector that is not 0.
     #[inline]
     fn write_uncoupled<const P: usize>(&self, observation: &[T], features: &mut [f64]) -> Result<(), OutOfBounds> {
-        let (constant, rest) = features.split_at_mut(1);
-        constant[0] = 1.0;
-        let order = self.order as usize;
+        let order = self.frequencies.order();
         let mut powers = Powers::<P>::new();
-        for (axis, (&value, features)) in observation.iter().zip(rest.chunks_exact_mut(order)).enumerate() {
-            powers.compute(self.scaled.scale(axis, value.into())?, order + 1);
+        self.scaled.write_uncoupled(order, observation, features, |s, features| {
+            powers.compute(s, order + 1);
             features.copy_from_slice(&powers.re[1..=order]);
-        }
-        Ok(())
+        })
     }
 
     /// The features with all frequency vectors: the products of the first components grow by one component at a time.
     #[inline]
     fn write_coupled<const P: usize>(&self, observation: &[T], features: &mut [f64]) -> Result<(), OutOfBounds> {
-        let count = self.order as usize + 1;
+        let count = self.frequencies.order() + 1;
         let (mut powers, mut products) = (Powers::<P>::new(), Powers::<P>::new());
         let last = self.scaled.dimensions() - 1;
         let mut len = 1;
@@ -170,42 +146,10 @@ impl<T: Float, const M: usize> FourierBasis<T, M> {
     }
 }
 
-impl<T: Float, O: AsRef<[T]> + ?Sized, const M: usize> Features<O> for FourierBasis<T, M> {
-    type Active = FeatureVector<M>;
-
-    #[inline]
-    fn active_rows(&self, observation: &O) -> Result<FeatureVector<M>, OutOfBounds> {
-        let Some(mut features) = FeatureVector::zeros(self.len as usize) else {
-            unreachable!("the constructor has checked the capacity")
-        };
-        self.write_active_rows(observation, &mut features)?;
-        Ok(features)
-    }
-
-    #[inline]
-    fn write_active_rows(&self, observation: &O, active: &mut FeatureVector<M>) -> Result<(), OutOfBounds> {
-        let (observation, features) = (observation.as_ref(), active.values_mut());
-        match (self.coupled, self.is_small) {
-            (true, true) => self.write_coupled::<SMALL>(observation, features),
-            (true, false) => self.write_coupled::<M>(observation, features),
-            (false, true) => self.write_uncoupled::<SMALL>(observation, features),
-            (false, false) => self.write_uncoupled::<M>(observation, features),
-        }
-    }
-
-    fn len(&self) -> usize {
-        self.len as usize
-    }
-
-    fn step_size_divisors(&self) -> Vec<f64> {
-        self.divisors()
-    }
-}
+features_of_basis!(FourierBasis, divisors);
 
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::PI;
-
     use super::*;
     use crate::features::ActiveFeatures;
 

@@ -3,6 +3,7 @@
 use super::super::checked_tilings::check_bounds;
 use crate::errors::BuildError;
 use crate::features::OutOfBounds;
+use crate::numeric::Float;
 
 /// The bounds of a box, which is scaled to [0, 1].
 #[derive(Clone, Debug, PartialEq)]
@@ -32,5 +33,22 @@ impl ScaledBox {
         }
         let (low, high) = self.bounds[axis];
         Ok((value.clamp(low, high) - low) / (high - low))
+    }
+
+    /// Writes 1, and then `order` features of each component: `write` receives the component in [0, 1], and their place.
+    #[inline]
+    pub(super) fn write_uncoupled<T: Float>(
+        &self,
+        order: usize,
+        observation: &[T],
+        features: &mut [f64],
+        mut write: impl FnMut(f64, &mut [f64]),
+    ) -> Result<(), OutOfBounds> {
+        let (constant, rest) = features.split_at_mut(1);
+        constant[0] = 1.0;
+        for (axis, (&value, features)) in observation.iter().zip(rest.chunks_exact_mut(order)).enumerate() {
+            write(self.scale(axis, value.into())?, features);
+        }
+        Ok(())
     }
 }
