@@ -56,19 +56,53 @@ class TilesSpec(TypedDict):
     """The rows that all tilings share; None gives each tile its own."""
 
 
-class FourierSpec(TypedDict):
-    """The Fourier basis, whose features multiply the rows."""
+class BoxSpec(TypedDict):
+    """The observations of weighted features, which multiply the rows."""
 
-    type: Literal["fourier"]
     dtype: FloatType
     low: Sequence[float]
     """What is scaled to 0."""
     high: Sequence[float]
     """What is scaled to 1."""
+
+
+class FourierSpec(BoxSpec):
+    """The Fourier basis."""
+
+    type: Literal["fourier"]
     order: int
     coupled: bool
     scale_step_sizes: bool
     """Whether the learning rate of a feature is divided by the length of its frequency vector."""
+
+
+class PolynomialSpec(BoxSpec):
+    """Products of powers."""
+
+    type: Literal["polynomial"]
+    order: int
+    coupled: bool
+
+
+class RadialSpec(BoxSpec):
+    """Gaussian radial basis functions."""
+
+    type: Literal["radial"]
+    centers: Sequence[int]
+    """Along each component, evenly spaced from ``low`` to ``high``."""
+    width: Sequence[float]
+    """The standard deviation along each component, in distances between neighboring centers."""
+    normalized: bool
+    """Whether they are divided by their sum."""
+
+
+class CoarseSpec(BoxSpec):
+    """Coarse coding with receptive fields that are balls."""
+
+    type: Literal["coarse"]
+    centers: Sequence[int]
+    radius: Sequence[float]
+    """Along each component, in distances between neighboring centers."""
 
 
 class IdentitySpec(TypedDict):
@@ -103,7 +137,8 @@ class ProductSpec(TypedDict):
     factors: Sequence[FactorSpec]
 
 
-DiscretizerSpec: TypeAlias = RoundSpec | BinsSpec | TilesSpec | FourierSpec | IdentitySpec | ProductSpec
+WeightedSpec: TypeAlias = FourierSpec | PolynomialSpec | RadialSpec | CoarseSpec
+DiscretizerSpec: TypeAlias = RoundSpec | BinsSpec | TilesSpec | WeightedSpec | IdentitySpec | ProductSpec
 
 
 # Environments

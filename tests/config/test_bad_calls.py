@@ -36,7 +36,10 @@ COUNTS: tuple[str, ...] = (
     "epsilon_warm_up",
 )
 COUNTS += ("tilings", "hashed_rows", "max_rows", "order")
-LISTS = ("shape", "scale", "tiles", "bins", "low", "high", "edges", "actions", "initial_q")
+LISTS = (
+    *("shape", "scale", "tiles", "bins", "low", "high", "edges", "actions", "initial_q"),
+    *("centers", "width", "radius"),
+)
 NOT_REAL: list[Any] = ["x", b"1", NAN, -0.5, 1j, [0.5], {}, True, np.True_, HUGE, -HUGE]
 NOT_COUNTS: list[Any] = ["3", 1.5, -1, True, np.True_, [3], NAN, HUGE, np.array([3])]
 NOT_CHOICES: list[Any] = ["nope", "", 3, b"auto", ["auto"]]
@@ -54,7 +57,7 @@ def settings() -> Iterator[tuple[str, Any]]:
     for name in LISTS:
         yield from ((name, value) for value in NOT_LISTS)
     yield from (("seed", value) for value in ["3", 1.5, -1, True, np.True_, [3], NAN])
-    for name in ("baseline", "coupled", "scale_step_sizes"):
+    for name in ("baseline", "coupled", "scale_step_sizes", "normalized"):
         yield from ((name, value) for value in ["yes", 1, 0, 0.5, [True]])
     yield from (("preset", value) for value in [3, b"solved", "slved", ["solved"]])
     yield from (("env_kwargs", value) for value in [3, "goal_velocity", [("a", 1)], {1: 2}])

@@ -15,7 +15,7 @@ from qtab import _core
 from qtab.config.choices import Algorithm
 from qtab.config.options import LEARNS_WEIGHTED, OPTIONS, PREFERENCES
 from qtab.discretizers.weighted.fourier import FourierBasis
-from qtab.reference.parts.discretizers import FourierBasis as Reference
+from qtab.reference.parts.weighted import FourierBasis as Reference
 from qtab.training.setup.resolve import resolve
 
 CAR = "MountainCar-v0"

@@ -43,8 +43,8 @@ VALUES: dict[str, Any] = {
     "edges": ((-0.5,), (0.0,)),
     "low": (-1.2, -0.07),
     "high": (0.6, 0.07),
-    "shape": (19, 15),
-    **{"order": 3, "coupled": True, "scale_step_sizes": True, "max_rows": 100},
+    **{"shape": (19, 15), "order": 3, "coupled": True, "scale_step_sizes": True, "max_rows": 100},
+    **{"centers": (4, 4), "width": (1.0, 1.0), "normalized": True, "radius": (1.5, 1.5)},
 }
 
 
@@ -55,7 +55,7 @@ def strangers() -> list[tuple[str, dict[str, Any]]]:
         "learning_rate_schedule": ["constant", "linear", "visits"],
         "exploration": ["epsilon_greedy", "softmax", "ucb"],
         "epsilon_schedule": ["constant", "linear"],
-        "discretizer": ["round", "bins", "edges", "tiles", "fourier"],
+        "discretizer": ["round", "bins", "edges", "tiles", "fourier", "polynomial", "radial", "coarse"],
     }
     return [
         (name, {option.choice: chosen})

@@ -13,7 +13,7 @@ from qtab import callbacks, stats
 from qtab._utils import html
 from qtab.discretizers import DISCRETIZERS, Discretizer
 from qtab.discretizers.named import class_at
-from qtab.discretizers.weighted.fourier import FourierBasis
+from qtab.discretizers.weighted.features import WeightedFeatures
 
 NAME = "<b>&name</b>"
 
@@ -115,7 +115,7 @@ def test_no_public_object_is_shown_by_its_address():
 def test_every_discretizer_is_shown_in_one_line():
     # A dataclass would make one of its own, with all edges.
     shown = {class_at(place).__repr__ for place in DISCRETIZERS.values()}
-    assert shown == {Discretizer.__repr__, FourierBasis.__repr__}
+    assert shown == {Discretizer.__repr__, WeightedFeatures.__repr__}
 
 
 def tables(shown: str) -> list[list[str]]:

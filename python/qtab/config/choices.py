@@ -62,7 +62,9 @@ Ties: TypeAlias = Literal["first", "random"]
 Traces: TypeAlias = Literal["accumulating", "replacing", "clearing"]
 TargetPolicy: TypeAlias = Literal["greedy", "behavior"]
 ModelKind: TypeAlias = Literal["deterministic", "stochastic"]
-DiscretizerName: TypeAlias = Literal["round", "bins", "edges", "tiles", "fourier", "identity"]
+DiscretizerName: TypeAlias = Literal[
+    "round", "bins", "edges", "tiles", "fourier", "polynomial", "radial", "coarse", "identity"
+]
 TerminalUpdate: TypeAlias = Literal["target", "assign"]
 OnTruncation: TypeAlias = Literal["bootstrap", "terminate"]
 BitGenerator: TypeAlias = Literal["PCG64", "MT19937"]

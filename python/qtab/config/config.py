@@ -5,7 +5,6 @@ Options, the settings that apply only to certain choices, are None here; their d
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields, replace
-from functools import wraps
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -30,8 +29,7 @@ from qtab.config.choices import (
     Traces,
 )
 from qtab.config.functions import Mask
-from qtab.config.implied import implied_schedules, weighted_defaults, with_followers
-from qtab.config.options import PREFERENCES, fixed_settings
+from qtab.config.implied import with_followers, with_implied
 from qtab.config.origin import WithOrigin, copied
 from qtab.config.unknown import check_names
 from qtab.config.validation import validated
@@ -87,8 +85,8 @@ class Config(WithOrigin):
     """The learning algorithm."""
     learning_rate: float = 0.2
     """α: the fraction of the error that an update corrects, in [0, 1]. With tile coding it is divided among the
-    tilings, and may be up to 2. For preferences any step size that is not negative. Fourier features, among which it
-    is not divided, have a default of 0.001, whatever the preset."""
+    tilings, and may be up to 2. For preferences any step size that is not negative. Weighted features (fourier,
+    polynomial, radial, coarse), among which it is not divided, have a default of 0.001, whatever the preset."""
     discount: float = 0.9
     """γ: the discount factor, in [0, 1]. It is 1 if the average reward is learned, and 0 for the gradient bandit."""
     learning_rate_schedule: LearningRateSchedule = "constant"
@@ -134,8 +132,9 @@ class Config(WithOrigin):
     The default is 0.1, or 0.005 with weighted features."""
     initial_q: float | tuple[float, float] | NDArray[np.float64] = (-1.0, 1.0)
     """The initial Q table, or preferences: drawn uniformly from a range (low, high), one number everywhere, or an array
-    to continue from. In an array, -inf marks an action that a state does not have; it is never chosen. For Fourier
-    features these are weights, not values, by default 0: the first one, of the constant feature, is added to all."""
+    to continue from. In an array, -inf marks an action that a state does not have; it is never chosen. For weighted
+    features these are weights, not values, by default 0: the first one of fourier and polynomial is added to all
+    values."""
     terminal_update: TerminalUpdate = "target"
     """The update at a terminal state: move the value towards the reward (target, as in the textbook), or set it to the
     reward (assign, as in the well-known article)."""
@@ -179,8 +178,9 @@ class Config(WithOrigin):
 
     discretizer: DiscretizerName | Callable[[Any], Any] | Mapping[str, Any] = "round"
     """How observations index the Q table: rounded to a grid (round), by bins of equal width (bins) or between given
-    edges (edges), by tile coding (tiles), directly (identity), the default for discrete spaces, or by Fourier features
-    (fourier), which multiply all rows. Or a function from an observation to its indices within shape; or a mapping from
+    edges (edges), by tile coding (tiles), directly (identity), the default for discrete spaces, or by weighted
+    features, which multiply all rows: a Fourier basis (fourier), polynomials (polynomial), radial basis functions
+    (radial) or coarse coding (coarse). Or a function from an observation to its indices within shape; or a mapping from
     the keys of a Dict or Tuple space to the name or the options of a discretizer each:
     {"position": {"discretizer": "bins", "bins": 20}}."""
     shape: tuple[int, ...] | None = None
@@ -202,18 +202,29 @@ class Config(WithOrigin):
     edges: tuple[tuple[float, ...], ...] | None = None
     """The inner edges between the bins of each component of the observation, ascending, as np.digitize takes them."""
     order: int | None = None
-    """The order n of a Fourier basis: its frequencies are integers from 0 to n."""
+    """The order n of a basis: the frequencies or exponents of its features are integers from 0 to n."""
     coupled: bool | None = None
-    """Whether a Fourier basis has all (n + 1)^d combinations of the frequencies of d components, or only the d n + 1
-    features of single components."""
+    """Whether a basis has all (n + 1)^d combinations of the frequencies or exponents of d components, or only the d n +
+    1 features of single components."""
     scale_step_sizes: bool | None = None
     """Whether the learning rate of a Fourier feature is divided by the length of its frequency vector, if not 0."""
+    centers: tuple[int, ...] | None = None
+    """The number of centers of features along each component of the observation, or one number for all. They are
+    evenly spaced from the lower to the upper limit."""
+    width: tuple[float, ...] | None = None
+    """σ, the width of radial basis functions along each component of the observation, or one number for all, in
+    distances between neighboring centers."""
+    normalized: bool | None = None
+    """Whether radial basis functions are divided by their sum, so that they sum to 1."""
+    radius: tuple[float, ...] | None = None
+    """The radius of the receptive fields of coarse coding along each component of the observation, or one number for
+    all, in distances between neighboring centers."""
     low: tuple[float, ...] | None = None
-    """The lower limits of bins, tilings or a Fourier basis, one for each component of the observation. None uses those
-    of the observation space. Values outside the limits fall into the outermost bin or tile; for a Fourier basis they
-    are clipped to them."""
+    """The lower limits of bins, tilings or weighted features, one for each component of the observation. None uses
+    those of the observation space. Values outside the limits fall into the outermost bin or tile; for weighted features
+    they are clipped to them."""
     high: tuple[float, ...] | None = None
-    """The upper limits of the bins, the tilings or the Fourier basis, like low."""
+    """The upper limits of bins, tilings or weighted features, like low."""
     actions: int | tuple[float | tuple[float, ...], ...] | None = None
     """The actions to choose from if the action space is a Box: the number of evenly spaced values along each component,
     from low to high, or the actions themselves."""
@@ -270,24 +281,7 @@ DEFAULTS: Mapping[str, Any] = {
 """The default of each field."""
 
 
-def _checking(init: Callable[..., None]) -> Callable[..., None]:
-    """Makes the generated constructor suggest the nearest name, and add the settings that follow from those given."""
-
-    @wraps(init)
-    def checked(self: Config, *args: Any, **settings: Any) -> None:
-        check_names(settings, DEFAULTS, "Config")
-        if (algorithm := settings.get("algorithm")) in PREFERENCES:
-            settings.setdefault("exploration", "softmax")
-        settings = {**weighted_defaults(settings), **fixed_settings(algorithm), **settings}
-        if settings.get("time_aware"):
-            settings.setdefault("on_truncation", "terminate")
-        settings.update(implied_schedules(settings, {**DEFAULTS, **settings}))
-        init(self, *args, **settings)
-
-    return checked
-
-
-setattr(Config, "__init__", _checking(Config.__init__))  # noqa: B010 - type checkers refuse the assignment
+setattr(Config, "__init__", with_implied(Config.__init__, DEFAULTS))  # noqa: B010 - type checkers refuse the assignment
 
 
 def replace_checked(config: Config, **changes: Any) -> Config:

@@ -1,12 +1,14 @@
 """Settings that follow from others: with an algorithm, with a rate, and with a change to a config."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import wraps
 from typing import Any
 
 import gymnasium as gym
 
-from qtab.config.options import FIXED, OPTIONS, fixed_settings, freed_settings, is_set
+from qtab.config.options import FIXED, OPTIONS, PREFERENCES, fixed_settings, freed_settings, is_set
 from qtab.config.origin import Origin
+from qtab.config.unknown import check_names
 from qtab.config.validation import mismatch, uses_weighted
 
 _AVERAGES: Mapping[str, Any] = {"learning_rate": 1.0, "learning_rate_schedule": "visits"}
@@ -94,6 +96,28 @@ def implied_schedule(rate: str, asked: Mapping[str, Any], otherwise: str | None)
     if is_set(asked.get(rate)):
         return "linear" if falls else "constant"
     return "linear" if falls and otherwise in (None, "constant") else None
+
+
+def with_implied(init: Callable[..., None], defaults: Mapping[str, Any]) -> Callable[..., None]:
+    """Makes a config's constructor suggest the nearest name, and add the settings that follow from those given.
+
+    Args:
+        init: The constructor.
+        defaults: The default of each setting.
+    """
+
+    @wraps(init)
+    def checked(self: Any, *args: Any, **settings: Any) -> None:
+        check_names(settings, defaults, "Config")
+        if (algorithm := settings.get("algorithm")) in PREFERENCES:
+            settings.setdefault("exploration", "softmax")
+        settings = {**weighted_defaults(settings), **fixed_settings(algorithm), **settings}
+        if settings.get("time_aware"):
+            settings.setdefault("on_truncation", "terminate")
+        settings.update(implied_schedules(settings, {**defaults, **settings}))
+        init(self, *args, **settings)
+
+    return checked
 
 
 def without_rates(start: Mapping[str, Any], asked: Mapping[str, Any]) -> dict[str, Any]:

@@ -16,7 +16,8 @@ from qtab.config.value_checks import Check
 MAX_TILINGS = 32
 MAX_TILES = 2**32 - 1
 MAX_BINS = 1_000_000
-MAX_ORDER = 1023
+MAX_FEATURES = 1024
+"""The maximum number of weighted features: a step takes time in proportion to it."""
 MAX_ROWS = 2**32 - 2
 
 
@@ -97,7 +98,7 @@ ONE_STEP = (
 table."""
 TABLES_ONLY = ("dyna_q", "dyna_q_plus", *MONTE_CARLO, "prioritized_sweeping", "gradient_bandit")
 """The algorithms that do not work with tile coding."""
-WEIGHTED = ("fourier",)
+WEIGHTED = ("fourier", "polynomial", "radial", "coarse")
 """The discretizers with weighted features: each row of the table has a number for an observation."""
 LEARNS_WEIGHTED = (
     "q_learning",
@@ -254,11 +255,15 @@ SETTINGS: Mapping[str, Setting] = {
     ),
     "bins": Option(check.counts(1, MAX_BINS), "discretizer", ("bins",), (10,), other_names="n_bins num_bins buckets"),
     "edges": Option(check.edges, "discretizer", ("edges",), None),
-    "order": Option(check.integer(1, MAX_ORDER), "discretizer", ("fourier",), 3, added=True),
-    "coupled": Option(checks.boolean, "discretizer", ("fourier",), True, added=True),
+    "order": Option(check.integer(1, MAX_FEATURES - 1), "discretizer", ("fourier", "polynomial"), 3, added=True),
+    "coupled": Option(checks.boolean, "discretizer", ("fourier", "polynomial"), True, added=True),
     "scale_step_sizes": Option(checks.boolean, "discretizer", ("fourier",), True, added=True),
-    "low": Option(check.each, "discretizer", ("bins", "tiles", "fourier"), None),
-    "high": Option(check.each, "discretizer", ("bins", "tiles", "fourier"), None),
+    "centers": Option(check.counts(2, MAX_FEATURES), "discretizer", ("radial", "coarse"), (5,), added=True),
+    "width": Option(check.sizes(0.1, 1000), "discretizer", ("radial",), (1.0,), other_names="std_dev", added=True),
+    "normalized": Option(checks.boolean, "discretizer", ("radial",), False, other_names="normalize", added=True),
+    "radius": Option(check.sizes(0.5, 1e4), "discretizer", ("coarse",), (1.5,), added=True),
+    "low": Option(check.each, "discretizer", ("bins", "tiles", *WEIGHTED), None),
+    "high": Option(check.each, "discretizer", ("bins", "tiles", *WEIGHTED), None),
     "actions": Setting(check.actions, other_names="n_actions num_actions", may_be_none=True),
 }
 """Every setting except ``discretizer``, whose check also needs its options; see ``keyed_discretizers.py``."""

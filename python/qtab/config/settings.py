@@ -99,6 +99,10 @@ class SharedSettings(EnvironmentSettings, total=False):
     order: Integer | None
     coupled: bool | None
     scale_step_sizes: bool | None
+    centers: Integer | Integers | None
+    width: Real | Reals | None
+    normalized: bool | None
+    radius: Real | Reals | None
     low: Reals | None
     high: Reals | None
     actions: Integer | Sequence[Real | Reals] | Array | None

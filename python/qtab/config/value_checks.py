@@ -88,10 +88,15 @@ def scale(name: str, value: Any) -> tuple[float, ...]:
 
 def counts(least: int, most: int) -> Check:
     """Returns the check of an integer for each component, or of a single one for all."""
-    return partial(_counts, check=integer(least, most))
+    return partial(_for_components, check=integer(least, most))
 
 
-def _counts(name: str, value: Any, check: Check) -> tuple[int, ...]:
+def sizes(low: float, high: float) -> Check:
+    """Returns the check of a number in [``low``, ``high``] for each component, or of a single one for all."""
+    return partial(_for_components, check=real(low, high))
+
+
+def _for_components(name: str, value: Any, check: Check) -> tuple[Any, ...]:
     numbers = each(name, value if hasattr(value, "__iter__") else (value,), check)
     if not numbers:
         fitting = (

@@ -31,7 +31,7 @@ class Bins(Edges):
         """
         box = box_of(space)
         low, high = span(box, config.low, config.high)
-        counts = per_dimension("bins", required("bins", config.bins), box)
+        counts = per_dimension("bins", required("bins", config.bins), len(box.low))
         check_table_size("bins", counts, math.prod(map(float, counts)) * n_actions)
         bins = cls(box.low, box.high, _edges(box.low.dtype, (low, high), counts), (low, high))
         if not all(np.isfinite(edges).all() for edges in bins.edges):

@@ -1,7 +1,7 @@
 """The parts shared by the discretizers of Box observations."""
 
 from collections.abc import Sequence
-from typing import Any, Literal
+from typing import Any, Literal, TypeVar
 
 import numpy as np
 from gymnasium import spaces
@@ -13,6 +13,7 @@ from qtab.envs.actions import FLOATS
 
 Span = tuple[NDArray[np.float64], NDArray[np.float64]]
 """The lower and the upper limits of the components, two arrays of (d,)."""
+N = TypeVar("N", int, float)
 UNBOUNDED = 3.0
 """The limit of a component without bounds in an example."""
 MOST_SHOWN = 8
@@ -84,13 +85,12 @@ def example_of_limits(space: spaces.Box, more: str = "") -> str:
     return f", such as {more}low={low}, high={high}"
 
 
-def per_dimension(name: str, given: tuple[int, ...], space: spaces.Box) -> tuple[int, ...]:
-    """Returns a number for each component of the observation, repeating a single number for all.
+def per_dimension(name: str, given: tuple[N, ...], dimensions: int) -> tuple[N, ...]:
+    """Returns a number for each of ``dimensions`` components of the observation, repeating a single number for all.
 
     Raises:
         ValueError: if there are too few or too many numbers.
     """
-    dimensions = space.shape[0]
     numbers = given * dimensions if len(given) == 1 else given
     if len(numbers) != dimensions:
         held = counted(dimensions, "number") + " for this observation space" + (", or one" if dimensions > 1 else "")

@@ -20,6 +20,9 @@ DISCRETIZERS: Mapping[DiscretizerName, str] = {
     "edges": "edges:Edges",
     "tiles": "tile_coding:TileCoding",
     "fourier": "weighted.fourier:FourierBasis",
+    "polynomial": "weighted.polynomial:PolynomialBasis",
+    "radial": "weighted.radial:RadialBasis",
+    "coarse": "weighted.coarse:CoarseCoding",
     "identity": "identity:Identity",
 }
 """The module and the class for each value of the setting ``discretizer``, for spaces that the extension reads

@@ -60,7 +60,7 @@ class TileCoding(BoxDiscretizer):
         """
         box = box_of(space)
         limits = span(box, config.low, config.high)
-        tiles = per_dimension("tiles", required("tiles", config.tiles), box)
+        tiles = per_dimension("tiles", required("tiles", config.tiles), len(box.low))
         tilings, hashed_rows = required("tilings", config.tilings), config.hashed_rows
         if hashed_rows is not None:
             check_table_size("hashed_rows", hashed_rows, float(hashed_rows) * n_actions)

@@ -147,7 +147,7 @@ def _findings(found: Diagnosis | None) -> str:
     if found is None:
         return paragraph(
             "Not available: the diagnosis needs an environment that Rust steps, a finished episode, and a discretizer "
-            "other than a Fourier basis."
+            "without weighted features."
         )
     return f'<div class="text wide">{found._repr_html_()}</div>'
 

@@ -218,8 +218,8 @@ fn dyn_features<T: Float + 'static>(
     if let DiscretizerSpec::Tiles(tiles) = spec {
         return Ok(Box::new(tiles.tile_coding::<T, MAX_TILINGS>()));
     }
-    if let DiscretizerSpec::Fourier(fourier) = spec {
-        return Ok(Box::new(fourier.basis::<T, MAX_FEATURES>()?));
+    if let DiscretizerSpec::Weighted(features) = spec {
+        return Ok(Box::new(features.basis::<T, MAX_FEATURES>()?));
     }
     Ok(Box::new(spec.grid(to_dtype)?))
 }

@@ -2,8 +2,7 @@
 
 import math
 from collections.abc import Iterable
-from functools import reduce
-from typing import Any, Protocol, TypeAlias
+from typing import Any, Protocol
 
 import gymnasium as gym
 import numpy as np
@@ -29,14 +28,6 @@ def hashed_row(numbers: Iterable[int], rows: int) -> int:
         word = ((word ^ (word >> 27)) * 0x94D0_49BB_1331_11EB) & _MASK
         word ^= word >> 31
     return (word >> 32) * rows >> 32
-
-
-class WeightedRows(list[int]):
-    """All rows of the table, in their order, with the value of the feature of each row."""
-
-    def __init__(self, x: list[float]) -> None:
-        super().__init__(range(len(x)))
-        self.x = x
 
 
 class Discretizer(Protocol):
@@ -120,55 +111,6 @@ class TileCoding:
         if self.hashed_rows is not None:
             return hashed_row((tiling, *tile.tolist()), self.hashed_rows)
         return int(np.ravel_multi_index((tiling, *tile), (self.n_active, *self.tiling_shape)))
-
-
-class FourierBasis:
-    """The features cos(π c·s) of states s in [0, 1]^d (Konidaris, Osentoski & Thomas, 2011; section 9.5.2).
-
-    The cosine of a sum is the real part of a product of the powers of e^(iπs_j), which the addition theorem gives.
-    """
-
-    n_active = 1  # the features do not share the learning rate
-    shape: tuple[int, ...]
-
-    def __init__(self, space: gym.spaces.Box, config: Config) -> None:
-        self.dtype: Any = space.dtype
-        self.low, self.high = np.array(config.low), np.array(config.high)
-        count, d = required("order", config.order) + 1, len(self.low)
-        if config.coupled:
-            self.c = list(np.ndindex(*[count] * d))
-        else:
-            self.c = [(0,) * d] + [tuple(k * (i == j) for j in range(d)) for i in range(d) for k in range(1, count)]
-        self.count, self.shape = count, (len(self.c),)
-        lengths = [math.sqrt(sum(k * k for k in c)) or 1.0 for c in self.c]
-        self.divisors = lengths if config.scale_step_sizes else None
-
-    def rows(self, observation: ArrayLike) -> WeightedRows:
-        """Returns every row, with its feature."""
-        numbers = np.asarray(observation, dtype=self.dtype).astype(np.float64)
-        s = (np.clip(numbers, self.low, self.high) - self.low) / (self.high - self.low)
-        z = [powers(math.cos(math.pi * s_j), math.sin(math.pi * s_j), self.count) for s_j in s.tolist()]
-        return WeightedRows([reduce(product, [z[j][k] for j, k in enumerate(c)])[0] for c in self.c])
-
-
-Complex: TypeAlias = tuple[float, float]
-"""The real and the imaginary part of a number. Python's ``complex`` may be multiplied with fewer roundings."""
-
-
-def product(a: Complex, b: Complex) -> Complex:
-    """Returns the product of two complex numbers."""
-    return a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]
-
-
-def powers(re: float, im: float, count: int) -> list[Complex]:
-    """Returns the powers z^0, ..., z^(count - 1) of a complex number, each the product of two with half its exponent.
-
-    For odd exponents, the first factor has the larger half.
-    """
-    z = [(1.0, 0.0), (re, im)]
-    for k in range(2, count):
-        z.append(product(z[k - k // 2], z[k // 2]))
-    return z
 
 
 class Identity:

@@ -10,7 +10,8 @@ import numpy as np
 
 from qtab.config import Config
 from qtab.config.config import replace_checked
-from qtab.reference.parts.discretizers import Bins, Discretizer, FourierBasis, Identity, Rounding, TileCoding
+from qtab.reference.parts.discretizers import Bins, Discretizer, Identity, Rounding, TileCoding
+from qtab.reference.parts.weighted import WEIGHTED, WeightedFeatures
 
 Path = tuple[Any, ...]
 SMALL = 1024
@@ -35,13 +36,14 @@ def discretizer(env: gym.Env, config: Config) -> Discretizer:
     return cells if config.max_rows is None else AssignedRows(cells, config.max_rows)
 
 
-def of_box(box: gym.spaces.Box, config: Config) -> Rounding | Bins | TileCoding | FourierBasis:
+def of_box(box: gym.spaces.Box, config: Config) -> Rounding | Bins | TileCoding | WeightedFeatures:
     """Returns the discretizer of a Box with one axis of floats."""
-    if config.discretizer == "fourier":
-        return FourierBasis(box, config)
-    if config.discretizer == "tiles":
+    chosen = str(config.discretizer)
+    if chosen in WEIGHTED:
+        return WEIGHTED[chosen](box, config)
+    if chosen == "tiles":
         return TileCoding(box, config)
-    return Rounding(box, config) if config.discretizer == "round" else Bins(box, config)
+    return Rounding(box, config) if chosen == "round" else Bins(box, config)
 
 
 class Components:

@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 from qtab._utils.checks import required
 from qtab.config import Config
 from qtab.reference.parts.actions import ActionMasks, actions
-from qtab.reference.parts.discretizers import WeightedRows
 from qtab.reference.parts.observations import discretizer
 from qtab.reference.parts.observer import current_observer
 from qtab.reference.parts.policies import policy, valid_actions
 from qtab.reference.parts.schedules import LearningRate
 from qtab.reference.parts.streams import agent_stream
+from qtab.reference.parts.weighted import WeightedRows
 
 Table = NDArray[np.float64]
 """(rows, actions): a table."""

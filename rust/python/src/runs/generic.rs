@@ -45,9 +45,9 @@ where
             _ => generic(env, tiles.tile_coding::<f32, MAX_TILINGS>(), spec),
         ),
         DiscretizerSpec::Tiles(tiles) => generic(env, tiles.tile_coding::<f32, MAX_TILINGS>(), spec),
-        DiscretizerSpec::Fourier(fourier) => match_capacity!(
-            fourier.n_features(),
-            ROOM => generic(env, fourier.basis::<f32, ROOM>()?, spec)
+        DiscretizerSpec::Weighted(features) => match_capacity!(
+            features.n_features(),
+            ROOM => generic(env, features.basis::<f32, ROOM>()?, spec)
         ),
         grid => generic(env, grid.grid(|bound| bound as f32)?, spec),
     }

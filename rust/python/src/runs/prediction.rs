@@ -58,9 +58,9 @@ where
             N => factory(env, fixed_tiles::<M, N>(tiles)?, spec, prediction),
             _ => factory(env, any_features(&spec.discretizer)?, spec, prediction),
         ),
-        DiscretizerSpec::Fourier(fourier) => match_capacity!(
-            fourier.n_features(),
-            ROOM => factory(env, fourier.basis::<f32, ROOM>()?, spec, prediction)
+        DiscretizerSpec::Weighted(weighted) => match_capacity!(
+            weighted.n_features(),
+            ROOM => factory(env, weighted.basis::<f32, ROOM>()?, spec, prediction)
         ),
         grid => factory(env, any_features(grid)?, spec, prediction),
     })

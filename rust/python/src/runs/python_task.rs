@@ -69,11 +69,11 @@ impl PythonTaskBuilder<'_> {
             let n_rows = Features::<[T]>::len(&tiles);
             return self.run(BoxReader::new(tiles, dimensions), n_rows, stop);
         }
-        if let DiscretizerSpec::Fourier(fourier) = &self.spec.discretizer {
-            let n_rows = fourier.n_features();
+        if let DiscretizerSpec::Weighted(features) = &self.spec.discretizer {
+            let n_rows = features.n_features();
             return match_capacity!(
                 n_rows,
-                ROOM => self.run(BoxReader::new(fourier.basis::<T, ROOM>()?, dimensions), n_rows, stop)
+                ROOM => self.run(BoxReader::new(features.basis::<T, ROOM>()?, dimensions), n_rows, stop)
             );
         }
         let grid = self.spec.discretizer.grid(to_dtype)?;
@@ -97,9 +97,9 @@ impl PythonTaskBuilder<'_> {
             PyResult::Ok(BoxReader::new(BoxFeatures::new(discretizer, &to_dtype)?, dimensions))
         };
         let policies = prediction.policies(spec, reader)?;
-        let run = if let DiscretizerSpec::Fourier(fourier) = &spec.discretizer {
-            match_capacity!(fourier.n_features(), ROOM => {
-                let task = self.observed_task(BoxReader::new(fourier.basis::<T, ROOM>()?, dimensions));
+        let run = if let DiscretizerSpec::Weighted(weighted) = &spec.discretizer {
+            match_capacity!(weighted.n_features(), ROOM => {
+                let task = self.observed_task(BoxReader::new(weighted.basis::<T, ROOM>()?, dimensions));
                 observed_run(task, policies, seed, spec, prediction, stop)?
             })
         } else {

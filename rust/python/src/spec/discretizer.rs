@@ -6,8 +6,8 @@ use qtab_core::numeric::Float;
 use qtab_core::settings::SettingSource;
 
 use super::fields::{Fields, Variant};
-use super::fourier::FourierSpec;
 use super::product::ProductSpec;
+use super::weighted::WeightedSpec;
 use crate::convert::DiscreteReader;
 use crate::error::invalid;
 
@@ -16,7 +16,7 @@ pub(crate) enum DiscretizerSpec {
     Round(RoundSpec),
     Bins(BinsSpec),
     Tiles(TilesSpec),
-    Fourier(FourierSpec),
+    Weighted(WeightedSpec),
     Identity(DiscreteReader),
     Product(ProductSpec),
 }
@@ -60,7 +60,10 @@ pub(crate) const DISCRETIZERS: &[Variant<DiscretizerSpec>] = &[
     ("round", |fields| RoundSpec::parse(fields).map(DiscretizerSpec::Round)),
     ("bins", |fields| BinsSpec::parse(fields).map(DiscretizerSpec::Bins)),
     ("tiles", |fields| TilesSpec::parse(fields).map(DiscretizerSpec::Tiles)),
-    ("fourier", |fields| FourierSpec::parse(fields).map(DiscretizerSpec::Fourier)),
+    ("fourier", |fields| WeightedSpec::fourier(fields).map(DiscretizerSpec::Weighted)),
+    ("polynomial", |fields| WeightedSpec::polynomial(fields).map(DiscretizerSpec::Weighted)),
+    ("radial", |fields| WeightedSpec::radial(fields).map(DiscretizerSpec::Weighted)),
+    ("coarse", |fields| WeightedSpec::coarse(fields).map(DiscretizerSpec::Weighted)),
     ("identity", identity),
     ("product", |fields| ProductSpec::parse(fields).map(DiscretizerSpec::Product)),
 ];
@@ -87,7 +90,7 @@ impl DiscretizerSpec {
                 let tiles_of_axes = tiles.tiles.iter().map(|&count| u64::from(count) + 1);
                 [u64::from(tiles.tilings)].into_iter().chain(tiles_of_axes).collect()
             }
-            Self::Fourier(fourier) => vec![fourier.n_features() as u64],
+            Self::Weighted(features) => vec![features.n_features() as u64],
             Self::Identity(reader) => reader.counts().map(u64::from).collect(),
             Self::Product(product) => vec![product.n_rows() as u64],
         }
@@ -104,7 +107,7 @@ impl DiscretizerSpec {
             Self::Round(round) => Ok((round.dtype, round.scale.len())),
             Self::Bins(bins) => Ok((bins.dtype, bins.edges.len())),
             Self::Tiles(tiles) => Ok((tiles.dtype, tiles.tiles.len())),
-            Self::Fourier(fourier) => Ok((fourier.dtype, fourier.dimensions())),
+            Self::Weighted(features) => Ok((features.dtype, features.dimensions())),
             Self::Product(product) => Ok((FloatType::F64, product.dimensions)),
             Self::Identity(_) => Err(invalid("discretizer", "one for a Box of observations", "'identity'")),
         }
@@ -123,16 +126,16 @@ impl DiscretizerSpec {
     pub(crate) fn n_active(&self) -> usize {
         match self {
             Self::Tiles(tiles) => tiles.tilings as usize,
-            Self::Fourier(fourier) => fourier.n_features(),
+            Self::Weighted(features) => features.n_features(),
             Self::Product(product) => product.tilings as usize,
             _ => 1,
         }
     }
 
     /// The features, if they are weighted: each row has a number for an observation.
-    pub(crate) fn weighted(&self) -> Option<&FourierSpec> {
+    pub(crate) fn weighted(&self) -> Option<&WeightedSpec> {
         match self {
-            Self::Fourier(fourier) => Some(fourier),
+            Self::Weighted(features) => Some(features),
             Self::Round(_) | Self::Bins(_) | Self::Tiles(_) | Self::Identity(_) | Self::Product(_) => None,
         }
     }
@@ -152,7 +155,7 @@ impl DiscretizerSpec {
             Self::Round(round) => Ok(AnyGrid::Rounding(Rounding::new(round.axes(to_dtype)))),
             Self::Bins(bins) => Ok(AnyGrid::Bins(Bins::new(bins.edges.clone()))),
             Self::Tiles(_) => Err(invalid("discretizer", "'round' or 'bins'", "'tiles'")),
-            Self::Fourier(_) => Err(invalid("discretizer", "'round', 'bins' or 'tiles'", "'fourier'")),
+            Self::Weighted(_) => Err(invalid("discretizer", "'round', 'bins' or 'tiles'", "weighted features")),
             Self::Identity(_) => Err(invalid("discretizer", "'round' or 'bins'", "'identity'")),
             Self::Product(_) => Err(invalid("discretizer", "'round' or 'bins'", "'product'")),
         }

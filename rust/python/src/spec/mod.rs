@@ -4,10 +4,10 @@
 mod action_masks;
 mod discretizer;
 mod fields;
-mod fourier;
 mod initial_q;
 mod prediction;
 mod product;
+mod weighted;
 
 use std::sync::Arc;
 
@@ -22,10 +22,10 @@ use qtab_core::settings::SettingSource;
 pub(crate) use action_masks::ActionMasksSpec;
 pub(crate) use discretizer::{DISCRETIZERS, DiscretizerSpec, FloatType, TilesSpec};
 pub(crate) use fields::{Fields, Variant};
-pub(crate) use fourier::match_capacity;
 pub(crate) use initial_q::InitialQSpec;
 pub(crate) use prediction::{BoxFeatures, PredictionSpec, ReadRows};
 pub(crate) use qtab_core::settings::{LearningRateSpec, PolicySpec, ScheduleSpec};
+pub(crate) use weighted::match_capacity;
 
 use crate::error::{allocation, invalid};
 use crate::rng::BitGenerator;

@@ -150,6 +150,8 @@ features_of_basis!(FourierBasis, divisors);
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::PI;
+
     use super::*;
     use crate::features::ActiveFeatures;
 

@@ -182,9 +182,9 @@ impl ExternalEnv {
         BoxFeatures<T>: ReadRows<Vec<T>>,
     {
         let prediction = spec.prediction_by_observation();
-        if let DiscretizerSpec::Fourier(fourier) = &spec.discretizer {
-            return match_capacity!(fourier.n_features(), ROOM => {
-                let features = fourier.basis::<T, ROOM>()?;
+        if let DiscretizerSpec::Weighted(weighted) = &spec.discretizer {
+            return match_capacity!(weighted.n_features(), ROOM => {
+                let features = weighted.basis::<T, ROOM>()?;
                 match prediction {
                     Some(prediction) => self.observed_runs(features, to_dtype, spec, prediction),
                     None => self.runs_with::<T, _>(features, spec),
