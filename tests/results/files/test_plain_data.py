@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import qtab
+from qtab.config.options import WEIGHTED
 from support.repository import ROOT
 
 PAGE = (ROOT / "docs/how_to/export.md").read_text(encoding="utf-8")
@@ -27,6 +28,10 @@ RUNS: dict[str, tuple[str, dict[str, Any]]] = {
     "several integers": ("Blackjack-v1", {"episodes": 2000}),
     "missing actions": ("qtab/MaximizationBias-v0", {}),
     "action masks": ("Taxi-v4", {"action_mask": True, "episodes": 30}),
+    "a Fourier basis": ("MountainCar-v0", {"discretizer": "fourier", "order": 4}),
+    "uncoupled polynomials": ("MountainCar-v0", {"discretizer": "polynomial", "coupled": False}),
+    "radial basis functions": ("MountainCar-v0", {"discretizer": "radial", "normalized": True, "width": (1, 0.7)}),
+    "coarse coding, two tables": ("MountainCar-v0", {"discretizer": "coarse", "algorithm": "double_q_learning"}),
 }
 
 
@@ -41,7 +46,8 @@ def policy(path: Path) -> Any:
     assert len(blocks) == 2
     namespace: dict[str, Any] = {}
     exec(blocks[1].replace('"run.json"', repr(str(path))), namespace)  # noqa: S102 - our own page
-    for block in section(namespace["grid"]["type"]):
+    chosen = namespace["grid"]["type"]
+    for block in section("Weighted features" if chosen in WEIGHTED else chosen):
         exec(block, namespace)  # noqa: S102 - our own page
     return namespace["act"]
 
