@@ -134,7 +134,10 @@ def test_limits_are_given_for_all_components_or_none() -> None:
         ({"discretizer": "edges", "edges": ((float("inf"),), ())}, r"^edges must be finite, got inf"),
         ({"discretizer": "edges", "edges": (0.0, 1.0)}, r"^edges must hold a number for each"),
         ({"discretizer": "edges", "edges": 3}, r"^edges must hold a row of numbers for each component"),
-        ({"discretizer": "edges", "edges": ((), ()), "low": (0, 0)}, r"^low applies to discretizer 'bins', 'tiles', 'fourier',"),
+        (
+            {"discretizer": "edges", "edges": ((), ()), "low": (0, 0)},
+            r"^low applies to discretizer 'bins', 'tiles', 'fourier',",
+        ),
     ],
     ids=str,
 )
