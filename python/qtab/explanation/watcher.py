@@ -17,12 +17,12 @@ from qtab.explanation.policy_update import PolicyUpdate
 from qtab.explanation.records import Choice, Trace, Update
 from qtab.explanation.updates import changed, largest_traces
 from qtab.reference.parts.actions import ActionMasks
-from qtab.reference.parts.discretizers import WeightedRows
 from qtab.reference.parts.observer import Observer
 from qtab.reference.parts.policies import Policy
 from qtab.reference.parts.schedules import LearningRate, Schedule
 from qtab.reference.parts.streams import AgentStream
 from qtab.reference.parts.task import Rows, value, values
+from qtab.reference.parts.weighted import WeightedRows
 
 Table = NDArray[np.float64]
 Cell = tuple[int, ...] | None

@@ -5,8 +5,8 @@ import numpy as np
 
 from qtab._utils.checks import required
 from qtab.config import Config
-from qtab.reference.parts.discretizers import WeightedRows
 from qtab.reference.parts.task import Result, Rows, Step, Task, features
+from qtab.reference.parts.weighted import WeightedRows
 from qtab.reference.policy_gradient import Critic, ascend, log_gradient, step_sizes
 
 

@@ -5,8 +5,8 @@ import numpy as np
 
 from qtab.config import Config
 from qtab.config.schedules import algorithm_options
-from qtab.reference.parts.discretizers import WeightedRows
 from qtab.reference.parts.task import Result, Rows, Table, Task, features, value
+from qtab.reference.parts.weighted import WeightedRows
 from qtab.reference.sarsa_lambda import apply_td_error, decay
 
 

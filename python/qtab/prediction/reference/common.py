@@ -16,9 +16,9 @@ from qtab.prediction.observation_policies import ObservationPolicies, TablePolic
 from qtab.prediction.reference.off_policy import dot
 from qtab.prediction.reference.policies import policy_of, probability, sampled
 from qtab.prediction.settings import OFF_POLICY
-from qtab.reference.parts.discretizers import WeightedRows
 from qtab.reference.parts.schedules import LearningRate
 from qtab.reference.parts.task import Rows, Task
+from qtab.reference.parts.weighted import WeightedRows
 
 if TYPE_CHECKING:
     from qtab.prediction.estimates import ValueEstimates
