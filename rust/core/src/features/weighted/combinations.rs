@@ -90,7 +90,7 @@ mod tests {
         // The numbers of component j are s + 10ʲ (1, 2, …).
         let write = |axis: usize, s: f64, numbers: &mut [f64]| {
             for (number, index) in numbers.iter_mut().zip(1_u32..) {
-                *number = s + 10_f64.powi(axis as i32) * f64::from(index);
+                *number = s + 10_f64.powf(axis as f64) * f64::from(index);
             }
         };
         let observation = vec![1.0; counts.len()];

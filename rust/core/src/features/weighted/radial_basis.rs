@@ -69,7 +69,9 @@ impl<T: Float, const M: usize> RadialBasis<T, M> {
                 sum += *number;
             }
             if self.normalized {
-                numbers.iter_mut().for_each(|number| *number /= sum);
+                for number in numbers {
+                    *number /= sum;
+                }
             }
         };
         self.grid.write::<T, M>(observation, features, gaussians, |product, gaussian| product * gaussian)

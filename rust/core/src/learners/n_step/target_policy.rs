@@ -51,6 +51,7 @@ impl TargetPolicy {
     /// Gₜ = Rₜ₊₁ + γ [Σₐ π(a|Sₜ₊₁) Q(Sₜ₊₁, a) + w (Gₜ₊₁ - Q(Sₜ₊₁, Aₜ₊₁))]. `weight` is w, given π(Aₜ₊₁|Sₜ₊₁) and the
     /// memo of the visit.
     #[inline]
+    #[expect(clippy::needless_borrows_for_generic_args, reason = "features of hundreds of bytes would be copied")]
     pub(in crate::learners) fn backed_up<R: ActiveRows, M, F: ActiveFeatures>(
         self,
         agent: &mut Agent,

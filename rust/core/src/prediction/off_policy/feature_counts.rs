@@ -31,7 +31,9 @@ impl FeatureCounts {
         }
         let (rows, next_rows) = (features.of(state), next.map_or(&[][..], |next| features.of(next)));
         for (index, rows) in [rows, next_rows].into_iter().enumerate() {
-            rows.iter().for_each(|&row| self.0[row as usize][index] += 1.0);
+            for &row in rows {
+                self.0[row as usize][index] += 1.0;
+            }
         }
         for &row in rows.iter().chain(next_rows) {
             let [x, next] = std::mem::take(&mut self.0[row as usize]);

@@ -15,10 +15,12 @@ use super::method::{METHODS, MethodSpec};
 use super::observation_policy::{ObservationPolicies, ObservationPolicySpec, POLICIES, check_probabilities};
 use crate::convert::in_c_order;
 use crate::error::{allocation, invalid};
+use crate::spec::weighted::WeightedSpec;
 use crate::spec::{DiscretizerSpec, Fields, RunSpec};
 
 /// The policy that acts, and the policy that is evaluated.
 #[derive(Clone, Debug)]
+#[expect(clippy::large_enum_variant, reason = "there is one in a run")]
 enum PoliciesSpec {
     /// Probabilities for each state.
     OfStates(FixedPolicy),
@@ -195,7 +197,7 @@ impl PredictionSpec {
     fn divisors(&self, spec: &RunSpec) -> PyResult<Option<Vec<f64>>> {
         match &self.features {
             Some(features) => Ok(features.is_weighted().then(Vec::new)),
-            None => spec.discretizer.weighted().map(|features| features.step_size_divisors()).transpose(),
+            None => spec.discretizer.weighted().map(WeightedSpec::step_size_divisors).transpose(),
         }
     }
 
