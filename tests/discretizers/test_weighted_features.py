@@ -189,6 +189,13 @@ def test_the_config_of_a_run_has_a_number_for_each_component() -> None:
     config = qtab.train(CAR, episodes=1, discretizer="radial", progress=False).config
     assert (config.centers, config.width, config.normalized, config.radius) == ((5, 5), (1.0, 1.0), False, None)
     assert (config.learning_rate, config.initial_q) == (0.001, 0.0)
+    for normalized in (True, np.True_):
+        options: Any = {"discretizer": "radial", "algorithm": "actor_critic", "normalized": normalized, "preset": None}
+        config = resolve(CAR, options).config
+        assert (config.learning_rate, config.value_learning_rate) == (0.1, 0.1)
+        assert resolve(CAR, {**options, "learning_rate": 0.02}).config.learning_rate == 0.02
+    assert resolve(CAR, {**options, "normalized": False}).config.value_learning_rate == 0.005
+    assert qtab.Config(CAR, discretizer="radial", normalized=True).learning_rate == 0.1
     config = qtab.train(CAR, episodes=1, discretizer="coarse", progress=False).config
     assert (config.centers, config.radius, config.width) == ((5, 5), (1.5, 1.5), None)
 
@@ -221,7 +228,7 @@ def test_the_command_line_reads_the_options() -> None:
         ({"discretizer": "radial", "centers": 1}, r"^centers must be an integer from 2 to 1024, got 1"),
         (
             {"discretizer": "radial", "centers": (40, 30)},
-            r"^centers must give at most 1,024 features, got \(40, 30\), which gives 1,200",
+            r"^centers must give at most 1,024 features, got \(40, 30\), which gives 1,200; centers=30 gives 900$",
         ),
         ({"discretizer": "coarse", "centers": (3, 3, 3)}, r"^centers must hold 2 numbers .*, got \(3, 3, 3\)"),
         ({"discretizer": "radial", "width": 0}, r"^width must lie in \[0.1, 1000\], got 0"),

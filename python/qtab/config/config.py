@@ -86,7 +86,8 @@ class Config(WithOrigin):
     learning_rate: float = 0.2
     """α: the fraction of the error that an update corrects, in [0, 1]. With tile coding it is divided among the
     tilings, and may be up to 2. For preferences any step size that is not negative. Weighted features (fourier,
-    polynomial, radial, coarse), among which it is not divided, have a default of 0.001, whatever the preset."""
+    polynomial, radial, coarse), among which it is not divided, have a default of 0.001, whatever the preset; normalized
+    ones, which sum to 1, of 0.1."""
     discount: float = 0.9
     """γ: the discount factor, in [0, 1]. It is 1 if the average reward is learned, and 0 for the gradient bandit."""
     learning_rate_schedule: LearningRateSchedule = "constant"
@@ -129,7 +130,7 @@ class Config(WithOrigin):
     """Whether the gradient bandit algorithm compares rewards with their average in the state, or with 0."""
     value_learning_rate: float | None = None
     """α of the state values that are learned besides a policy: the baseline of REINFORCE, the critic of actor-critic.
-    The default is 0.1, or 0.005 with weighted features."""
+    The default is 0.1, or 0.005 with weighted features that are not normalized."""
     initial_q: float | tuple[float, float] | NDArray[np.float64] = (-1.0, 1.0)
     """The initial Q table, or preferences: drawn uniformly from a range (low, high), one number everywhere, or an array
     to continue from. In an array, -inf marks an action that a state does not have; it is never chosen. For weighted

@@ -5,6 +5,7 @@ from functools import wraps
 from typing import Any
 
 import gymnasium as gym
+import numpy as np
 
 from qtab.config.options import FIXED, OPTIONS, PREFERENCES, fixed_settings, freed_settings, is_set
 from qtab.config.origin import Origin
@@ -23,6 +24,8 @@ _OF_ALGORITHM: Mapping[str, Mapping[str, Any]] = {
 """The settings of each algorithm that differ from those of :class:`qtab.Config`."""
 _OF_WEIGHTED: Mapping[str, Any] = {"learning_rate": 0.001, "initial_q": 0.0}
 """The same for weighted features: a learning rate is not divided among them, and initial weights are no values."""
+_OF_NORMALIZED: Mapping[str, Any] = {"learning_rate": 0.1}
+"""The same for features that sum to 1: the learning rate is divided among them, as it is among tilings."""
 
 
 def algorithm_defaults(preset: Mapping[str, Any], asked: Mapping[str, Any]) -> dict[str, Any]:
@@ -45,7 +48,10 @@ def weighted_defaults(asked: Mapping[str, Any]) -> dict[str, Any]:
     """Returns the settings that come with weighted features, those of the requested discretizer; else none."""
     if not uses_weighted(asked.get("discretizer")):
         return {}
-    return {name: value for name, value in _OF_WEIGHTED.items() if not is_set(asked.get(name))}
+    normalized = asked.get("normalized")
+    sums_to_one = isinstance(normalized, bool | np.bool_) and normalized
+    own = {**_OF_WEIGHTED, **_OF_NORMALIZED} if sums_to_one else _OF_WEIGHTED
+    return {name: value for name, value in own.items() if not is_set(asked.get(name))}
 
 
 _SCHEDULES: Mapping[str, tuple[str, tuple[str, ...]]] = {

@@ -116,6 +116,8 @@ LEARNS_WEIGHTED = (
 """The algorithms that learn with weighted features."""
 DEFAULTS_OF_WEIGHTED: Mapping[str, Any] = {"traces": "accumulating", "value_learning_rate": 0.005}
 """The defaults of options that differ with weighted features."""
+DEFAULTS_OF_NORMALIZED: Mapping[str, Any] = {"traces": "accumulating"}
+"""The same for features that sum to 1."""
 NO_MASKED_TILES = (*PREFERENCES, *_WITH_TARGET_POLICY)
 """The algorithms that do not work with action masks and tile coding together.
 

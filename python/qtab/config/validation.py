@@ -9,6 +9,7 @@ from qtab._utils import checks
 from qtab._utils.shown import did_you_mean, shown
 from qtab.config.choices import CHOICES, FUNCTION, MAPPING
 from qtab.config.options import (
+    DEFAULTS_OF_NORMALIZED,
     DEFAULTS_OF_WEIGHTED,
     FIXED,
     LEARNS_WEIGHTED,
@@ -142,8 +143,10 @@ def defaults(fields: Mapping[str, Any]) -> dict[str, Any]:
         if option.default is None or is_set(complete[name]):
             continue
         if _effective(option.choice, complete) in option.values:
-            of_weighted = DEFAULTS_OF_WEIGHTED if uses_weighted(complete["discretizer"]) else {}
-            complete[name] = filled[name] = of_weighted.get(name, option.default)
+            special: Mapping[str, Any] = {}
+            if uses_weighted(complete["discretizer"]):
+                special = DEFAULTS_OF_NORMALIZED if complete["normalized"] else DEFAULTS_OF_WEIGHTED
+            complete[name] = filled[name] = special.get(name, option.default)
     return filled
 
 

@@ -42,8 +42,11 @@ class CenteredFeatures(WeightedFeatures):
         """
         if self.n_rows > MAX_FEATURES:
             given = f"{self.n_rows:,}" if self.n_rows < 10**9 else "more than a billion"
+            dimensions = len(self.centers)
+            most = max(count for count in range(1, min(self.centers) + 1) if count**dimensions <= MAX_FEATURES)
+            instead = f"; centers={most} gives {most**dimensions:,}" if most > 1 else ""
             raise ValueError(
-                f"centers must give at most {MAX_FEATURES:,} features, got {self.centers}, which gives {given}"
+                f"centers must give at most {MAX_FEATURES:,} features, got {self.centers}, which gives {given}{instead}"
             )
 
     def settings(self) -> dict[str, Any]:
