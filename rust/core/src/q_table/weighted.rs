@@ -7,8 +7,10 @@ use crate::numeric::{sum_products, sum_row_products};
 use crate::schedules::StepSize;
 
 impl<const N: usize> QTable<N> {
-    /// The action values Σᵢ wᵢ xᵢ. These functions are inlined into code for wide vector registers.
-    #[inline(always)]
+    /// The action values Σᵢ wᵢ xᵢ. These functions are inlined into code for wide vector registers; WebAssembly has none, and a
+    /// module that is downloaded should be small.
+    #[cfg_attr(target_family = "wasm", inline(never))]
+    #[cfg_attr(not(target_family = "wasm"), inline(always))]
     pub(super) fn weighted_action_values(&mut self, x: &[f64]) -> &[f64] {
         match self.num_actions() {
             2 => self.sum_products::<2>(x),
@@ -32,7 +34,8 @@ impl<const N: usize> QTable<N> {
     }
 
     /// The value Σᵢ wᵢ xᵢ of one action.
-    #[inline(always)]
+    #[cfg_attr(target_family = "wasm", inline(never))]
+    #[cfg_attr(not(target_family = "wasm"), inline(always))]
     pub(super) fn weighted_value(&self, x: &[f64], action: usize) -> f64 {
         sum_column(&self.values, self.num_actions(), action, x)
     }
@@ -69,7 +72,8 @@ impl<const N: usize> QTable<N> {
     }
 
     /// wᵢ ← wᵢ + (αᵢ scale) xᵢ.
-    #[inline(always)]
+    #[cfg_attr(target_family = "wasm", inline(never))]
+    #[cfg_attr(not(target_family = "wasm"), inline(always))]
     pub(crate) fn add_features(&mut self, x: &[f64], action: usize, scale: f64, step_size: &impl StepSize) {
         let num_actions = self.num_actions();
         if let Some(steps) = step_size.of_rows() {

@@ -43,7 +43,9 @@ impl<R: ActiveRows> AnyLearner<R> {
             return Err("algorithm must be one without a model for several active rows".into());
         }
         let new_model = || Model::new(n_rows, num_actions, stop);
-        let new_traces = |cutoff: f64| Traces::new(n_rows * num_actions, cutoff, stop);
+        // Weighted features need no places for sparse traces.
+        let places = if R::WEIGHTED { 0 } else { n_rows * num_actions };
+        let new_traces = |cutoff: f64| Traces::new(places, cutoff, stop);
         Ok(match algorithm {
             AnyAlgorithm::QLearning => Self::QLearning(TdLearner { agent, rule: QLearning }),
             AnyAlgorithm::Sarsa => Self::Sarsa(TdLearner { agent, rule: Sarsa }),

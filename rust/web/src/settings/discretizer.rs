@@ -63,7 +63,10 @@ impl Discretizer {
     /// The numbers that divide the learning rate of each row of weighted features, which may be none; `None` for other
     /// features.
     pub(crate) fn step_size_divisors(&self) -> Option<Vec<f64>> {
-        if let Self::Fourier { features, .. } = self { Some(features.divisors()) } else { None }
+        match self {
+            Self::Identity | Self::Grid(_) | Self::Tiles { .. } => None,
+            Self::Fourier { features, .. } => Some(features.divisors()),
+        }
     }
 
     /// The limits of each component; `None` if there are cells, or states that are numbers.

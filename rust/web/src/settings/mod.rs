@@ -59,9 +59,17 @@ impl Settings {
             fields.word("model", &[("deterministic", ())])?;
         }
         let (algorithm, learning_rate) = AnyAlgorithm::parse(&fields, episodes, max_episode_steps, largest_rate)?;
-        if weighted && algorithm.feature_kinds() != FeatureKinds::All {
-            let expected = "one that learns with weighted features for discretizer 'fourier'";
-            return Err(fields.invalid("algorithm", expected));
+        if weighted {
+            match algorithm.feature_kinds() {
+                FeatureKinds::All => {}
+                FeatureKinds::Binary => {
+                    return Err(fields.invalid("traces", "'accumulating' for discretizer 'fourier'"));
+                }
+                FeatureKinds::SingleRows => {
+                    let expected = "one that learns with weighted features for discretizer 'fourier'";
+                    return Err(fields.invalid("algorithm", expected));
+                }
+            }
         }
         if !has_cells && algorithm.needs_single_rows() {
             return Err(fields.invalid("algorithm", "an algorithm without a model for discretizer 'tiles'"));

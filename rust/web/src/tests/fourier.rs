@@ -4,26 +4,32 @@ use serde_json::Value;
 
 use qtab_core::envs::classic_control::{CartPole, MountainCar};
 use qtab_core::features::{ActiveFeatures, FeatureVector, Features, FourierBasis};
-use qtab_core::learners::{Agent, DoubleQLearning, NStepSarsa, Sarsa, TdLearner, UpdateRule};
+use qtab_core::learners::{
+    Agent, DoubleQLearning, NStepSarsa, Sarsa, TdLearner, Traces, TrueOnlineSarsaLambda, UpdateRule,
+};
 use qtab_core::policies::{AnyPolicy, TieBreaking};
 use qtab_core::q_table::TerminalUpdate;
 use qtab_core::random::{AgentRng, Pcg64, SeedSequence};
 use qtab_core::schedules::{LearningRate, Schedule};
 use qtab_core::tasks::NativeTask;
-use qtab_core::{Budget, Env, Learner, QTable, Trainer};
+use qtab_core::{Budget, Env, Learner, QTable, StopFlag, Trainer};
 
 use super::updates::check_equation;
 use super::{MOUNTAIN_CAR, call, finish, inspect, start, start_inspecting, table};
 use crate::Playground;
 
 /// The algorithms that learn with weighted features, with their options as JSON members.
-const ALGORITHMS: [&str; 5] = [
+const ALGORITHMS: [&str; 8] = [
     r#""q_learning""#,
     r#""sarsa""#,
     r#""expected_sarsa""#,
     r#""double_q_learning""#,
     r#""n_step_sarsa", "n_steps": 3"#,
+    r#""sarsa_lambda", "trace_decay": 0.8, "traces": "accumulating", "trace_cutoff": 0"#,
+    TRUE_ONLINE,
+    r#""watkins_q_lambda", "trace_decay": 0.8, "traces": "accumulating", "trace_cutoff": 0.001"#,
 ];
+const TRUE_ONLINE: &str = r#""true_online_sarsa_lambda", "trace_decay": 0.8, "trace_cutoff": 0"#;
 const CART_POLE: &str = r#"{"kind": "cart_pole"}"#;
 
 /// Settings with an algorithm and a discretizer, as JSON members.
@@ -95,6 +101,12 @@ fn the_weights_are_those_of_the_core() {
     };
     let expected = learned(MountainCar::default(), car(5, true, true), |_| Sarsa, 200);
     assert_eq!(found(MOUNTAIN_CAR, &settings(r#""sarsa""#, SCALED)), expected);
+
+    let true_online = |_: &Agent| {
+        TrueOnlineSarsaLambda::new(Traces::new(0, 0.0, &StopFlag::new()).expect("traces of 0 take no memory"), 0.8)
+    };
+    let expected = learned(MountainCar::default(), car(5, true, true), true_online, 200);
+    assert_eq!(found(MOUNTAIN_CAR, &settings(TRUE_ONLINE, SCALED)), expected);
 
     let double = |agent: &Agent| DoubleQLearning::new(agent.learning_rate.clone(), agent.table.clone());
     let expected = learned(MountainCar::default(), car(9, false, false), double, 200);
@@ -203,6 +215,18 @@ fn what_has_no_meaning_is_refused_in_words() {
             r#""algorithm": "sarsa""#,
             r#""algorithm": "dyna_q", "planning_steps": 1"#,
             "algorithm must be one that learns with weighted features for discretizer 'fourier', got 'dyna_q'",
+        ),
+        (
+            MOUNTAIN_CAR,
+            r#""algorithm": "sarsa""#,
+            r#""algorithm": "sarsa_lambda", "trace_decay": 0.9, "traces": "replacing", "trace_cutoff": 0"#,
+            "traces must be 'accumulating' for discretizer 'fourier', got 'replacing'",
+        ),
+        (
+            MOUNTAIN_CAR,
+            r#""discretizer": "fourier""#,
+            r#""discretizer": "polynomial""#,
+            "discretizer must be 'round' or 'bins' or 'tiles' or 'fourier', got 'polynomial'",
         ),
         (
             MOUNTAIN_CAR,

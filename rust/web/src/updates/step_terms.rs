@@ -175,7 +175,7 @@ impl<R: ActiveRows> AnyLearner<R> {
     fn traces_of_visit(&self, state: &R, action: usize) -> (Vec<f64>, Option<f64>) {
         let visited = |agent: &Agent, traces: &Traces, kind: TraceKind| {
             let visited = |(row, x): (u32, f64)| match kind {
-                TraceKind::Accumulating => traces.get(agent.table.weight_index(row, action)) + x,
+                TraceKind::Accumulating => traces.get_of::<R>(agent.table.weight_index(row, action)) + x,
                 TraceKind::Replacing | TraceKind::Clearing => x,
             };
             (numbered(state).map(visited).collect(), None)
@@ -191,7 +191,7 @@ impl<R: ActiveRows> AnyLearner<R> {
     /// The dutch traces of a pair after the step; `None` for other traces.
     fn dutch_traces(&self, rows: &[u32], action: usize) -> Option<Vec<f64>> {
         let Self::TrueOnlineSarsaLambda(learner) = self else { return None };
-        let trace = |&row: &u32| learner.rule.traces.get(learner.agent.table.weight_index(row, action));
+        let trace = |&row: &u32| learner.rule.traces.get_of::<R>(learner.agent.table.weight_index(row, action));
         Some(rows.iter().map(trace).collect())
     }
 }

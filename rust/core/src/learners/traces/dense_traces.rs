@@ -31,6 +31,12 @@ impl DenseTraces {
         reserve(&mut self.z, missing)
     }
 
+    /// The trace of a weight.
+    #[inline]
+    pub(super) fn get(&self, weight_index: usize) -> f64 {
+        self.z.get(weight_index).copied().unwrap_or(0.0)
+    }
+
     /// The number of traces.
     #[inline]
     pub(super) fn pass_len(&self) -> usize {
@@ -61,7 +67,8 @@ impl DenseTraces {
 
     /// Adds to each weight its step size times `error` times its trace if `APPLIES`, then multiplies the trace by `factor`
     /// if `DECAYS`.
-    #[inline(always)]
+    #[cfg_attr(target_family = "wasm", inline(never))]
+    #[cfg_attr(not(target_family = "wasm"), inline(always))]
     fn pass<const APPLIES: bool, const DECAYS: bool>(
         &mut self,
         table: &mut QTable,
@@ -245,6 +252,7 @@ mod tests {
             assert!(table.values()[1].is_sign_negative());
             // 0.5 · 0.5 falls to the cutoff.
             assert_eq!(traces.z, [0.5, 0.0, 0.0, 0.0]);
+            assert_eq!(traces.get(0), 0.5);
             traces.apply_td_error(&mut table, rate, f64::INFINITY);
             assert_eq!(table.values()[1..], values[1..]);
             traces.clear(&mut table);

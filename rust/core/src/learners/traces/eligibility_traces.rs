@@ -93,6 +93,12 @@ impl Traces {
         EligibilityTraces::sample_next(self, agent, next, rng)
     }
 
+    /// The trace of a weight for features `R`: [`get`](Self::get) for binary features.
+    #[inline]
+    pub fn get_of<R: ActiveFeatures>(&self, weight_index: usize) -> f64 {
+        if R::WEIGHTED { self.dense.get(weight_index) } else { self.get(weight_index) }
+    }
+
     /// [`pass_len`](Self::pass_len) of the traces for features `R`.
     #[inline(always)]
     pub(super) fn pass_len_of<R: ActiveFeatures>(&self) -> usize {
