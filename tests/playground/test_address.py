@@ -85,6 +85,11 @@ def test_an_address_without_an_environment_has_the_first_one(playground: Playgro
             "",
         ),
         ("#env=MountainCar-v0&discretizer=fourier&order=16", {"order": 15}, "order"),
+        (
+            "#env=MountainCar-v0&discretizer=fourier&algorithm=sarsa_lambda&traces=replacing",
+            {"algorithm": "sarsa_lambda", "traces": "accumulating", "trace_decay": 0.9},
+            "traces",
+        ),
         ("#env=Acrobot-v1&discretizer=fourier&order=2&algorithm=sarsa&max_episode_steps=50", {"order": 1}, "order"),
         ("#env=MountainCar-v0&discretizer=fourier&coupled=1", {"coupled": True}, "coupled"),
         (

@@ -102,6 +102,10 @@ def test_a_fourier_basis_has_its_own_learning_rate_and_says_what_it_cannot_be_us
     refused = playground.page.locator("#set-algorithm option:disabled").all_inner_texts()
     assert len(refused) == len({*OFFERED["algorithm"]} - {*LEARNS_WEIGHTED})
     assert all(text.endswith(" (not with Fourier basis)") for text in refused), refused
+    playground.page.locator("#set-algorithm").select_option("sarsa_lambda")
+    assert playground.settled().state()["settings"]["traces"] == "accumulating"
+    refused = playground.page.locator("#set-traces option:disabled").all_text_contents()
+    assert refused == ["Replacing (not with Fourier basis)", "Clearing (not with Fourier basis)"]
     discretizers.select_option("bins")
     after = playground.settled().state()["settings"]
     assert [after[name] for name in ("learning_rate", "initial_q")] == [0.3, before["initial_q"]]

@@ -12,7 +12,7 @@ pytestmark = pytest.mark.browser
 
 GRID = "env=CliffWalking-v1&episodes=40&max_episode_steps=40&epsilon=0.4&epsilon_schedule=constant&discount=0.95"
 TILES = "env=MountainCar-v0&discretizer=tiles&tilings=8&tiles=4&episodes=20&discount=0.95&terminal_update=target"
-FOURIER = "env=MountainCar-v0&discretizer=fourier&order=3&episodes=20&discount=0.95"
+FOURIER = "env=MountainCar-v0&discretizer=fourier&order=3&episodes=20&discount=0.95"  # with accumulating traces
 CHANGES = (
     "learning_rate=0.3",
     "learning_rate=0.3&on_truncation=terminate",

@@ -9,7 +9,6 @@ import gymnasium as gym
 import numpy as np
 
 from qtab._utils.versions import versions
-from qtab.config.implied import weighted_defaults
 from qtab.config.options import n_tables
 from qtab.config.preset_settings import CLIFF_WALKING
 from qtab.config.presets import presets
@@ -17,7 +16,7 @@ from qtab.envs.grid_worlds import ACTION_NAMES
 from qtab.envs.metadata.quantities import Quantities, quantities_of
 from qtab.explanation.equations import bootstrap_symbol
 from qtab.playground.environments import ENVIRONMENTS, Entry
-from qtab.playground.settings import LEFT_OUT, MAX_FEATURES, OFFERED, rules, settings
+from qtab.playground.settings import LEFT_OUT, MAX_FEATURES, OFFERED, implied, rules, settings
 
 GRID_TIME_LIMIT = 1000
 """The time limit of grid worlds, in steps."""
@@ -31,10 +30,7 @@ def definitions() -> dict[str, Any]:
         "environments": {key: _environment(key, entry) for key, entry in ENVIRONMENTS.items()},
         "settings": _plain(settings()),
         "rules": rules(),
-        # The settings that come with a discretizer, and are set aside with it.
-        "implied": {
-            name: found for name in OFFERED["discretizer"] if (found := weighted_defaults({"discretizer": name}))
-        },
+        "implied": implied(),
         "max_features": MAX_FEATURES,
         "bootstraps": {
             name: [bootstrap_symbol(name, table) for table in range(n_tables(name))] for name in OFFERED["algorithm"]

@@ -7,7 +7,8 @@ from typing import Any
 from qtab.config.choices import ALGORITHM_NAMES
 from qtab.config.config import DEFAULTS
 from qtab.config.help import default, explanations, groups
-from qtab.config.options import OPTIONS
+from qtab.config.implied import weighted_defaults
+from qtab.config.options import DEFAULTS_OF_WEIGHTED, OPTIONS
 from qtab.config.validation import mismatch
 
 OFFERED: Mapping[str, tuple[str, ...]] = {
@@ -100,6 +101,9 @@ _SENTENCES = {
     "learning_rate_schedule": "The schedule of α: constant, linear or exponential over the episodes, or α / n at the "
     "n-th visit of a state and action (by visits).",
     "min_learning_rate": "The lowest α, which is at most α itself. A linear schedule reaches it at the end of the run.",
+    "traces": "The effect of a visit on the trace of a state and action: accumulating adds 1 to it, replacing sets it "
+    "to 1, clearing also sets the traces of the state's other actions to 0. With a Fourier basis accumulating adds the "
+    "cosines, and is the only choice.",
     "on_truncation": "The update at the time limit: bootstrap from the next state (correct), or terminate, as if the "
     "next state were terminal (a common mistake).",
     "epsilon_schedule": "The schedule of ε over the episodes.",
@@ -110,6 +114,9 @@ _SENTENCES = {
     f"components if they are coupled, of which this page allows {MAX_FEATURES}.",
     "coupled": "Cosines of all components at once. Without them the value is a sum of functions of single components, "
     "as if these did not interact, with only d n + 1 features.",
+    "low": "The lower limits of bins, tilings or a Fourier basis, one for each component of the observation. Values "
+    "outside the limits fall into the outermost bin or tile; with a Fourier basis they are clipped to the limits.",
+    "high": "The upper limits of bins, tilings or a Fourier basis, one for each component of the observation.",
     "scale_step_sizes": "Divides the α of a feature by the length of its frequency vector, so that fine waves are "
     "learned slowly.",
 }
@@ -159,14 +166,31 @@ def settings() -> dict[str, dict[str, Any]]:
     return {name: setting(name, group) for group, names in grouped.items() for name in names}
 
 
+def implied() -> dict[str, dict[str, Any]]:
+    """Returns the settings that come with each discretizer of weighted features, and are set aside with it."""
+    options = {name: value for name, value in DEFAULTS_OF_WEIGHTED.items() if is_offered(name)}
+    return {
+        name: {**found, **options}
+        for name in OFFERED["discretizer"]
+        if (found := weighted_defaults({"discretizer": name}))
+    }
+
+
+def _with_option(name: str) -> dict[str, Any]:
+    """Returns a choice with which an option applies."""
+    return {OPTIONS[name].choice: OPTIONS[name].values[0]} if name in OPTIONS else {}
+
+
 def rules() -> list[dict[str, Any]]:
     """Returns the pairs of choices that exclude each other."""
     return [
         {"setting": name, "value": value, "unless": {other: chosen}}
-        for name in ("terminal_update", "learning_rate_schedule", "algorithm")
+        for name in ("terminal_update", "learning_rate_schedule", "traces", "algorithm")
         for value in OFFERED[name]
         for other in ("algorithm", "discretizer")
         if other != name
         for chosen in OFFERED[other]
-        if mismatch(name, value, {**DEFAULTS, other: chosen})
+        # An option is left out where it does not apply.
+        if not (name in OPTIONS and other == OPTIONS[name].choice)
+        if mismatch(name, value, {**DEFAULTS, **_with_option(name), other: chosen})
     ]

@@ -23,7 +23,7 @@ from qtab.playground.settings import MAX_FEATURES, OFFERED, is_offered
 from qtab.reference import LEARNERS
 from qtab.reference.parts import discretizers
 from qtab.training.setup.run_env import make_run_env
-from support.playground import musl
+from support.playground import PATIENCE, musl
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
@@ -65,6 +65,7 @@ def engine(chromium: Any, tmp_path_factory: pytest.TempPathFactory) -> Iterator[
     scripts = packed(script, bundle(SOURCES, "worker.js"))
     file.write_text(f"<!doctype html><body>{scripts}</body>", encoding="utf-8")
     page = chromium.new_page()
+    page.set_default_timeout(PATIENCE)
     page.goto(file.as_uri())
     page.wait_for_function("globalThis.engineModule")
     yield page
@@ -200,7 +201,13 @@ def test_painted_grid_worlds_equal_python(engine):
 
 
 FOURIER: dict[str, Any] = {"discretizer": "fourier", "learning_rate": 0.004, "initial_q": 0.0, "discount": 1.0}
-FOURIER |= {"epsilon": 0.1, "epsilon_schedule": "constant", "terminal_update": "target", "ties": "first"}
+FOURIER |= {
+    "epsilon": 0.1,
+    "epsilon_schedule": "constant",
+    "terminal_update": "target",
+    "ties": "first",
+    "traces": "accumulating",
+}
 SMALL_POLE = {"low": (-2.4, -2.5, -0.21, -3.5), "high": (2.4, 2.5, 0.21, 3.5), "order": 2}
 
 

@@ -9,7 +9,7 @@ const FIRST = ["episodes", "learning_rate", "epsilon"];
 
 /**
  * All settings that apply in an environment, based on the given ones: choices that others exclude are reset to their
- * defaults, and numbers are limited to their ranges.
+ * defaults, or to the first one that is possible, and numbers are limited to their ranges.
  */
 export function fit(definitions, environment, given) {
   const known = definitions.environments[environment];
@@ -25,9 +25,15 @@ export function fit(definitions, environment, given) {
 
 function withoutConflicts({ rules, settings: known }, given) {
   const settings = { ...given };
-  for (const { setting, value, unless } of rules) {
-    const [[other, chosen]] = Object.entries(unless);
-    if (settings[setting] === value && settings[other] === chosen) settings[setting] = known[setting].default;
+  const isExcluded = (name, choice) =>
+    rules.some(({ setting, value, unless }) => {
+      const [[other, chosen]] = Object.entries(unless);
+      return setting === name && value === choice && settings[other] === chosen;
+    });
+  for (const name of new Set(rules.map(({ setting }) => setting))) {
+    if (!isExcluded(name, settings[name])) continue;
+    const choices = [known[name].default, ...known[name].choices.map(({ value }) => value)];
+    settings[name] = choices.find((choice) => !isExcluded(name, choice));
   }
   return settings;
 }
@@ -88,7 +94,7 @@ export class Store {
   }
 
   /**
-   * The settings that come with another discretizer: the step size of Fourier features means another thing than that of
+   * The settings that come with another discretizer: a step size of Fourier features means something else than one of
    * cells. The settings that they replace come back with cells.
    */
   impliedBy(discretizer) {
@@ -142,9 +148,9 @@ export class Store {
   }
 }
 
-/** The members of an object that another one has. */
+/** The members of an object that another one has, too. */
 function pick(object, other) {
-  return Object.fromEntries(Object.keys(other).map((name) => [name, object[name]]));
+  return Object.fromEntries(Object.entries(object).filter(([name]) => name in other));
 }
 
 /** A copy of a grid world that can be changed. */

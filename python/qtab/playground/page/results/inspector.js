@@ -53,7 +53,11 @@ const HINT =
   "action is worth, how often it was taken, and the last updates with their numbers.";
 const WEIGHTED =
   "Each update of a state in this cell moves all weights of the action at once: weight i by αᵢ xᵢ times the error, and so the " +
-  "value by Σ αᵢ xᵢ² times the error. Between them, updates of other states move the value as well.";
+  "value by Σ αᵢ xᵢ² times the error.";
+const WEIGHTED_TRACES =
+  "Each update moves all weights at once, in proportion to their traces zᵢ. Here z is a mean of those of the action: Σ αᵢ zᵢ xᵢ " +
+  "divided by Σ αᵢ xᵢ².";
+const BETWEEN = " Between these updates, those of other states move the value as well.";
 const UNVISITED = "No update yet: the agent has not left this state by a step.";
 const ENDS = {
   terminal: "a terminal state follows",
@@ -75,7 +79,10 @@ export function showInspection(title, place, inspection, actions, bootstraps, hi
   if (newest.length) {
     updates.append(make("p", { className: "equation symbols", textContent: symbolEquation(newest[0], bootstraps) }));
     updates.append(make("ol", { className: "updates" }, ...newest.map((update) => updateItem(update, actions, newest[0], bootstraps))));
-    if (newest[0].isWeighted) updates.append(make("p", { className: "hint", textContent: WEIGHTED }));
+    if (newest[0].isWeighted) {
+      const text = newest[0].kind.endsWith("trace") ? WEIGHTED_TRACES : WEIGHTED;
+      updates.append(make("p", { className: "hint", textContent: text + BETWEEN }));
+    }
   } else {
     updates.append(make("p", { className: "hint", textContent: UNVISITED }));
   }
