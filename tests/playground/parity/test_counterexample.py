@@ -111,6 +111,10 @@ def test_an_address_opens_the_panel_and_follows_its_method(playground: Playgroun
     page.wait_for_function("() => document.querySelector('[data-method=td]').ariaChecked === 'true'")
     playground.settled()
     assert page.evaluate("() => playground.training.id") == trained + 1
+    page.evaluate("() => { location.hash = '#env=CliffWalking-v1&episodes=20'; }")
+    page.wait_for_function("() => !document.querySelector('#counterexample').open")
+    panel.locator("summary").click()
+    page.wait_for_function("() => location.hash.includes('counterexample=td')")
     panel.locator("summary").click()
     page.wait_for_function("() => !location.hash.includes('counterexample')")
     playground.open("#env=CliffWalking-v1&episodes=20&counterexample=nothing")

@@ -19,7 +19,7 @@ const SHOWN = {
     title: "TDC",
     alpha: 0.005,
     beta: 0.05,
-    text: "TD with gradient correction, in expectation, with a second weight vector v and its step size β. It follows the gradient of the projected Bellman error, so the weights stay bounded. The values approach 0 slowly: √VE is still about 2 after 1,000 sweeps.",
+    text: "TD with gradient correction, in expectation, with a second weight vector v and its step size β. It follows the gradient of the projected Bellman error, so the weights stay bounded if v learns fast enough: with a β far below α they grow, too. The values approach 0 slowly: √VE is still about 2 after 1,000 sweeps.",
   },
   emphatic_td: {
     title: "Emphatic TD",
@@ -29,7 +29,7 @@ const SHOWN = {
 };
 const ALPHAS = { low: 1e-4, high: 0.2, integer: false, log: true };
 const STORY =
-  "Seven states, and a reward of 0 everywhere. A value is a sum of a weight of its state and of w₈, which all states share, so that weights of 0 give the right values. From every state, the solid action leads to the lower state and the dashed one to one of the six upper ones. The behavior takes the dashed action six times in seven, so that it is in each state equally often; the target policy always takes the solid one (γ = 0.99).";
+  "Seven states, and a reward of 0 everywhere. The value of a state is a sum of its own weight and of w₈, which all states share; with weights of 0 all values are right. From every state, the solid action leads to the lower state and the dashed one to one of the six upper ones. The behavior takes the dashed action six times in seven, so that it is in each state equally often; the target policy always takes the solid one (γ = 0.99).";
 const SOURCE =
   "Sutton & Barto, 2nd edition, sections 11.2, 11.7 and 11.8. In Python: qtab book 11.2, 11.5 and 11.6, and qtab.prediction.expected_updates.";
 
@@ -47,7 +47,7 @@ function slider(id, text, properties) {
 }
 
 /**
- * Builds the panel when it is opened for the first time, by the reader or by an address. `onChoice()` is called when the
+ * Builds the panel when it is opened for the first time, by the reader or by an address, which also closes it. `onChoice()` is called when the
  * state of a store, whose `counterexample` is the method of the open panel, has changed without another training.
  */
 export function setUpCounterexample(store, details, onChoice) {
@@ -62,9 +62,8 @@ export function setUpCounterexample(store, details, onChoice) {
     note(details.open ? panel.method : null);
   });
   const follow = ({ counterexample }) => {
-    if (!counterexample) return;
-    details.open = true;
-    if (panel && panel.method !== counterexample) panel.choose(counterexample);
+    details.open = Boolean(counterexample);
+    if (counterexample && panel && panel.method !== counterexample) panel.choose(counterexample);
   };
   store.subscribe(follow);
   follow(store.state);
@@ -100,7 +99,7 @@ function build(place, method, note) {
   });
   const summary = make("figcaption", { "aria-live": "polite" });
   const controls = make("div", { className: "rates" }, alpha.element, beta.element, sweeps.element);
-  const left = make("figure", {}, states, make("figcaption", { textContent: "The states, with their values after these sweeps. The right values are 0." }));
+  const left = make("figure", {}, states, make("figcaption", { textContent: "The states, with their values after these sweeps; the true values are 0. The arrows are the solid action, and the dashed one leads to any state inside the dashed line." }));
   const right = make("figure", {}, chart, make("ul", { className: "key" }, ...key), summary);
   const story = [STORY, SOURCE].map((textContent) => make("p", { className: "hint", textContent }));
   place.replaceChildren(story[0], group, text, controls, make("div", { className: "two" }, left, right), story[1]);

@@ -14,24 +14,38 @@ export const LINES = [
   ["√VE", "good", valueError],
 ];
 
-/** Draws the states, with the names of their values below and the values inside. */
+/** The largest font, up to a size, in which a text is at most so wide. */
+function fitted(g, text, size, width) {
+  g.font = `600 ${size}px ${FONT}`;
+  return `600 ${Math.min(size, (size * width) / g.measureText(text).width)}px ${FONT}`;
+}
+
+/** Draws the states with the solid action, the names of their values beside them and the values inside. */
 export function drawStates(canvas, w) {
   const { g, width, height } = surface(canvas);
   const colors = themeColors();
   const radius = Math.min(width / 16, 30);
   const places = Array.from({ length: 6 }, (_, state) => [10 + ((state + 0.5) * (width - 20)) / 6, radius + 28]);
   const lower = [width / 2, height - radius - 22];
+  // The head of an arrow with a tip and a direction.
+  const head = ([x, y], [right, down]) => {
+    const [backX, backY] = [x - 9 * right, y - 9 * down];
+    polygon(g, [[x, y], [backX - 4 * down, backY + 4 * right], [backX + 4 * down, backY - 4 * right]], colors.muted);
+  };
   for (const [x, y] of places) {
-    const [across, down] = [lower[0] - x, lower[1] - y];
-    const length = Math.hypot(across, down);
-    const at = (distance, aside = 0) => [x + (across * distance - down * aside) / length, y + (down * distance + across * aside) / length];
+    const length = Math.hypot(lower[0] - x, lower[1] - y);
+    const [right, down] = [(lower[0] - x) / length, (lower[1] - y) / length];
+    const at = (distance) => [x + right * distance, y + down * distance];
     line(g, [at(radius), at(length - radius - 8)], colors.muted, 1.2);
-    polygon(g, [at(length - radius - 1), at(length - radius - 10, 4), at(length - radius - 10, -4)], colors.muted);
+    head(at(length - radius - 1), [right, down]);
   }
+  // From the lower state the solid action returns to it: three quarters of a circle, which its disc then partly covers.
+  g.beginPath();
+  g.arc(lower[0] + radius * 1.25, lower[1], radius * 0.6, -0.75 * Math.PI, 0.65 * Math.PI);
+  g.stroke();
+  head([lower[0] + radius * 0.9, lower[1] + radius * 0.48], [-0.8, -0.6]);
   g.setLineDash([4, 4]);
   const ring = [places[0][0] - radius - 8, places[0][1] - radius - 8, places[5][0] - places[0][0] + 2 * radius + 16, 2 * radius + 16];
-  g.strokeStyle = colors.muted;
-  g.lineWidth = 1.2;
   g.beginPath();
   g.roundRect(...ring, radius + 8);
   g.stroke();
@@ -44,8 +58,9 @@ export function drawStates(canvas, w) {
     g.lineWidth = 1.6;
     g.stroke();
     g.fillStyle = colors.ink;
-    g.font = `600 ${Math.max(radius * 0.46, 9)}px ${FONT}`;
-    g.fillText(number(values[state], 3), x, y);
+    const text = number(values[state], 3);
+    g.font = fitted(g, text, Math.max(radius * 0.46, 9), radius * 1.75);
+    g.fillText(text, x, y);
     g.font = `12px ${FONT}`;
     g.fillStyle = colors.muted;
     if (state === 6) g.fillText("w₇ + 2w₈", x, y + radius + 12);
@@ -53,7 +68,7 @@ export function drawStates(canvas, w) {
   g.fillText("2w₁ + w₈, …, 2w₆ + w₈", width / 2, 8);
 }
 
-/** Draws the weights after each of the first sweeps. */
+/** Draws the weights after each of the first sweeps, with dots at the last ones. */
 export function drawWeights(canvas, weights, sweeps) {
   const { g, width, height } = surface(canvas);
   const colors = themeColors();
@@ -67,5 +82,9 @@ export function drawWeights(canvas, weights, sweeps) {
   const y = scale(lowest - margin, highest + margin, box.bottom, box.top);
   const places = ticks(0, Math.max(sweeps, 1), width < 420 ? 4 : 5).filter(Number.isInteger);
   axes(g, box, x, y, places, ticks(lowest - margin, highest + margin, 6), { x: "sweep", y: "weight or error" });
-  for (const [color, numbers] of lines) line(g, numbers.map((each, sweep) => [x(sweep), y(each)]), color, 2.2);
+  for (const [color, numbers] of lines) {
+    const points = numbers.map((each, sweep) => [x(sweep), y(each)]);
+    line(g, points, color, 2.2);
+    disc(g, ...points.at(-1), 3.2, color);
+  }
 }
