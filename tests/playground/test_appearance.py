@@ -69,8 +69,9 @@ def test_a_small_screen_needs_no_sideways_scrolling(window: Playground, environm
       element.checkVisibility() && element.getBoundingClientRect().right > 361)
         .map((element) => element.outerHTML.slice(0, 80))"""
     assert window.page.evaluate(wide) == []
-    low = """() => [...document.querySelectorAll("input[type=range]")].filter((element) =>
-      element.checkVisibility() && element.getBoundingClientRect().height < 44).map((element) => element.id)"""
+    low = """() => [...document.querySelectorAll("button, select, summary, input:not([type=checkbox])")]
+      .filter((element) => element.checkVisibility() && element.getBoundingClientRect().height < 44)
+      .map((element) => element.outerHTML)"""
     assert window.page.evaluate(low) == [], "too low for a finger"
 
 
