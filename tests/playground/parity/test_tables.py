@@ -21,7 +21,7 @@ from qtab.playground.assemble import packed
 from qtab.playground.bundle import bundle
 from qtab.playground.settings import MAX_FEATURES, OFFERED, is_offered
 from qtab.reference import LEARNERS
-from qtab.reference.parts import discretizers
+from qtab.reference.parts import weighted
 from qtab.training.setup.run_env import make_run_env
 from support.playground import PATIENCE, musl
 
@@ -232,7 +232,7 @@ def test_fourier_weights_equal_those_of_the_reference_with_the_cosines_of_the_pa
         )
         np.testing.assert_allclose(table, run.tables, rtol=0, atol=1e-10)
         with monkeypatch.context() as patched:
-            patched.setattr(discretizers, "math", of_page)
+            patched.setattr(weighted, "math", of_page)
             found = LEARNERS[algorithm](make_run_env(run.config, of="gymnasium"), run.config)
         assert table.tobytes() == found[0].tobytes(), given
         assert found[2].tolist() == run.episode_lengths.tolist()
