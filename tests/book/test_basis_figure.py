@@ -1,6 +1,7 @@
 """Figure 9.5: its walks and its updates are those of estimate_values to the bit, and the Fourier basis is better.
 
-Section 9.5.2: the Fourier basis learns faster than tile coding on Mountain Car. Figure 9.8: broad features generalize.
+Section 9.5.2: smooth features learn faster than tile coding on Mountain Car, and polynomials do not learn.
+Figure 9.8: broad features generalize.
 """
 
 import dataclasses
@@ -74,13 +75,32 @@ def test_the_fourier_basis_learns_faster() -> None:
     assert len(result.plot().lines) == 6
 
 
-def test_the_fourier_basis_learns_faster_than_tile_coding_on_mountain_car() -> None:
-    *fourier, tiles = qtab.book.run("9.5.2", runs=4, seed=300).lines
-    assert [line.name.partition(",")[0] for line in fourier] == ["Fourier basis"] * 3
-    for line in fourier:
-        assert line.mean[:10].sum() < 0.7 * tiles.mean[:10].sum()
-        assert 120 < line.mean[-20:].mean() < 200
-    assert 120 < tiles.mean[-20:].mean() < 200
+def test_smooth_features_learn_faster_than_tile_coding_on_mountain_car_and_polynomials_do_not_learn() -> None:
+    result = qtab.book.run("9.5.2", runs=3, seed=300)
+    *bases, tiles = result.lines
+    assert [line.method for line in bases] == ["Fourier basis", "radial basis functions", "polynomials"] * 3
+    for line in bases:
+        if line.method == "polynomials":
+            assert line.mean.mean() > 3000
+            assert line.truncated.sum() > 150
+        else:
+            assert line.mean[:10].sum() < 0.8 * tiles.mean[:10].sum()
+            assert 110 < line.mean[-20:].mean() < 200
+            assert line.truncated.sum() == 0
+    assert 100 < tiles.mean[-20:].mean() < 135
+    figure: Any = result.plot().figure
+    # Polynomials are far above the others, so that only the table has them.
+    assert [len(part.lines) for part in figure.axes] == [3, 3, 3]
+    assert [part.get_title(loc="left").split(",")[0] for part in figure.axes] == ["order 3", "order 5", "order 7"]
+
+
+def test_the_bases_of_a_panel_have_as_many_features() -> None:
+    counts = []
+    experiment: Any = qtab.book.find("9.5.2")
+    for setting in experiment.settings[:-1]:
+        config = {**setting.config, "episodes": 1, "max_episode_steps": 1, "seed": 0}
+        counts.append(qtab.train(setting.env, **config).tables.shape[1])
+    assert counts == [16] * 3 + [36] * 3 + [64] * 3
 
 
 def test_as_many_intervals_contain_each_place() -> None:

@@ -22,6 +22,8 @@ MAX_MARKERS = 40
 """With a line of more points, a figure has no markers."""
 BROAD: Mapping[str, Any] = {"linewidth": 6, "zorder": 1}
 """The style of a line that would hide others, or be hidden by them; its color is :func:`pale`."""
+FAR_ABOVE = 1e3
+"""The mean from which :func:`draw_in_range` does not draw a point, unless the y axis is longer."""
 MOST_LABELED = 100
 """A logarithmic axis over less than this ratio is also labeled between the powers of ten."""
 
@@ -91,6 +93,7 @@ def draw_band(ax: "Axes", line: Line, hue: Any, alpha: float = 0.25) -> None:
 def draw_in_range(result: Result, ax: "Axes | None") -> "Axes":
     """Draws the lines without bands around points far above the figure, where runs diverge; returns the axes."""
     top = 1.1 * (result.experiment.y_range or (0.0, np.inf))[1]
+    highest = max(FAR_ABOVE, top) if np.isfinite(top) else FAR_ABOVE
     lines = [dataclasses.replace(one, error=np.where(one.mean < top, one.error, np.nan)) for one in result.lines]
-    lines = [dataclasses.replace(one, mean=np.where(one.mean < 1e3, one.mean, np.nan)) for one in lines]
+    lines = [dataclasses.replace(one, mean=np.where(one.mean < highest, one.mean, np.nan)) for one in lines]
     return draw_lines(dataclasses.replace(result, lines=tuple(lines)), ax)
