@@ -82,8 +82,11 @@ impl From<RunError> for PyErr {
                  model, but this run needs more; use a table with fewer cells, or train for fewer episodes",
             ),
             RunError::Diverged { episode, weighted } => {
-                let cause =
-                    if weighted { ": try a tenth of it" } else { ", or trace_decay or discount with these traces" };
+                let cause = if weighted {
+                    ": try a tenth of it, and of value_learning_rate if the algorithm has one"
+                } else {
+                    ", or trace_decay or discount with these traces"
+                };
                 PyOverflowError::new_err(format!(
                     "the action values overflowed in episode {episode} (counted from 0): the updates grow instead of \
                      settling; most likely learning_rate is too large{cause}"

@@ -30,7 +30,11 @@ impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> SimdCode for AdvanceLoop<'_
 
     #[inline(always)]
     fn run<S: Simd>(self, _simd: S) -> Self::Output {
-        self.trainer.advance_with(self.rng, self.budget)
+        if T::Active::WEIGHTED {
+            self.trainer.advance_borrowed(self.rng, self.budget)
+        } else {
+            self.trainer.advance_with(self.rng, self.budget)
+        }
     }
 }
 

@@ -19,7 +19,6 @@ pub use self::evaluate::{EvaluationError, evaluate};
 pub use self::load_error::LoadError;
 use crate::checkpoint::RunIdentity;
 use crate::errors::TrainingError;
-use crate::features::ActiveFeatures;
 use crate::learners::Learner;
 use crate::memory::{AllocationError, MemoryRoom, RunMemory};
 use crate::random::Rng;
@@ -192,10 +191,6 @@ impl<T: Task, L: Learner<T::Active>, R: Rng + Clone> Trainer<T, L, R> {
                 Some(episode) => episode,
                 None => self.begin_episode(rng)?,
             };
-            if T::Active::WEIGHTED {
-                self.take_borrowed_steps(episode, rng, &mut work)?;
-                continue;
-            }
             let EpisodeState { mut state, mut active, mut action, mut episode_return, mut length, .. } = episode;
             loop {
                 let transition = if Self::WRITES_ROWS {

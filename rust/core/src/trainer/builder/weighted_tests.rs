@@ -16,7 +16,7 @@ fn car() -> TrainerBuilder<MountainCar, Basis> {
     Trainer::builder(MountainCar::default(), basis).max_episode_steps(200).episodes(10).learning_rate(0.01)
 }
 
-fn algorithms() -> [AnyAlgorithm; 13] {
+fn algorithms() -> [AnyAlgorithm; 16] {
     let traces = TraceOptions { kind: TraceKind::Accumulating, decay: 0.8, cutoff: 0.0 };
     let value_learning_rate = 0.02;
     [
@@ -25,11 +25,14 @@ fn algorithms() -> [AnyAlgorithm; 13] {
         AnyAlgorithm::ExpectedSarsa,
         AnyAlgorithm::DoubleQLearning,
         AnyAlgorithm::NStepSarsa { n_steps: 4 },
+        AnyAlgorithm::NStepTreeBackup { n_steps: 4, target_policy: TargetPolicy::Behavior },
         AnyAlgorithm::NStepQSigma { n_steps: 3, sigma: 0.5, target_policy: TargetPolicy::Greedy },
         AnyAlgorithm::DifferentialSarsa { reward_learning_rate: 0.01 },
+        AnyAlgorithm::DifferentialQLearning { reward_learning_rate: 0.01 },
         AnyAlgorithm::SarsaLambda(traces),
         AnyAlgorithm::TrueOnlineSarsaLambda { trace_decay: 0.8, trace_cutoff: 1e-3 },
         AnyAlgorithm::WatkinsQLambda(traces),
+        AnyAlgorithm::Reinforce,
         AnyAlgorithm::ReinforceWithBaseline { value_learning_rate },
         AnyAlgorithm::ActorCritic { value_learning_rate },
         AnyAlgorithm::ActorCriticLambda { value_learning_rate, trace_decay: 0.8 },
