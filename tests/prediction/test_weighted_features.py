@@ -11,42 +11,12 @@ from numpy.typing import NDArray
 
 import qtab
 from qtab.envs.book.random_mdp import random_mdp
-from qtab.prediction import METHODS
-from qtab.prediction.learning_rates import AVERAGES_ONLY
-from qtab.prediction.settings import OFF_POLICY
 from qtab.prediction.verification import verify_values
-from support.learners.box_prediction import CAR, PENDULUM, POLE, with_the_velocity
+from support.learners.box_prediction import CAR, with_the_velocity
+from support.learners.weighted_prediction import WEIGHTED, options_of
 
-WEIGHTED = [method for method in METHODS if method not in AVERAGES_ONLY]
 FOURIER: dict[str, Any] = {"discretizer": "fourier", "learning_rate": 0.01, "episodes": 3, "max_episode_steps": 40}
 TARGET = np.random.default_rng(0).dirichlet(np.ones(3), size=6)
-LIMITS: dict[str, Any] = {"low": [-2.4, -3.0, -0.2, -3.0], "high": [2.4, 3.0, 0.2, 3.0], "coupled": False}
-BOXES: dict[str, tuple[list[Any], dict[str, Any]]] = {
-    CAR: (["random", with_the_velocity, lambda at: [0.7, 0.2, 0.1] if at[1] < 0 else [0.1, 0.2, 0.7]], {}),
-    POLE: (["random", lambda at: int(at[2] + at[3] > 0)], LIMITS),
-    PENDULUM: (["random", lambda at: 1], {"actions": 3}),
-}
-
-
-def options_of(method: str, data: st.DataObject, behavior: Any = "random") -> dict[str, Any]:
-    """Options of a method, with step sizes that are small enough for features up to 1."""
-    options: dict[str, Any] = {}
-    if method == "lstd":
-        options["epsilon"] = data.draw(st.floats(1e-3, 2.0))
-        options["recursive"] = data.draw(st.booleans())
-    else:
-        options["learning_rate"] = data.draw(st.floats(0.0, 1e-4 if method == "emphatic_td" else 0.02))
-        if data.draw(st.booleans()):
-            options["learning_rate_schedule"] = "linear"
-    if method in ("gtd2", "tdc"):
-        options["second_learning_rate"] = data.draw(st.floats(0.0, 0.02))
-    if "lambda" in method or method == "lstd":
-        options["trace_decay"] = data.draw(st.floats(0.0, 1.0))
-    if method == "n_step_td":
-        options["n_steps"] = data.draw(st.integers(1, 30) | st.just(2000))
-    if method in OFF_POLICY:
-        options["behavior"] = behavior
-    return options
 
 
 @given(data=st.data())
@@ -73,30 +43,6 @@ def test_vectors_of_states_equal_plain_numpy(data: st.DataObject) -> None:
         **options,
     )
     assert verify_values(found, None, None, gym.wrappers.TimeLimit(random_mdp(6, 2, actions=3), limit)).equal
-
-
-@given(data=st.data())
-def test_a_fourier_basis_equals_plain_numpy(data: st.DataObject) -> None:
-    method: Any = data.draw(st.sampled_from(WEIGHTED))
-    env = data.draw(st.sampled_from(list(BOXES)))
-    policies, given = BOXES[env]
-    options = {**given, **options_of(method, data)}
-    if method != "lstd":
-        options["scale_step_sizes"] = data.draw(st.booleans())
-    found = qtab.estimate_values(
-        env,
-        data.draw(st.sampled_from(policies)),
-        method=method,
-        discretizer="fourier",
-        order=data.draw(st.integers(1, 3)),
-        episodes=2,
-        discount=data.draw(st.sampled_from([0.0, 0.9])),
-        max_episode_steps=data.draw(st.sampled_from([5, 40])),
-        on_truncation=data.draw(st.sampled_from(["bootstrap", "terminate"])),
-        seeds=[data.draw(st.integers(0, 1000))],
-        **options,
-    )
-    assert found.verify().equal
 
 
 @pytest.mark.parametrize("method", WEIGHTED)
@@ -148,9 +94,15 @@ def test_values_are_products_of_vectors_and_weights() -> None:
 
 def test_estimates_are_saved_with_their_features(tmp_path: Any) -> None:
     path, at = tmp_path / "values.npz", np.array([[-0.5, 0.0], [0.3, 0.05]], np.float32)
-    bases: list[dict[str, Any]] = [{"order": 2}, {"order": 3, "coupled": False, "scale_step_sizes": False}]
+    bases: list[dict[str, Any]] = [
+        {"order": 2},
+        {"order": 3, "coupled": False, "scale_step_sizes": False},
+        {"discretizer": "polynomial", "order": 2, "coupled": False},
+        {"discretizer": "radial", "centers": (3, 4), "width": 0.75, "normalized": True},
+        {"discretizer": "coarse", "centers": 4, "radius": (1.5, 1.25)},
+    ]
     for basis in bases:
-        car = qtab.estimate_values(CAR, with_the_velocity, **FOURIER, **basis)
+        car = qtab.estimate_values(CAR, with_the_velocity, **{**FOURIER, **basis})
         car.save(path)
         again = qtab.ValueEstimates.load(path)
         assert np.array_equal(again.value(at), car.value(at))

@@ -58,6 +58,10 @@ def estimate_values(
     order: "Integer | None" = None,
     coupled: bool | None = None,
     scale_step_sizes: bool | None = None,
+    centers: "Integer | Integers | None" = None,
+    width: "Real | Reals | None" = None,
+    normalized: bool | None = None,
+    radius: "Real | Reals | None" = None,
     actions: "Integer | Sequence[Real | Reals] | Array | None" = None,
     features: ArrayLike | None = None,
     initial_value: float = 0.0,
@@ -116,7 +120,8 @@ def estimate_values(
             must be able to take every action that ``policy`` can take. For ``"gtd2"``, ``"tdc"`` and
             ``"emphatic_td"``, None means ``policy`` itself.
         discretizer: The discretizer of a Box of observations, as in :func:`qtab.train`: cells by ``"round"``,
-            ``"bins"`` or ``"edges"``, ``"tiles"``, or ``"fourier"``. None uses that of a run as the policy, or else the
+            ``"bins"`` or ``"edges"``, ``"tiles"``, or features with values other than 1 by ``"fourier"``,
+            ``"polynomial"``, ``"radial"`` or ``"coarse"``. None uses that of a run as the policy, or else the
             environment's default.
         tilings: For ``"tiles"``: the number of tilings; None means 8.
         tiles: For ``"tiles"``: the number of tiles along each component, or one for all; None means 8.
@@ -125,13 +130,20 @@ def estimate_values(
         bins: For ``"bins"``: the number of bins along each component, or one for all; None means 10.
         edges: For ``"edges"``: the inner edges of the cells along each component.
         scale: For ``"round"``: the number of cells per unit of each component.
-        low: For ``"bins"``, ``"tiles"`` and ``"fourier"``: the lower limit of each component; None uses that of the
-            space.
+        low: The lower limit of each component, except for ``"round"`` and ``"edges"``; None uses that of the space.
         high: The upper limit of each component, like ``low``.
-        order: For ``"fourier"``: the largest frequency of a component; None means 3.
-        coupled: For ``"fourier"``: whether there is a feature for each combination of frequencies; None means True.
+        order: For ``"fourier"`` and ``"polynomial"``: the largest frequency or exponent of a component; None means 3.
+        coupled: For ``"fourier"`` and ``"polynomial"``: whether there is a feature for each combination of frequencies
+            or exponents; None means True.
         scale_step_sizes: For ``"fourier"``: whether the step sizes of a feature are divided by the length of its
-            frequency vector; None means True, and False for ``"lstd"``, which has none.
+            frequency vector; None means True, and False for ``"lstd"``, which has no step size.
+        centers: For ``"radial"`` and ``"coarse"``: the number of centers along each component, or one for all, at least
+            2; None means 5.
+        width: For ``"radial"``: σ along each component, or one for all, in distances between neighboring centers; None
+            means 1.
+        normalized: For ``"radial"``: whether the features are divided by their sum; None means False.
+        radius: For ``"coarse"``: the radius of the receptive fields along each component, or one for all, in distances
+            between neighboring centers; None means 1.5.
         actions: For a Box of actions: the actions to choose from, or the number of values of each component.
         features: None for a table; or (states,) or (states, n_active) integers: the features that are active in each
             state, as :func:`qtab.prediction.state_aggregation` and :func:`qtab.prediction.tile_coding` return them; or

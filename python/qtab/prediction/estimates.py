@@ -44,7 +44,7 @@ class ValueEstimates:
     """(seeds, points, n_weights): the recorded weights, which are the values if the features are a table."""
     rows: NDArray[np.uint32] | None
     """(states, n_active): the active features of each state, whose weights add up to its value; None for feature
-    vectors, and with tile coding or a Fourier basis of the observations, which are the features."""
+    vectors, and with tile coding or weighted features of the observations."""
     probabilities: NDArray[np.float64] | None
     """(*cells, actions): the policy that is evaluated; None if it reads the observations of a Box."""
     behavior: NDArray[np.float64] | None
@@ -67,7 +67,7 @@ class ValueEstimates:
         """The shape of the values of a run: the number of cells along each component of the observation.
 
         Raises:
-            ValueError: with tile coding or a Fourier basis of the observations, which have no cells.
+            ValueError: with tile coding or weighted features of the observations, which have no cells.
         """
         if self.probabilities is not None:
             return self.probabilities.shape[:-1]
@@ -83,7 +83,7 @@ class ValueEstimates:
 
     @property
     def is_weighted(self) -> bool:
-        """Whether the features have values other than 1: feature vectors, or a Fourier basis."""
+        """Whether the features have values other than 1: feature vectors, or those of "fourier", "radial" and so on."""
         return self.feature_vectors is not None or (self.discretizer is not None and self.discretizer.is_weighted)
 
     @property
@@ -98,7 +98,7 @@ class ValueEstimates:
         """(seeds, *cells): the values after the last episode.
 
         Raises:
-            ValueError: with tile coding or a Fourier basis of the observations, which have no cells; :meth:`value`
+            ValueError: with tile coding or weighted features of the observations, which have no cells; :meth:`value`
                 works.
         """
         return self.values_after(-1)

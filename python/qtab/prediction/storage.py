@@ -10,7 +10,7 @@ import numpy as np
 from qtab import discretizers
 from qtab._utils import checks
 from qtab._utils.files import replacing
-from qtab.config import Config
+from qtab.config import Config, options
 from qtab.discretizers import Discretizer
 from qtab.discretizers.box import BoxDiscretizer
 from qtab.prediction.learning_rates import OPTIONS
@@ -30,7 +30,7 @@ WEIGHTED_FORMAT = 3
 """The format of estimates with weighted features, which earlier versions could not read."""
 DISCRETIZER = ("discretizer", "scale", "bins", "edges", "low", "high", "tiles", "tilings", "hashed_rows")
 """The settings of a run from which the discretizer of a Box is restored."""
-OF_WEIGHTED = ("order", "coupled", "scale_step_sizes")
+OF_WEIGHTED = tuple(name for name, option in options.OPTIONS.items() if set(option.values) <= set(options.WEIGHTED))
 """Those that only weighted features have."""
 ADDED = ("learning_rate_schedule", *OPTIONS, "second_learning_rate", "epsilon", "recursive")
 """The settings of an estimate that are written only if they are set, so that earlier versions can read other files."""

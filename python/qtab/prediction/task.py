@@ -8,7 +8,6 @@ import gymnasium as gym
 from gymnasium.envs.registration import EnvSpec
 
 from qtab._utils.shown import shown
-from qtab.config.options import WEIGHTED
 from qtab.discretizers.box import BoxDiscretizer
 from qtab.planning.classic_control import GridSolver
 from qtab.planning.optimum import Optimum
@@ -38,8 +37,8 @@ def resolve_prediction(
         made = env()
         if not isinstance(made, gym.Env):
             raise TypeError(f"env must make an environment, got {shown(made)}")
-    if settings.method == LEAST_SQUARES and given.get("discretizer") in WEIGHTED:
-        given = {"scale_step_sizes": False, **given}  # there are none
+    if settings.method == LEAST_SQUARES and {**brought, **given}.get("discretizer") == "fourier":
+        brought = {**brought, "scale_step_sizes": False}  # there are no step sizes
     resolved = resolve(made, {**settings.config(), **brought, **given, "seed": seed}, owns_env=made is not env)
     cells = resolved.discretizer
     if cells.reads_space or not (cells.has_cells or isinstance(cells, BoxDiscretizer)):

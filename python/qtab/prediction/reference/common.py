@@ -58,7 +58,7 @@ class Prediction:
         self.settings = estimates.settings
         self.task = ObservedTask(env, config, stop_after)
         self.discount = self.settings.discount
-        # With tile coding and a Fourier basis, the states are numbered in the order of their visits in an episode.
+        # With tile coding and weighted features, the states are numbered in the order of their visits in an episode.
         self.has_states = estimates.of_cells
         self.rows: list[Rows] = []
         if estimates.feature_vectors is not None:
