@@ -13,13 +13,6 @@ from qtab.config.choices import FUNCTION, MAPPING
 from qtab.config.functions import mask_setting
 from qtab.config.value_checks import Check
 
-MAX_TILINGS = 32
-MAX_TILES = 2**32 - 1
-MAX_BINS = 1_000_000
-MAX_FEATURES = 1024
-"""The maximum number of weighted features: a step takes time in proportion to it."""
-MAX_ROWS = 2**32 - 2
-
 
 @dataclass(frozen=True)
 class Setting:
@@ -235,7 +228,7 @@ SETTINGS: Mapping[str, Setting] = {
     "action_mask": Setting(mask_setting, added=True),
     "shape": Option(check.counts(1, checks.LARGEST_COUNT), "discretizer", (FUNCTION,), None, added=True),
     "max_rows": Option(
-        check.integer(1, MAX_ROWS),
+        check.integer(1, check.MAX_ROWS),
         "discretizer",
         ("round", "bins", "edges", "identity", FUNCTION, MAPPING),
         None,
@@ -243,9 +236,11 @@ SETTINGS: Mapping[str, Setting] = {
         added=True,
     ),
     "scale": Option(check.scale, "discretizer", ("round",), None, may_be_none=False),
-    "tilings": Option(check.integer(1, MAX_TILINGS), "discretizer", ("tiles",), 8, other_names="n_tilings num_tilings"),
+    "tilings": Option(
+        check.integer(1, check.MAX_TILINGS), "discretizer", ("tiles",), 8, other_names="n_tilings num_tilings"
+    ),
     "tiles": Option(
-        check.counts(1, MAX_TILES), "discretizer", ("tiles",), (8,), other_names="n_tiles num_tiles tiles_per_dim"
+        check.counts(1, check.MAX_TILES), "discretizer", ("tiles",), (8,), other_names="n_tiles num_tiles tiles_per_dim"
     ),
     "hashed_rows": Option(
         check.integer(1, 2**32 - 1),
@@ -255,12 +250,14 @@ SETTINGS: Mapping[str, Setting] = {
         other_names="iht_size hash_size memory_size",
         off_by_none=True,
     ),
-    "bins": Option(check.counts(1, MAX_BINS), "discretizer", ("bins",), (10,), other_names="n_bins num_bins buckets"),
+    "bins": Option(
+        check.counts(1, check.MAX_BINS), "discretizer", ("bins",), (10,), other_names="n_bins num_bins buckets"
+    ),
     "edges": Option(check.edges, "discretizer", ("edges",), None),
-    "order": Option(check.integer(1, MAX_FEATURES - 1), "discretizer", ("fourier", "polynomial"), 3, added=True),
+    "order": Option(check.integer(1, check.MAX_FEATURES - 1), "discretizer", ("fourier", "polynomial"), 3, added=True),
     "coupled": Option(checks.boolean, "discretizer", ("fourier", "polynomial"), True, added=True),
     "scale_step_sizes": Option(checks.boolean, "discretizer", ("fourier",), True, added=True),
-    "centers": Option(check.counts(2, MAX_FEATURES), "discretizer", ("radial", "coarse"), (5,), added=True),
+    "centers": Option(check.counts(2, check.MAX_FEATURES), "discretizer", ("radial", "coarse"), (5,), added=True),
     "width": Option(check.sizes(0.1, 1000), "discretizer", ("radial",), (1.0,), other_names="std_dev", added=True),
     "normalized": Option(checks.boolean, "discretizer", ("radial",), False, other_names="normalize", added=True),
     "radius": Option(check.sizes(0.5, 1e4), "discretizer", ("coarse",), (1.5,), added=True),

@@ -18,6 +18,12 @@ from qtab._utils.shown import shown
 from qtab.config.choices import CHOICES
 
 MAX_ACTIONS = 2**16
+MAX_TILINGS = 32
+MAX_TILES = 2**32 - 1
+MAX_BINS = 1_000_000
+MAX_FEATURES = 1024
+"""The maximum number of weighted features: a step takes time in proportion to it."""
+MAX_ROWS = 2**32 - 2
 
 Check: TypeAlias = Callable[[str, Any], Any]
 

@@ -14,7 +14,10 @@ from qtab.compilation.checks.code_checks import Checks
 
 @register_pass(mutates_CFG=False, analysis_only=False)
 class FloatCalls(FunctionPass):  # type: ignore[misc]
-    """Replaces calls of ``float`` by those of ``np.float64``: Numba's ``float`` leaves a float32 as it is."""
+    """Replaces calls of ``float`` by those of ``np.float64``: Numba's ``float`` leaves a float32 as it is.
+
+    Calls with a text, such as ``float("nan")``, stay: Numba has no ``np.float64`` of texts.
+    """
 
     _name = "qtab_float_calls"
 
@@ -30,9 +33,9 @@ class FloatCalls(FunctionPass):  # type: ignore[misc]
                 call = getattr(statement, "value", None)
                 if isinstance(call, ir.Expr) and call.op == "call" and len(call.args) == 1 and not call.kws:
                     found = guard(get_definition, code, call.func)
-                    given = getattr(guard(get_definition, code, call.args[0]), "value", None)
-                    is_float = isinstance(found, ir.Global | ir.FreeVar) and found.value is float
-                    if is_float and not isinstance(given, str):  # Numba has no np.float64("nan")
+                    number = guard(get_definition, code, call.args[0])
+                    is_text = isinstance(number, ir.Const | ir.Global | ir.FreeVar) and isinstance(number.value, str)
+                    if isinstance(found, ir.Global | ir.FreeVar) and found.value is float and not is_text:
                         made += 1
                         call.func = ir.Var(block.scope, f"$float64_{made}_{id(state)}", call.loc)
                         double = ir.Global("float64", np.float64, call.loc)

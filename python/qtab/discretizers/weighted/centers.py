@@ -6,7 +6,7 @@ from typing import Any, ClassVar, Literal
 
 from qtab._utils.checks import required
 from qtab.config import Config
-from qtab.config.options import MAX_FEATURES
+from qtab.config.value_checks import MAX_FEATURES
 from qtab.discretizers.box import per_dimension
 from qtab.discretizers.weighted.features import WeightedFeatures
 

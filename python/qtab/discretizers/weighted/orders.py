@@ -5,7 +5,7 @@ from typing import Any
 
 from qtab._utils.checks import required
 from qtab.config import Config
-from qtab.config.options import MAX_FEATURES
+from qtab.config.value_checks import MAX_FEATURES
 from qtab.discretizers.weighted.features import WeightedFeatures
 
 
