@@ -1,6 +1,6 @@
 """Short texts for error messages: values, and suggestions for misspelled words."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 from typing import Any
 
@@ -47,3 +47,9 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
 
 def _spelling(word: str) -> str:
     return word.lower().replace("-", "_").replace(" ", "_")
+
+
+def listed(words: Sequence[str]) -> str:
+    """Returns words as an English list: ``'a', 'b' or 'c'``."""
+    *others, last = map(repr, words)
+    return f"{', '.join(others)} or {last}" if others else last

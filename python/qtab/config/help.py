@@ -8,8 +8,9 @@ from types import MappingProxyType
 from typing import Any, TypeVar, get_args, get_type_hints
 
 from qtab._utils.fields import source_fields
+from qtab._utils.shown import listed
 from qtab.config.config import DEFAULTS, Config
-from qtab.config.options import OPTIONS, listed
+from qtab.config.options import OPTIONS
 
 _TITLES = {
     "env": "Environment",

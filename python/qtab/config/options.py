@@ -3,7 +3,7 @@
 The fields of :class:`qtab.Config` have the types, the explanations, and the defaults of the settings that always apply.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -290,12 +290,6 @@ def fixed_settings(algorithm: Any) -> Mapping[str, Any]:
 def freed_settings(before: Any, now: Any) -> set[str]:
     """Returns the names of the settings that were fixed for the previous algorithm, and are not for the new one."""
     return fixed_settings(before).keys() - fixed_settings(now).keys()
-
-
-def listed(words: Sequence[str]) -> str:
-    """Returns words as an English list: ``'a', 'b' or 'c'``."""
-    *others, last = map(repr, words)
-    return f"{', '.join(others)} or {last}" if others else last
 
 
 def is_set(value: Any) -> bool:

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from qtab._utils import checks
-from qtab._utils.shown import did_you_mean, shown
+from qtab._utils.shown import did_you_mean, listed, shown
 from qtab.config.choices import CHOICES, FUNCTION, MAPPING
 from qtab.config.options import (
     DEFAULTS_OF_NORMALIZED,
@@ -24,7 +24,6 @@ from qtab.config.options import (
     WITH_PROBABILITIES,
     fixed_settings,
     is_set,
-    listed,
 )
 from qtab.config.value_checks import check_limits, not_negative
 

@@ -4,11 +4,11 @@ from collections.abc import Mapping
 from typing import Any, get_args
 
 from qtab._utils import checks
-from qtab._utils.shown import shown
+from qtab._utils.shown import listed, shown
 from qtab.config import options as config
 from qtab.config.choices import LearningRateSchedule
 from qtab.config.implied import implied_schedule
-from qtab.config.options import Option, listed
+from qtab.config.options import Option
 from qtab.config.value_checks import Check
 
 ONE_STEP_SIZE = (

@@ -13,8 +13,7 @@ from qtab import _core
 from qtab._utils import checks
 from qtab._utils.memory import check_memory, memory_left, memory_limit
 from qtab._utils.progress import ProgressBar
-from qtab._utils.shown import counted, shown
-from qtab.config.options import listed
+from qtab._utils.shown import counted, listed, shown
 from qtab.discretizers import Discretizer
 from qtab.planning.policies import GivenPolicy, as_followed, probabilities
 from qtab.prediction.estimates import ValueEstimates

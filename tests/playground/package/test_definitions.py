@@ -75,7 +75,7 @@ def test_maps_are_gymnasiums(key):
 
 @pytest.mark.parametrize("rule", definitions()["rules"], ids=lambda rule: f"{rule['setting']}={rule['value']}")
 def test_python_refuses_what_a_rule_excludes(rule):
-    beside = {"scale": (10.0, 100.0)} if rule["unless"].get("discretizer") not in ("tiles", "fourier") else {}
+    beside: dict[str, Any] = {"scale": (10.0, 100.0)} if rule["unless"].get("discretizer") not in ("tiles", "fourier") else {}
     if rule["setting"] == "traces":
         beside = {**beside, "algorithm": "sarsa_lambda"}
     with pytest.raises(ValueError, match=f"^{rule['setting']} must be "):
@@ -85,8 +85,9 @@ def test_python_refuses_what_a_rule_excludes(rule):
 def test_a_discretizer_brings_the_settings_that_python_gives_it():
     found = definitions()["implied"]
     assert found.keys() == {"fourier"}
-    chosen = {"discretizer": "fourier", "algorithm": "sarsa_lambda"}
-    config = qtab.train("MountainCar-v0", **chosen, episodes=1, progress=False).config
+    config = qtab.train(
+        "MountainCar-v0", discretizer="fourier", algorithm="sarsa_lambda", episodes=1, progress=False
+    ).config
     assert {name: getattr(config, name) for name in found["fourier"]} == found["fourier"]
 
 
