@@ -40,6 +40,7 @@ PROGRAMS = (
     "&epsilon_warm_up=20&learning_rate_schedule=linear&min_learning_rate=0.01&learning_rate_warm_up=10",
     "#env=CartPole-v1&discretizer=tiles&tilings=4&tiles=3&episodes=20&algorithm=watkins_q_lambda&traces=replacing",
     "#env=MountainCar-v0&discretizer=fourier&order=4&coupled=false&algorithm=sarsa&learning_rate=0.004&episodes=60",
+    "#env=MountainCar-v0&discretizer=fourier&algorithm=watkins_q_lambda&episodes=60",
 )
 TABLE = """async () => {
   const table = await playground.engine.table(0);

@@ -1,5 +1,7 @@
 // Numbers as text, and typed numbers: those that are not finite or out of range are rejected with a message.
 
+import { definitions } from "./engine.js";
+
 const WHOLE = new Intl.NumberFormat("en-US", { maximumFractionDigits: 0 });
 
 /** A number with up to `digits` significant digits, a true minus sign, and words for non-finite numbers. */
@@ -46,14 +48,14 @@ const NUMBER = /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;
 /** The largest learning rate if states have no cells of their own: with tile coding it is divided among the tilings. */
 export const HIGHEST_RATE = 2;
 
-/** Whether each state is one row of the table. */
-export function hasCells({ discretizer }) {
-  return !["tiles", "fourier"].includes(discretizer);
-}
-
 /** Whether the features of states are numbers, which multiply all weights. */
 export function isWeighted({ discretizer }) {
-  return discretizer === "fourier";
+  return discretizer in definitions.implied;
+}
+
+/** Whether each state is one row of the table. */
+export function hasCells(settings) {
+  return settings.discretizer !== "tiles" && !isWeighted(settings);
 }
 
 /** The largest value of a setting beside others. */
