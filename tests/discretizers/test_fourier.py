@@ -237,7 +237,7 @@ def test_the_default_rate_learns_cart_pole() -> None:
         ({"algorithm": "monte_carlo"}, r"^algorithm must be 'q_learning', .* for discretizer 'fourier', got 'monte_c"),
         (
             {"exploration": "ucb"},
-            r"^exploration must be .* for discretizer 'fourier', whose features are active in every",
+            r"^exploration must be .* for discretizer 'fourier', whose features have no visits to count",
         ),
         ({"learning_rate_schedule": "visits"}, r"^learning_rate_schedule must be .* for discretizer 'fourier'"),
         ({"terminal_update": "assign"}, r"^terminal_update must be 'target' for discretizer 'fourier', got 'assign'"),

@@ -216,6 +216,10 @@ def test_the_command_line_reads_the_options() -> None:
 @pytest.mark.parametrize(
     ("chosen", "message"),
     [
+        (
+            {"discretizer": "coarse", "algorithm": "sarsa_lambda", "traces": "replacing"},
+            r"^traces must be 'accumulating' for discretizer 'coarse', got 'replacing'; .* has dutch traces$",
+        ),
         ({"discretizer": "polynomial", "order": 0}, r"^order must be an integer from 1 to 1023, got 0"),
         (
             {"discretizer": "polynomial", "order": 40},

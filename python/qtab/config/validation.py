@@ -93,13 +93,14 @@ def _mismatch_with_weighted(name: str, value: Any, discretizer: str) -> str | No
     if (name, value) == ("terminal_update", "assign"):
         return f"terminal_update must be 'target' {where}, got 'assign'"
     if (name, value) in (("learning_rate_schedule", "visits"), ("exploration", "ucb")):
-        return other_choice(name, value, (value,), f"{where}, whose features are active in every state")
+        return other_choice(name, value, (value,), f"{where}, whose features have no visits to count")
     if name == "algorithm" and value not in LEARNS_WEIGHTED:
         return f"algorithm must be {listed(LEARNS_WEIGHTED)} {where}, got {shown(value)}"
     if name == "traces" and value in ("replacing", "clearing"):
+        reason = "" if discretizer == "coarse" else ", because the others set traces to 1, and its features are not 1,"
         return (
-            f"traces must be 'accumulating' {where}, because the others set traces to 1, and its features are not 1, "
-            f"got {shown(value)}; algorithm 'true_online_sarsa_lambda' has dutch traces"
+            f"traces must be 'accumulating' {where}{reason or ','} got {shown(value)}; algorithm "
+            "'true_online_sarsa_lambda' has dutch traces"
         )
     if name == "action_mask" and value is not False:
         return f"action_mask must be False {where}, got {shown(value)}"
