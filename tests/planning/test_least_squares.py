@@ -1,5 +1,6 @@
 """Least-squares policy iteration: equal to policy iteration with exact features, and the chains of its article."""
 
+import copy
 from typing import Any
 
 import gymnasium as gym
@@ -66,11 +67,16 @@ def plain_lstdq(batch: Transitions, features: Array, policy: Any, epsilon: float
 
 
 @pytest.mark.parametrize("epsilon", [0.0, 0.5])
-def test_lstdq_solves_the_equations_of_its_definition(epsilon: float) -> None:
+@pytest.mark.parametrize(
+    "features",
+    [np.random.default_rng(2).standard_normal((6, 2)), np.eye(6), np.repeat(np.diag([1e6, 1e-3, 2.0]), 2, axis=0)],
+    ids=["dense", "states", "groups"],
+)
+def test_lstdq_solves_the_equations_of_its_definition(features: Array, epsilon: float) -> None:
     env = gym.wrappers.TimeLimit(random_mdp(6, 2, 1, actions=3), 7)
     batch = Transitions.sample(env, 300, seed=4)
     assert batch.terminated.any()
-    features, policy = np.random.default_rng(2).standard_normal((6, 2)), np.array([2, 0, 1, 1, 0, 2])
+    policy = np.array([2, 0, 1, 1, 0, 2])
     found = lstdq(batch, features, policy, GAMMA, epsilon=epsilon)
     np.testing.assert_allclose(found, plain_lstdq(batch, features, policy, epsilon), rtol=1e-9)
     by_function = lstdq(batch, lambda state: features[state], lambda state: int(policy[state]), GAMMA, epsilon=epsilon)
@@ -190,11 +196,46 @@ def test_observations_of_several_integers_are_indices() -> None:
     assert np.array_equal(found, lstdq(flat, features.reshape(-1, 4), policy.ravel(), 1.0))
 
 
-def test_a_cycle_of_policies_is_reported() -> None:
-    found = lspi(Transitions.sample(chain(4, {0, 3}), 40, seed=1), POLYNOMIALS, GAMMA, max_iterations=1)
+def test_a_cycle_of_policies_is_reported(four: qtab.TabularEnv) -> None:
+    found = lspi(Transitions.sample(four, 10, seed=3), POLYNOMIALS[:, :2], GAMMA, max_iterations=8)
+    assert named(found, 4) == ["RRRR", "LLLL"] * 4
+    assert np.array_equal(found.history[-1], found.history[-3])
     assert not found.converged
-    assert repr(found) == "<LeastSquaresPolicy of 3 features and 2 actions: 1 iteration, not converged>"
+    assert repr(found) == "<LeastSquaresPolicy of 2 features and 2 actions: 8 iterations, not converged>"
     assert repr(Transitions([0], [1], [0.0], [1], [False])) == "<1 transition, 2 actions>"
+
+
+def allowed(state: Any) -> Any:
+    """The mask of a state of FrozenLake: no step to the left in the first column, and none up in the first row."""
+    return [state % 4 > 0, True, True, state > 3]
+
+
+def test_masked_actions_are_never_chosen() -> None:
+    lake = gym.make("FrozenLake-v1", is_slippery=False).unwrapped
+    masked: Any = copy.deepcopy(lake)
+    for state in range(16):  # the same task, in which the masked actions are the worst ones
+        for action in np.flatnonzero(~np.array(allowed(state))):
+            masked.P[state][int(action)] = [(1.0, state, -10.0, False)]
+    found = lspi(Transitions.of_table(lake), np.eye(16), GAMMA, action_mask=allowed)
+    best = qtab.optimum(masked, discount=GAMMA, method="policy_iteration")
+    for iteration in range(len(found.history)):
+        assert all(allowed(state)[action] for state, action in enumerate(found.actions(np.arange(16), iteration)))
+    assert found(0) == best.policy[0]
+    every = np.flatnonzero(np.array([allowed(state) for state in range(16)]))
+    np.testing.assert_allclose(found.q_values(np.arange(16)).ravel()[every], best.q_values.ravel()[every], atol=1e-9)
+    assert {lspi(Transitions.of_table(lake), np.eye(16), GAMMA)(state) for state in (5, 7)} == {0}
+
+
+def test_recorded_episodes_with_masks_need_them_again() -> None:
+    run = qtab.train("FrozenLake-v1", seed=0, episodes=40, record=40, action_mask=allowed, epsilon=1.0)
+    batch = Transitions.recorded(run)
+    with pytest.raises(ValueError, match=r"action_mask must be a function .* since the recorded run had action masks"):
+        lspi(batch, np.eye(16), GAMMA, epsilon=0.01)
+    found = lspi(batch, np.eye(16), GAMMA, epsilon=0.01, action_mask=allowed)
+    assert all(allowed(state)[found(state)] for state in range(16))
+    for wrong, error in ((True, TypeError), (lambda state: [True, True], ValueError)):
+        with pytest.raises(error, match="action_mask must"):
+            lspi(batch, np.eye(16), GAMMA, epsilon=0.01, action_mask=wrong)  # type: ignore[arg-type]
 
 
 HALF = Transitions([0, 1, 0], [0, 0, 1], [1.0, 0.0, 0.0], [1, 0, 1], [False, False, False])
@@ -211,7 +252,7 @@ HALF = Transitions([0, 1, 0], [0, 0, 1], [1.0, 0.0, 0.0], [1, 0, 1], [False, Fal
         (
             lambda: lspi(HALF, np.ones((2, 2))),
             ValueError,
-            "leave open the weights of features 0, 1 of action 0; epsilon=",
+            "leave open the weights of features 0, 1 of action 0; set epsilon above 0, or",
         ),
         (
             lambda: lspi(Transitions([0], [0], [1.0], [0], [True], n_actions=2), [[1.0]]),
@@ -221,7 +262,7 @@ HALF = Transitions([0, 1, 0], [0, 0, 1], [1.0, 0.0, 0.0], [1, 0, 1], [False, Fal
         (
             lambda: lstdq(Transitions([0], [0], [1.0], [1], [False], 2), [[1.0], [3.0]], 0, 0.9, epsilon=1.7),
             ValueError,
-            "the transitions leave open all weights",
+            "the transitions leave open all weights; set another epsilon than 1.7, or use more transitions",
         ),
         (lambda: lspi(HALF, np.eye(2), epsilon=0.1).q_values(0), ValueError, "observations must hold at least 1"),
         (

@@ -1,5 +1,6 @@
 """``qtab.planning.lspi``: least-squares policy iteration."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -8,15 +9,17 @@ from numpy.typing import ArrayLike, NDArray
 
 from qtab._utils import checks
 from qtab._utils.fields import with_fields
-from qtab._utils.shown import counted
+from qtab._utils.shown import counted, shown
+from qtab.config.functions import checked_mask
 from qtab.config.unknown import suggesting
+from qtab.planning.least_squares.equations import FloatArray
 from qtab.planning.least_squares.lstdq import (
-    FloatArray,
     GivenActions,
     GivenFeatures,
     batch_of,
     checked_epsilon,
     chosen_actions,
+    each,
     feature_vectors,
 )
 from qtab.planning.least_squares.transitions import Transitions, observed
@@ -39,6 +42,8 @@ class LeastSquaresPolicy:
     """The discount γ."""
     features: GivenFeatures = field(repr=False)
     """x(s), as given."""
+    action_mask: Callable[[Any], ArrayLike] | None = field(default=None, repr=False)
+    """The available actions of an observation, as given; None if all actions always are."""
 
     @property
     def weights(self) -> FloatArray:
@@ -65,10 +70,12 @@ class LeastSquaresPolicy:
     def actions(self, observations: ArrayLike, iteration: int = -1) -> NDArray[np.int64]:
         """Returns the greedy actions of n observations, (n,), counted from 0; see :meth:`q_values`.
 
-        Ties go to the first action.
+        Ties go to the first action. Actions that ``action_mask`` excludes are never chosen.
         """
-        chosen: NDArray[np.int64] = np.argmax(self.q_values(observations, iteration), axis=1)
-        return chosen
+        values = self.q_values(observations, iteration)
+        if self.action_mask is None:
+            return _greedy(values, None)
+        return _greedy(values, _masks(self.action_mask, np.asarray(observations), values.shape[1]))
 
     def __call__(self, observation: Any) -> int:
         """Returns the greedy action of one observation, counted from 0."""
@@ -94,6 +101,7 @@ def lspi(
     epsilon: float = 0.0,
     tolerance: float = 1e-5,
     max_iterations: int = 100,
+    action_mask: Callable[[Any], ArrayLike] | None = None,
 ) -> LeastSquaresPolicy:
     """Finds a policy by least-squares policy iteration: evaluates it by LSTDQ, makes it greedy, and repeats.
 
@@ -108,29 +116,73 @@ def lspi(
             observation to (d,) numbers. Each action has weights of its own.
         discount: The discount γ, in [0, 1].
         policy: The initial policy, as for :func:`qtab.planning.lstdq`: a single action for all states; an array; or a
-            function from an observation to an action.
-        epsilon: ε, at least 0: A begins as ε times the identity.
+            function from an observation to an action. Where ``action_mask`` excludes its action, it takes the first
+            available one.
+        epsilon: ε, at least 0: A begins as ε times the identity. A small ε holds weights near zero that the
+            transitions leave open.
         tolerance: The iterations end when no weight changes by as much as this. The greedy action is the one with the
             largest value; ties go to the first action.
         max_iterations: The largest number of iterations. The policies may repeat in a cycle and never converge.
+        action_mask: A function from an observation to (actions,) booleans or 0 and 1, the available actions, among
+            which each policy chooses; as for :func:`qtab.train`. None means that all actions are. The recorded episodes
+            of a run with action masks need it.
 
     Raises:
-        TypeError: for an argument of the wrong type.
-        ValueError: for an argument out of range, features or a policy that do not fit the observations, or if A is
-            singular, with the features whose weights are not determined.
+        TypeError: for an argument of the wrong type, or a mask that does not hold booleans or integers.
+        ValueError: for an argument out of range, features, a policy or masks that do not fit the observations or the
+            actions, no masks for the episodes of a run that had some, or if A is singular, with the features whose
+            weights are not determined.
     """
     discount, epsilon = checks.real("discount", discount, 0.0, 1.0), checked_epsilon(epsilon)
     tolerance = checks.finite("tolerance", tolerance)
     if tolerance <= 0.0:
         raise ValueError(f"tolerance must be above 0, got {tolerance:g}")
     max_iterations = checks.integer("max_iterations", max_iterations, least=1)
-    batch = batch_of(transitions, features)
+    batch = batch_of(transitions, features, discount, epsilon)
+    masks = _next_masks(action_mask, transitions)
     following = chosen_actions("policy", policy, transitions)
+    if masks is not None:
+        is_available = masks[np.arange(len(masks)), following]
+        following = np.where(is_available, following, np.argmax(masks, axis=1))
     history: list[FloatArray] = []
     converged = False
     while len(history) < max_iterations and not converged:
-        weights = batch.solve(following, discount, epsilon)
+        weights = batch.solve(following)
         converged = bool(history) and bool(np.abs(weights - history[-1]).max() < tolerance)
         history.append(weights)
-        following = np.argmax(batch.next_x @ weights, axis=1)
-    return LeastSquaresPolicy(np.array(history), converged, discount, features)
+        following = _greedy(batch.next_x @ weights, masks)
+    return LeastSquaresPolicy(np.array(history), converged, discount, features, action_mask)
+
+
+def _greedy(values: FloatArray, masks: NDArray[np.bool_] | None) -> NDArray[np.int64]:
+    """Returns the available action with the largest value in each row of (n, actions) values."""
+    chosen: NDArray[np.int64] = np.argmax(values if masks is None else np.where(masks, values, -np.inf), axis=1)
+    return chosen
+
+
+def _next_masks(action_mask: Callable[[Any], ArrayLike] | None, transitions: Transitions) -> NDArray[np.bool_] | None:
+    """Returns the available actions of each next state, (n, actions), all in terminal states; None without masks.
+
+    Raises:
+        TypeError: if ``action_mask`` is not a function, or returns something other than booleans or integers.
+        ValueError: if it returns masks that do not fit the actions, or is missing for the episodes of a masked run.
+    """
+    if action_mask is None:
+        if transitions.masked:
+            raise ValueError(
+                "action_mask must be a function from an observation to its mask, since the recorded run had action "
+                "masks, got None"
+            )
+        return None
+    if not callable(action_mask):
+        raise TypeError(f"action_mask must be a function from an observation to its mask, got {shown(action_mask)}")
+    masks = np.ones((len(transitions), transitions.n_actions), np.bool_)
+    goes_on = ~transitions.terminated
+    masks[goes_on] = _masks(action_mask, transitions.next_observations[goes_on], transitions.n_actions)
+    return masks
+
+
+def _masks(action_mask: Callable[[Any], ArrayLike], observations: NDArray[Any], n_actions: int) -> NDArray[np.bool_]:
+    """Returns the masks of n observations, (n, actions)."""
+    found = [checked_mask("action_mask", action_mask(one), n_actions) for one in each(observations)]
+    return np.array(found, np.bool_).reshape(-1, n_actions)

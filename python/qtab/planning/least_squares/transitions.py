@@ -53,6 +53,8 @@ class Transitions:
     """The number of actions."""
     weights: NDArray[np.float64]
     """(n,): how often each transition counts."""
+    masked: bool
+    """Whether they are recorded episodes of a run with action masks; :func:`qtab.planning.lspi` then needs these."""
 
     def __init__(
         self,
@@ -64,6 +66,7 @@ class Transitions:
         n_actions: int | None = None,
         weights: ArrayLike | None = None,
     ) -> None:
+        self.masked = False
         self.observations = observed("observations", observations)
         self.next_observations = observed("next_observations", next_observations)
         count, taken, ends = len(self.observations), np.asarray(actions), np.asarray(terminated)
@@ -146,7 +149,7 @@ class Transitions:
                 whenever an episode ends, also by its time limit. One that was made here is closed afterwards.
             steps: The number of steps.
             policy: ``"random"`` for equal probabilities, or a function from an observation to the number of an action
-                or to (actions,) probabilities.
+                or to (actions,) probabilities. The environment's action masks are not read: the policy decides.
             seed: The seed of the environment, and of ``np.random.default_rng``, which draws the actions.
             env_kwargs: Keyword arguments of the environment's constructor, with an id or a spec.
 
@@ -203,7 +206,9 @@ class Transitions:
                     following, reward, terminated, _, _ = opened.step(action)
                     collected.add(observation, columns[tuple(flat(action))], reward, following, terminated)
                     observation = following
-        return collected.transitions(len(run.actions))
+        found = collected.transitions(len(run.actions))
+        found.masked = run.config.action_mask is not False
+        return found
 
     def __len__(self) -> int:
         """Returns the number of transitions."""
