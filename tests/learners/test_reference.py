@@ -8,17 +8,12 @@ from hypothesis import given, settings
 import qtab
 from qtab.config.choices import Algorithm
 from qtab.config.options import PREFERENCES, TABLES_ONLY, fixed_settings
-from qtab.reference import LEARNERS
 from support.environments import Chain
 from support.learners.learner_settings import CAR, TRAINED, run_settings
 
 ALGORITHMS = get_args(Algorithm)
 PROFILE: Any = settings.default
 BACKENDS: tuple[Any, ...] = ("rust", "gymnasium")
-
-
-def test_every_algorithm_has_a_reference() -> None:
-    assert tuple(LEARNERS) == ALGORITHMS
 
 
 @pytest.mark.parametrize("env", TRAINED)
