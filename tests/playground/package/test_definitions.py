@@ -75,7 +75,9 @@ def test_maps_are_gymnasiums(key):
 
 @pytest.mark.parametrize("rule", definitions()["rules"], ids=lambda rule: f"{rule['setting']}={rule['value']}")
 def test_python_refuses_what_a_rule_excludes(rule):
-    beside: dict[str, Any] = {"scale": (10.0, 100.0)} if rule["unless"].get("discretizer") not in ("tiles", "fourier") else {}
+    beside: dict[str, Any] = (
+        {"scale": (10.0, 100.0)} if rule["unless"].get("discretizer") not in ("tiles", "fourier") else {}
+    )
     if rule["setting"] == "traces":
         beside = {**beside, "algorithm": "sarsa_lambda"}
     with pytest.raises(ValueError, match=f"^{rule['setting']} must be "):
