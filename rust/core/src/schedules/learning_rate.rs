@@ -66,6 +66,12 @@ impl LearningRate {
         Self { of_rows, divisors, uniform: false, ..Self::scheduled(schedule, 1) }
     }
 
+    /// The step size that all weights share, if it does not depend on visits or on the row.
+    #[inline(always)]
+    pub(crate) fn shared(&self) -> f64 {
+        self.step_size
+    }
+
     /// The step size of a row of weighted features.
     #[inline(always)]
     pub(crate) fn of_row(&self, row: u32) -> f64 {

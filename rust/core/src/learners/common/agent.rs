@@ -91,8 +91,14 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
     pub fn sample_action(&mut self, rows: impl ActiveFeatures, rng: &mut impl Rng) -> usize {
         match &self.masks {
             None => rng.integers(self.table.num_actions() as u32) as usize,
-            Some(_) => random_available_action(self.action_values(rows), rng),
+            Some(_) => self.sample_available_action(rows, rng),
         }
+    }
+
+    /// A random available action. It is a separate function, so that the case without masks is inlined.
+    #[cold]
+    fn sample_available_action(&mut self, rows: impl ActiveFeatures, rng: &mut impl Rng) -> usize {
+        random_available_action(self.action_values(rows), rng)
     }
 
     /// Records the action mask of a state.

@@ -8,7 +8,7 @@ use crate::memory::AllocationError;
 use crate::policies::{Policy, assert_takes};
 use crate::q_table::QTable;
 use crate::random::Rng;
-use crate::schedules::{LearningRate, StepSize};
+use crate::schedules::LearningRate;
 use crate::tasks::Next;
 
 /// The traces z of an update rule: [`Traces`] for binary features, of which a few are active, and
@@ -156,7 +156,7 @@ impl EligibilityTraces for Traces {
         (state, action): (&R, usize),
         decay: f64,
     ) -> f64 {
-        learning_rate.at(0) * decay * self.sum(table, state.as_ref(), action)
+        learning_rate.shared() * decay * self.sum(table, state.as_ref(), action)
     }
 
     #[inline(always)]
@@ -187,7 +187,7 @@ impl EligibilityTraces for Traces {
         (state, action): (&R, usize),
         change: f64,
     ) {
-        Self::subtract(self, table, state.as_ref(), action, learning_rate.at(0) * change);
+        Self::subtract(self, table, state.as_ref(), action, learning_rate.shared() * change);
     }
 
     #[inline(always)]
