@@ -286,8 +286,11 @@ def test_functions_that_read_rows_refuse_the_run() -> None:
     run = qtab.train(CAR, episodes=2, **FOURIER)
     with pytest.raises(ValueError, match=r"^run must have rows for its observations to be diagnosed, got weighted"):
         qtab.diagnose(run)
-    with pytest.raises(ValueError, match=r"^policy must have rows for its observations to be followed, got weighted"):
+    with pytest.raises(ValueError, match=r"^policy must have rows .* got weighted .*; lambda .* a function instead$"):
         qtab.estimate_values(CAR, run, episodes=2)
+    policy = lambda observation: run.predict(observation)[0]  # noqa: E731 - as the message has it
+    estimates = qtab.estimate_values(CAR, policy, discretizer="fourier", learning_rate=0.005, episodes=2)
+    assert estimates.value([-0.5, 0.0]).shape == (1,)
 
 
 def test_a_step_size_that_diverges_is_named() -> None:

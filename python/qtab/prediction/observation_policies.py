@@ -149,7 +149,7 @@ def observation_policy(name: str, policy: GivenPolicy, cells: Discretizer, actio
 def _of_run(name: str, run: Run, cells: Discretizer, actions: Actions) -> GreedyPolicy:
     refuse_time_aware(name, run)
     theirs = run.discretizer
-    check_binary(name, theirs, "be followed")
+    check_binary(name, theirs, "be followed", "; lambda observation: run.predict(observation)[0] is a function instead")
     if not isinstance(theirs, BoxDiscretizer) or theirs.spec()["type"] not in ("round", "bins", "tiles"):
         raise ValueError(f"{name} must be a run with a discretizer of Box observations, got {theirs!r}")
     if theirs.low.shape != cells.low.shape or theirs.low.dtype != cells.low.dtype:
