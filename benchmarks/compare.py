@@ -14,6 +14,7 @@ import mountain_car
 import own_functions
 import own_library
 import own_start
+import real_valued
 import vector_envs
 from loops import numba_loops
 from qtab._utils.versions import versions
@@ -23,6 +24,7 @@ PARTS: Mapping[str, Sequence[Callable[[], Table | own_start.StartTable]]] = {
     "training": [mountain_car.training],
     "environments": [environment_presets.training],
     "learners": [algorithms.learners],
+    "features": [real_valued.learning],
     "book": [algorithms.book],
     "stepping": [mountain_car.stepping, idle_env.learning],
     "vectors": [vector_envs.stepping],

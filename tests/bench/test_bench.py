@@ -20,6 +20,7 @@ import mountain_car
 import own_library
 import own_start
 import qtab as package
+import real_valued
 import tables
 import vector_envs
 from loops import c_loop, numba_loops
@@ -71,6 +72,10 @@ def test_every_benchmark_counts_its_steps() -> None:
     assert single(0) == package.train("Taxi-v4", seed=0).episode_lengths.sum()
     cut = package.train("MountainCar-v0", seed=0, **algorithms.LEARNERS[algorithms.CUT])
     assert algorithms.learners().benchmarks[algorithms.CUT](0) == cut.episode_lengths.sum()
+    waves = package.train(
+        "MountainCar-v0", seed=0, **real_valued.SARSA, **real_valued.FEATURES[real_valued.FOURIER], episodes=300
+    )
+    assert real_valued.learning().benchmarks[real_valued.FOURIER](0) == waves.episode_lengths.sum()
     idle = idle_env.EPISODES * idle_env.EPISODE_STEPS
     assert [loop(0) for loop in idle_env.learning().benchmarks.values()] == [idle, idle]
 

@@ -15,8 +15,9 @@ import own_cars
 import own_functions
 import qtab
 from algorithms import CUT, CUTOFF, LEARNERS
-from loops import c_loop, numba_loops, plain_loop, table_loop
+from loops import c_loop, numba_fourier, numba_loops, plain_loop, table_loop
 from qtab.cli.commands import bench
+from real_valued import FEATURES, FOURIER, SARSA
 from support.repository import ROOT
 
 
@@ -96,6 +97,17 @@ def test_the_numba_loop_of_sarsa_lambda_equals_ours_to_the_bit(cutoff: float) ->
     assert table.tobytes() == run.tables.tobytes()
     assert returns.tobytes() == run.episode_returns.tobytes()
     assert steps == run.episode_lengths.sum()
+
+
+def test_the_numba_loop_with_a_fourier_basis_equals_ours_to_the_bit() -> None:
+    run = qtab.train("MountainCar-v0", seed=4, bit_generator="MT19937", episodes=4, **{**SARSA, **FEATURES[FOURIER]})
+    starts = np.random.default_rng(4).uniform(-0.6, -0.4, 4)
+    table, returns, steps = numba_fourier.sarsa(starts, 4, False)
+    assert table.tobytes() == run.tables.tobytes()
+    assert returns.tobytes() == run.episode_returns.tobytes()
+    assert steps == run.episode_lengths.sum()
+    by_cosines, by_products = (numba_fourier.sarsa(starts[:1], 4, how)[0] for how in (True, False))
+    assert np.allclose(by_cosines, by_products, rtol=1e-9)
 
 
 @pytest.mark.parametrize("name", environment_presets.TABLES)
