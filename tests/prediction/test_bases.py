@@ -57,6 +57,72 @@ def test_any_method_with_any_basis_equals_plain_numpy(data: st.DataObject) -> No
     assert found.verify().equal
 
 
+TRAINED: dict[str, dict[str, Any]] = {
+    "fourier": {"order": 2, "algorithm": "double_q_learning"},
+    "polynomial": {"order": 3, "coupled": False},
+    "radial": {"centers": (9, 8), "normalized": True, "algorithm": "actor_critic"},
+    "coarse": {"centers": 4, "algorithm": "sarsa"},
+}
+DIVISIONS: dict[str, dict[str, Any]] = {
+    "as in the run": {},
+    "other features": {"discretizer": "radial", "centers": 3},
+    "tiles": {"discretizer": "tiles", "tilings": 4},
+    "bins": {"discretizer": "bins", "bins": 4},
+}
+
+
+@pytest.mark.parametrize("basis", TRAINED)
+def test_a_run_with_weighted_features_is_followed_as_a_function_would_be(basis: Any) -> None:
+    given = {"learning_rate": 0.01, "episodes": 3, "max_episode_steps": 60}
+    run = qtab.train(CAR, discretizer=basis, seed=12, initial_q=(-0.5, 0.5), **{**given, **TRAINED[basis]})
+    taken = set()
+
+    def as_a_function(observation: Any) -> int:
+        action = int(run.predict(observation)[0])
+        taken.add(action)
+        return action
+
+    for name, division in DIVISIONS.items():
+        followed = qtab.estimate_values(CAR, run, seeds=2, **given, **division)
+        called = qtab.estimate_values(
+            CAR, as_a_function, seeds=2, **given, **(division or {"discretizer": basis, **_options(run)})
+        )
+        assert followed.weights.tobytes() == called.weights.tobytes(), name
+        assert followed.verify().equal, name
+    assert len(taken) > 1
+
+
+def _options(run: qtab.Run) -> dict[str, Any]:
+    """The options of the discretizer of a run."""
+    names = ("order", "coupled", "scale_step_sizes", "centers", "width", "normalized", "radius")
+    return {name: getattr(run.config, name) for name in names if getattr(run.config, name) is not None}
+
+
+def test_a_run_with_weighted_features_can_act_while_another_policy_is_evaluated() -> None:
+    run = qtab.train(CAR, discretizer="fourier", order=2, seed=0, episodes=3, initial_q=(-0.5, 0.5))
+    found = qtab.estimate_values(
+        CAR,
+        run,
+        behavior="random",
+        method="tdc",
+        learning_rate=0.005,
+        second_learning_rate=0.01,
+        episodes=3,
+        max_episode_steps=60,
+    )
+    assert found.verify().equal
+    with pytest.raises(ValueError, match="behavior must cover policy"):
+        qtab.estimate_values(CAR, "random", behavior=run, method="off_policy_td", learning_rate=0.01)
+
+
+def test_lstd_has_no_step_sizes_to_scale_with_the_features_of_a_run() -> None:
+    run = qtab.train(CAR, discretizer="fourier", order=2, seed=0, episodes=1)
+    found = qtab.estimate_values(CAR, run, method="lstd", episodes=2, max_episode_steps=60)
+    assert found.verify().equal
+    with pytest.raises(ValueError, match="scale_step_sizes must be False for method 'lstd'"):
+        qtab.estimate_values(CAR, run, method="lstd", scale_step_sizes=True, order=2, discretizer="fourier")
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from qtab._spec import ObservationPolicySpec
 from qtab._utils.shown import shown
+from qtab.config.options import WEIGHTED
 from qtab.discretizers import Discretizer
-from qtab.discretizers.base import check_binary
 from qtab.discretizers.box import BoxDiscretizer
 from qtab.envs.actions import Actions
 from qtab.planning.optimum import Optimum
@@ -46,7 +46,7 @@ class GreedyPolicy:
 
     @property
     def tables(self) -> NDArray[np.float64]:
-        """The action values, (tables, rows, actions). Their sums over tables and active rows are compared."""
+        """The action values, (tables, rows, actions). Their sums over tables and active features are compared."""
         return np.ascontiguousarray(masked_tables(self.run))
 
     def spec(self) -> ObservationPolicySpec:
@@ -149,8 +149,7 @@ def observation_policy(name: str, policy: GivenPolicy, cells: Discretizer, actio
 def _of_run(name: str, run: Run, cells: Discretizer, actions: Actions) -> GreedyPolicy:
     refuse_time_aware(name, run)
     theirs = run.discretizer
-    check_binary(name, theirs, "be followed", "; lambda observation: run.predict(observation)[0] is a function instead")
-    if not isinstance(theirs, BoxDiscretizer) or theirs.spec()["type"] not in ("round", "bins", "tiles"):
+    if not isinstance(theirs, BoxDiscretizer) or theirs.spec()["type"] not in ("round", "bins", "tiles", *WEIGHTED):
         raise ValueError(f"{name} must be a run with a discretizer of Box observations, got {theirs!r}")
     if theirs.low.shape != cells.low.shape or theirs.low.dtype != cells.low.dtype:
         raise ValueError(

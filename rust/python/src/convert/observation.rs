@@ -46,10 +46,13 @@ impl<T, F> BoxReader<T, F> {
     }
 }
 
-impl<T: Float + Default + numpy::Element, F: Features<[T]>> ObservationReader for BoxReader<T, F> {
-    type Active = F::Active;
-
-    fn active_rows(&self, observation: &Bound<'_, PyAny>) -> Result<F::Active, RunError> {
+impl<T: Float + Default + numpy::Element, F> BoxReader<T, F> {
+    /// Calls a function with the features and the numbers of an observation.
+    pub(crate) fn read<R>(
+        &self,
+        observation: &Bound<'_, PyAny>,
+        read: impl FnOnce(&F, &[T]) -> Result<R, OutOfBounds>,
+    ) -> Result<R, RunError> {
         let py = observation.py();
         let converted;
         let array = if let Ok(array) = observation.cast::<PyArray1<T>>() {
@@ -70,9 +73,17 @@ impl<T: Float + Default + numpy::Element, F: Features<[T]>> ObservationReader fo
         let mut few = [T::default(); FEW_COMPONENTS];
         if let Some(values) = few.get_mut(..self.dimensions) {
             values.iter_mut().enumerate().for_each(|(index, value)| *value = item(index));
-            return Ok(self.features.active_rows(values)?);
+            return Ok(read(&self.features, values)?);
         }
-        Ok(self.features.active_rows(&(0..self.dimensions).map(item).collect::<Vec<_>>())?)
+        Ok(read(&self.features, &(0..self.dimensions).map(item).collect::<Vec<_>>())?)
+    }
+}
+
+impl<T: Float + Default + numpy::Element, F: Features<[T]>> ObservationReader for BoxReader<T, F> {
+    type Active = F::Active;
+
+    fn active_rows(&self, observation: &Bound<'_, PyAny>) -> Result<F::Active, RunError> {
+        self.read(observation, |features, numbers| features.active_rows(numbers))
     }
 }
 

@@ -15,7 +15,7 @@ use super::{AnyRecordings, Run, RunFactory};
 use crate::convert::Seed;
 use crate::error::RunError;
 use crate::rng::{agent_pcg64, environment_rng};
-use crate::spec::{BoxFeatures, DiscretizerSpec, PredictionSpec, RunSpec, match_capacity};
+use crate::spec::{BoxFeatures, DiscretizerSpec, PolicyFeatures, PredictionSpec, RunSpec, match_capacity};
 
 /// Runs of any method; those of TD(0) are compiled for the method, too.
 pub(super) fn predicting<E, F>(
@@ -83,7 +83,7 @@ where
     let (spec, prediction) = (Arc::clone(spec), Arc::clone(prediction));
     let build = move |seed: &Seed, stop: &StopFlag<'_>| {
         let task = NativeTask::new(env.clone(), features.clone(), Some(spec.max_episode_steps), environment_rng(seed));
-        let policies = prediction.policies(&spec, any_features)?;
+        let policies = prediction.policies(&spec, |own| PolicyFeatures::new(own, |bound| bound as f32))?;
         Ok((observed_run(task, policies, seed, &spec, &prediction, stop)?, AnyRecordings::None))
     };
     Box::new(BoxedFactory(build))

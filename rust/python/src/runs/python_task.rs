@@ -16,7 +16,7 @@ use super::python_env::PythonEnv;
 use super::{AnyRecordings, BuiltRun};
 use crate::convert::{BoxReader, ObservationReader, Seed};
 use crate::error::RunError;
-use crate::spec::{BoxFeatures, DiscretizerSpec, FloatType, PredictionSpec, RunSpec, match_capacity};
+use crate::spec::{BoxFeatures, DiscretizerSpec, FloatType, PolicyFeatures, PredictionSpec, RunSpec, match_capacity};
 
 /// The number of Q-learning steps on a grid that one step in Python counts as. It may take a millisecond.
 const STEP_WORK: u64 = 127;
@@ -93,17 +93,17 @@ impl PythonTaskBuilder<'_> {
         T: Float + Default + numpy::Element + 'static,
     {
         let (spec, seed) = (self.spec, self.seed);
-        let reader = |discretizer: &DiscretizerSpec| {
-            PyResult::Ok(BoxReader::new(BoxFeatures::new(discretizer, &to_dtype)?, dimensions))
-        };
-        let policies = prediction.policies(spec, reader)?;
+        let policies = prediction
+            .policies(spec, |own| PyResult::Ok(BoxReader::new(PolicyFeatures::new(own, &to_dtype)?, dimensions)))?;
         let run = if let DiscretizerSpec::Weighted(weighted) = &spec.discretizer {
             match_capacity!(weighted.n_features(), ROOM => {
                 let task = self.observed_task(BoxReader::new(weighted.basis::<T, ROOM>()?, dimensions));
                 observed_run(task, policies, seed, spec, prediction, stop)?
             })
         } else {
-            observed_run(self.observed_task(reader(&spec.discretizer)?), policies, seed, spec, prediction, stop)?
+            let features = BoxFeatures::new(&spec.discretizer, &to_dtype)?;
+            let task = self.observed_task(BoxReader::new(features, dimensions));
+            observed_run(task, policies, seed, spec, prediction, stop)?
         };
         Ok(BuiltRun { run, recordings: AnyRecordings::None, steps_python: true })
     }

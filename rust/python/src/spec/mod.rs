@@ -23,7 +23,7 @@ pub(crate) use action_masks::ActionMasksSpec;
 pub(crate) use discretizer::{DISCRETIZERS, DiscretizerSpec, FloatType, TilesSpec};
 pub(crate) use fields::{Fields, Variant};
 pub(crate) use initial_q::InitialQSpec;
-pub(crate) use prediction::{BoxFeatures, PredictionSpec, ReadRows};
+pub(crate) use prediction::{BoxFeatures, PolicyFeatures, PredictionSpec, ReadValues};
 pub(crate) use qtab_core::settings::{LearningRateSpec, PolicySpec, ScheduleSpec};
 pub(crate) use weighted::match_capacity;
 

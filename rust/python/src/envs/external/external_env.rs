@@ -23,7 +23,8 @@ use crate::error::{CompiledCodeError, invalid};
 use crate::runs::{AnyRecordings, BoxedFactory, RunFactory, boxed_run, check_actions, observed_run, one_step_runs};
 
 use crate::spec::{
-    ActionMasksSpec, BoxFeatures, DiscretizerSpec, FloatType, PredictionSpec, ReadRows, RunSpec, match_capacity,
+    ActionMasksSpec, BoxFeatures, DiscretizerSpec, FloatType, PolicyFeatures, PredictionSpec, ReadValues, RunSpec,
+    match_capacity,
 };
 use crate::vector::{DynVectorEnv, VectorOptions};
 
@@ -179,7 +180,7 @@ impl ExternalEnv {
     fn same_box_runs<T>(self: &Arc<Self>, to_dtype: fn(f64) -> T, spec: &Arc<RunSpec>) -> PyResult<Box<dyn RunFactory>>
     where
         T: Number + Float + numpy::Element + Send + Sync + 'static,
-        BoxFeatures<T>: ReadRows<Vec<T>>,
+        PolicyFeatures<T>: ReadValues<Vec<T>>,
     {
         let prediction = spec.prediction_by_observation();
         if let DiscretizerSpec::Weighted(weighted) = &spec.discretizer {
@@ -211,13 +212,13 @@ impl ExternalEnv {
     where
         T: Number + Float + numpy::Element + Send + Sync + 'static,
         F: Features<[T], Active: Send> + Clone + Send + Sync + 'static,
-        BoxFeatures<T>: ReadRows<Vec<T>>,
+        PolicyFeatures<T>: ReadValues<Vec<T>>,
     {
         let (env, spec, prediction) = (Arc::clone(self), Arc::clone(spec), Arc::clone(prediction));
         let options = self.options(&spec)?;
         let build = move |seed: &Seed, stop: &StopFlag<'_>| {
             let task = ExternalTask::<T, _>::new(&env, features.clone(), options, seed)?;
-            let policies = prediction.policies(&spec, |own| BoxFeatures::new(own, to_dtype))?;
+            let policies = prediction.policies(&spec, |own| PolicyFeatures::new(own, to_dtype))?;
             Ok((observed_run(task, policies, seed, &spec, &prediction, stop)?, AnyRecordings::None))
         };
         Ok(Box::new(BoxedFactory(build)))

@@ -8,7 +8,8 @@ use pyo3::types::PyBool;
 use qtab_core::prediction::ObservationPolicy;
 use qtab_core::random::Rng;
 
-use super::box_features::ReadRows;
+use super::action_values::ActionValues;
+use super::policy_features::ReadValues;
 use super::py_observation::PyObservation;
 use crate::convert::in_c_order;
 use crate::error::{RunError, invalid};
@@ -19,7 +20,7 @@ use crate::spec::{DiscretizerSpec, Fields, Variant};
 pub(crate) enum ObservationPolicySpec {
     /// The same probabilities everywhere, or separate ones for each cell of the task's discretizer.
     Table { probabilities: Arc<[f64]>, is_everywhere: bool },
-    /// The action with the largest sum of the active rows' values, over one or several tables.
+    /// The action with the largest value, added over one or several tables.
     Greedy { discretizer: DiscretizerSpec, tables: Arc<[f64]>, n_tables: usize },
     /// A function of the observation, in Python.
     Function(Arc<FunctionSpec>),
@@ -66,12 +67,12 @@ impl ObservationPolicySpec {
         matches!(self, Self::Function(_))
     }
 
-    /// The policy, where `own` is the task's discretizer. `rows` makes the row finder of a discretizer.
+    /// The policy, where `own` is the task's discretizer. `features` makes the features of a discretizer.
     pub(super) fn build<G>(
         &self,
         num_actions: usize,
         own: &DiscretizerSpec,
-        rows: impl Fn(&DiscretizerSpec) -> PyResult<G>,
+        features: impl Fn(&DiscretizerSpec) -> PyResult<G>,
     ) -> PyResult<ReadPolicy<G>> {
         let reader = match self {
             Self::Table { probabilities, is_everywhere } => {
@@ -94,8 +95,10 @@ impl ObservationPolicySpec {
                     let fit = format!("{per_table} numbers each, for observations like the task's");
                     return Err(invalid("tables", fit, format!("{} numbers", tables.len())));
                 }
-                let scratch = [vec![0.0; num_actions], vec![0.0; num_actions]];
-                PolicyReader::Greedy { rows: rows(discretizer)?, tables: Arc::clone(tables), per_table, scratch }
+                let is_weighted = discretizer.weighted().is_some();
+                let values = ActionValues::new(Arc::clone(tables), discretizer.num_rows(), num_actions, is_weighted);
+                let values = values.ok_or_else(|| invalid("discretizer", "fewer features", discretizer.num_rows()))?;
+                PolicyReader::Greedy { features: features(discretizer)?, values }
             }
             Self::Function(spec) => PolicyReader::Function(Arc::clone(spec)),
         };
@@ -134,19 +137,8 @@ pub(crate) struct ReadPolicy<G> {
 
 /// The reader of a policy's observations.
 enum PolicyReader<G> {
-    Table {
-        probabilities: Arc<[f64]>,
-        is_everywhere: bool,
-        is_deterministic: bool,
-    },
-    Greedy {
-        rows: G,
-        tables: Arc<[f64]>,
-        /// The number of values of a table.
-        per_table: usize,
-        /// The action values, and the action values of one table.
-        scratch: [Vec<f64>; 2],
-    },
+    Table { probabilities: Arc<[f64]>, is_everywhere: bool, is_deterministic: bool },
+    Greedy { features: G, values: ActionValues },
     Function(Arc<FunctionSpec>),
 }
 
@@ -154,7 +146,7 @@ impl<G> ReadPolicy<G> {
     /// `own` is the row of the observation in the task's discretizer.
     fn read<O: PyObservation>(&mut self, observation: &O, own: u32) -> Result<(), RunError>
     where
-        G: ReadRows<O>,
+        G: ReadValues<O>,
     {
         match &mut self.reader {
             PolicyReader::Table { probabilities, is_everywhere, is_deterministic } => {
@@ -163,16 +155,9 @@ impl<G> ReadPolicy<G> {
                 let possible = self.probabilities.iter().position(|&probability| probability > 0.0);
                 self.action = possible.filter(|_| *is_deterministic);
             }
-            PolicyReader::Greedy { rows, tables, per_table, scratch: [values, part] } => {
-                let active = rows.rows(observation)?;
-                for (index, table) in tables.chunks(*per_table).enumerate() {
-                    let sum: &mut [f64] = if index == 0 { values } else { part };
-                    add_rows(sum, table, active.as_ref());
-                    if index > 0 {
-                        values.iter_mut().zip(&*part).for_each(|(value, part)| *value += part);
-                    }
-                }
-                self.action = Some(first_of_largest(values));
+            PolicyReader::Greedy { features, values } => {
+                features.read_values(observation, values)?;
+                self.action = Some(values.best());
             }
             PolicyReader::Function(spec) => {
                 self.action = Python::attach(|py| spec.call(&observation.to_python(py)?, &mut self.probabilities))?;
@@ -221,23 +206,6 @@ impl FunctionSpec {
     }
 }
 
-/// The sum of some rows of a table, from left to right.
-fn add_rows(sum: &mut [f64], table: &[f64], active: &[u32]) {
-    for (index, &row) in active.iter().enumerate() {
-        let values = &table[row as usize * sum.len()..][..sum.len()];
-        if index == 0 {
-            sum.copy_from_slice(values);
-        } else {
-            sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += value);
-        }
-    }
-}
-
-/// `np.argmax`.
-fn first_of_largest(values: &[f64]) -> usize {
-    (1..values.len()).fold(0, |best, index| if values[index] > values[best] { index } else { best })
-}
-
 /// The policy that acts and, off policy, the policy that is evaluated.
 pub(crate) struct ObservationPolicies<G> {
     pub(super) behavior: ReadPolicy<G>,
@@ -248,7 +216,10 @@ pub(crate) struct ObservationPolicies<G> {
 /// The number of Q-learning steps on a grid that a call of a Python function counts as.
 const CALL_WORK: u64 = 127;
 
-impl<O: PyObservation, G: ReadRows<O>> ObservationPolicy<O> for ObservationPolicies<G> {
+/// The number of products of features and weights in the time of such a step.
+const PRODUCTS_PER_WORK: u64 = 8;
+
+impl<O: PyObservation, G: ReadValues<O>> ObservationPolicy<O> for ObservationPolicies<G> {
     type Error = RunError;
 
     fn choose(&mut self, observation: &O, active: &[u32], rng: &mut impl Rng) -> Result<(usize, f64), RunError> {
@@ -267,7 +238,12 @@ impl<O: PyObservation, G: ReadRows<O>> ObservationPolicy<O> for ObservationPolic
 
     fn work(&self) -> u64 {
         let policies = self.target.iter().chain([&self.behavior]);
-        CALL_WORK * policies.filter(|policy| matches!(policy.reader, PolicyReader::Function(_))).count() as u64
+        let work = |policy: &ReadPolicy<G>| match &policy.reader {
+            PolicyReader::Table { .. } => 0,
+            PolicyReader::Greedy { values, .. } => values.products() as u64 / PRODUCTS_PER_WORK,
+            PolicyReader::Function(_) => CALL_WORK,
+        };
+        policies.map(work).sum()
     }
 }
 

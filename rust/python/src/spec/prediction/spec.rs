@@ -96,12 +96,12 @@ impl PredictionSpec {
     pub(crate) fn policies<G>(
         &self,
         spec: &RunSpec,
-        rows: impl Fn(&DiscretizerSpec) -> PyResult<G>,
+        features: impl Fn(&DiscretizerSpec) -> PyResult<G>,
     ) -> PyResult<ObservationPolicies<G>> {
         let PoliciesSpec::OfObservations { behavior, target } = &self.policies else {
             return Err(invalid("policies", "those of observations", "those of states"));
         };
-        let build = |policy: &ObservationPolicySpec| policy.build(spec.num_actions, &spec.discretizer, &rows);
+        let build = |policy: &ObservationPolicySpec| policy.build(spec.num_actions, &spec.discretizer, &features);
         let target = target.as_ref().map(build).transpose()?;
         Ok(ObservationPolicies { behavior: build(behavior)?, target, num_actions: spec.num_actions })
     }
