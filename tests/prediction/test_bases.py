@@ -73,7 +73,7 @@ DIVISIONS: dict[str, dict[str, Any]] = {
 
 @pytest.mark.parametrize("basis", TRAINED)
 def test_a_run_with_weighted_features_is_followed_as_a_function_would_be(basis: Any) -> None:
-    given = {"learning_rate": 0.01, "episodes": 3, "max_episode_steps": 60}
+    given: dict[str, Any] = {"learning_rate": 0.01, "episodes": 3, "max_episode_steps": 60}
     run = qtab.train(CAR, discretizer=basis, seed=12, initial_q=(-0.5, 0.5), **{**given, **TRAINED[basis]})
     taken = set()
 

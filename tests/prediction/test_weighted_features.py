@@ -92,6 +92,27 @@ def test_values_are_products_of_vectors_and_weights() -> None:
     car.plot()
 
 
+def test_a_function_gives_the_feature_vector_of_each_discrete_observation() -> None:
+    def x(hand: tuple[int, int, int]) -> list[float]:
+        points, dealer, ace = hand
+        return [1.0, points / 32, dealer / 10, ace, ace * points / 32]
+
+    vectors = np.array([x(hand) for hand in np.ndindex(32, 11, 2)])
+    options: dict[str, Any] = {"method": "lstd", "episodes": 200, "record": 200}
+    found = qtab.estimate_values("Blackjack-v1", "random", features=x, **options)
+    given = qtab.estimate_values("Blackjack-v1", "random", features=vectors, **options)
+    assert found.feature_vectors is not None
+    assert found.feature_vectors.tobytes() == vectors.tobytes()
+    assert found.weights.tobytes() == given.weights.tobytes()
+    assert found.verify(200).equal
+    walk = qtab.estimate_values(
+        "qtab/RandomWalk-v0", "random", features=lambda state: (1, state), learning_rate=0.001, episodes=3
+    )
+    assert walk.feature_vectors is not None
+    assert walk.feature_vectors.tolist() == [[1, state] for state in range(19)]
+    assert walk.verify().equal
+
+
 def test_estimates_are_saved_with_their_features(tmp_path: Any) -> None:
     path, at = tmp_path / "values.npz", np.array([[-0.5, 0.0], [0.3, 0.05]], np.float32)
     bases: list[dict[str, Any]] = [
@@ -162,6 +183,20 @@ MOUNTAIN: dict[str, Any] = {"env": CAR, **FOURIER}
         ({**WALK, "features": np.ones((18, 2))}, ValueError, r"features must have a feature vector for .* 19 states"),
         ({**WALK, "features": np.full((19, 2), np.nan)}, ValueError, "features must be finite"),
         ({**WALK, "features": np.ones(19)}, TypeError, "features must be None or an array of integers, or of floats"),
+        ({**WALK, "features": lambda state: "x"}, TypeError, "features must hold numbers, got 'x'"),
+        ({**WALK, "features": lambda state: [np.inf]}, ValueError, "features must be finite"),
+        ({**WALK, "features": lambda state: 1.0}, ValueError, r"features must return one axis of several numbers, got"),
+        (
+            {**WALK, "features": lambda state: np.ones(1 + state // 5)},
+            ValueError,
+            r"features must return one axis of 1 numbers, got the shape \(2,\) for the observation 5",
+        ),
+        (
+            {"env": CAR, "features": lambda at: at, "learning_rate": 0.1},
+            ValueError,
+            "features must be an array for observations that are not discrete, got a function; gymnasium.wrappers.Tr",
+        ),
+        ({**MOUNTAIN, "features": lambda at: at}, ValueError, "features must be None for discretizer 'fourier'"),
         ({**WALK, "learning_rate": None}, ValueError, "learning_rate must be given for features with values other"),
         ({**WALK, "learning_rate_schedule": "visits"}, ValueError, "learning_rate_schedule must be 'constant', 'linea"),
         ({**WALK, "initial_value": 1.0}, ValueError, r"initial_value must be 0 .*; initial_weights= sets each weight"),

@@ -16,6 +16,7 @@ from qtab.config import Config
 from qtab.config.functions import function_name
 from qtab.discretizers.base import Discretizer, check_table_size
 from qtab.discretizers.layout import Layout
+from qtab.discretizers.weighted.polynomial import OF_FUNCTION
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -112,7 +113,8 @@ class Function(Discretizer):
         if indices is None:
             one_axis = self.cell_shape is not None and len(self.cell_shape) == 1
             wanted = self._wanted if one_axis else f"integers, {self._wanted}"
-            raise TypeError(f"discretizer must return {wanted}, got {shown(returned)}")
+            instead = f"; {OF_FUNCTION}" if _are_floats(returned) else ""
+            raise TypeError(f"discretizer must return {wanted}, got {shown(returned)}{instead}")
         cell = tuple(int(index) for index in np.atleast_1d(indices))
         if self.cell_shape is None:
             if not all(-(2**63) <= index < 2**63 for index in cell):
@@ -183,6 +185,14 @@ class Function(Discretizer):
     def split(self, observation: Any, count: int | None) -> list[Any]:
         """Returns a list of ``count`` observations in the structure of the space; None means a single one."""
         return super().split(observation, count) if self.layout is None else self.layout.split(observation, count)
+
+
+def _are_floats(returned: Any) -> bool:
+    """Returns whether the result of a function is an array of numbers that are not integers."""
+    try:
+        return np.asarray(returned).dtype.kind == "f"
+    except ValueError:  # parts of different lengths
+        return False
 
 
 def _integers(returned: Any) -> NDArray[Any] | None:

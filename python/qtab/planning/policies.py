@@ -1,6 +1,6 @@
 """A given policy as a table of probabilities: from an array, a function, a run, an optimum, or its name."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any, TypeAlias
 
 import gymnasium as gym
@@ -155,16 +155,22 @@ def _of_function(
     if not isinstance(space, gym.spaces.Discrete | gym.spaces.MultiDiscrete | gym.spaces.Tuple):
         raise ValueError(f"{name} must be an array for observations that are not discrete, got a function")
     table = np.empty((cells.n_rows, len(actions)))
+    for row, observation in enumerate(discrete_observations(space, cells)):
+        table[row] = answered(name, policy(observation), observation, actions)
+    return _distributions(name, table)
+
+
+def discrete_observations(space: gym.Space[Any], cells: Discretizer) -> Iterator[Any]:
+    """Yields the observation of each row, as the environment with this Discrete, MultiDiscrete or Tuple space does."""
     first = cells.low.reshape(-1)
     for row in range(cells.n_rows):
         numbers = np.array(np.unravel_index(row, cells.shape)) + first
-        observation: Any = int(numbers[0])
         if isinstance(space, gym.spaces.Tuple):
-            observation = tuple(numbers.tolist())
+            yield tuple(numbers.tolist())
         elif isinstance(space, gym.spaces.MultiDiscrete):
-            observation = numbers.astype(space.dtype)
-        table[row] = answered(name, policy(observation), observation, actions)
-    return _distributions(name, table)
+            yield numbers.astype(space.dtype)
+        else:
+            yield int(numbers[0])
 
 
 def answered(name: str, answer: Any, observation: Any, actions: Actions) -> list[float]:

@@ -17,6 +17,7 @@ from qtab.prediction.estimates import ValueEstimates
 from qtab.prediction.learning_rates import LEAST_SQUARES
 from qtab.prediction.runs import recorded_episodes, run_prediction
 from qtab.prediction.settings import Method, PredictionSettings
+from qtab.prediction.state_features import GivenFeatures
 from qtab.prediction.task import OF_OBSERVATIONS, resolve_prediction
 from qtab.training.setup.resolved_run import log_default_limit, log_python_stepping
 from qtab.training.train_many import seed_sequence, thread_count
@@ -63,7 +64,7 @@ def estimate_values(
     normalized: bool | None = None,
     radius: "Real | Reals | None" = None,
     actions: "Integer | Sequence[Real | Reals] | Array | None" = None,
-    features: ArrayLike | None = None,
+    features: GivenFeatures | None = None,
     initial_value: float = 0.0,
     initial_weights: ArrayLike | None = None,
     on_truncation: str = "bootstrap",
@@ -147,7 +148,8 @@ def estimate_values(
         actions: For a Box of actions: the actions to choose from, or the number of values of each component.
         features: None for a table; or (states,) or (states, n_active) integers: the features that are active in each
             state, as :func:`qtab.prediction.state_aggregation` and :func:`qtab.prediction.tile_coding` return them; or
-            (states, d) or (*cells, d) floats: the feature vector of each state.
+            (states, d) or (*cells, d) floats: the feature vector of each state; or, for discrete observations, a
+            function from an observation to its feature vector, (d,) numbers.
         initial_value: The value of every state before the first episode, 0 for features with values other than 1.
         initial_weights: (n_weights,): the weights before the first episode, instead of ``initial_value``.
         on_truncation: The end of a return at the time limit: it continues with the value of the last state
@@ -181,7 +183,7 @@ def estimate_values(
     limit = memory_limit(None)
     numbers = seed_sequence(seeds, limit)
     points = recorded_episodes(record, settings.episodes)
-    resolved, space = resolve_prediction(env, policy, settings, numbers[0], given)
+    resolved, space = resolve_prediction(env, policy, settings, numbers[0], given, reads_space=callable(features))
     log_default_limit(resolved)
     log_python_stepping(resolved)
     estimates, failed = run_prediction(

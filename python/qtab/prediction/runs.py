@@ -20,7 +20,7 @@ from qtab.prediction.estimates import ValueEstimates
 from qtab.prediction.learning_rates import LEAST_SQUARES, rate_settings
 from qtab.prediction.observation_policies import ObservationPolicies, observation_policy, reads_observations
 from qtab.prediction.settings import NEEDS_BEHAVIOR, OFF_POLICY, PredictionSettings
-from qtab.prediction.state_features import initial_weights, state_features
+from qtab.prediction.state_features import GivenFeatures, initial_weights, state_features
 from qtab.training.setup.resolved_run import ResolvedRun
 
 BYTES_PER_WEIGHT = 8 + 4
@@ -48,7 +48,7 @@ def run_prediction(
     settings: PredictionSettings,
     policy: GivenPolicy,
     behavior: GivenPolicy | None,
-    features: ArrayLike | None,
+    features: GivenFeatures | None,
     seeds: Sequence[int],
     points: NDArray[np.uint64],
     threads: int,
@@ -70,7 +70,7 @@ def run_prediction(
         if behavior is not None:
             followed = as_followed(probabilities("behavior", behavior, space, cells, actions))
         _check_covered(target, followed)
-    found = state_features(features, cells, settings)
+    found = state_features(features, cells, space, settings)
     n_weights, initial = found.n_weights, initial_weights(weights_before, found, settings)
     if not resolved.is_native and len(seeds) > 1:
         raise ValueError(f"seeds must be one seed for an environment that is stepped in Python, got {len(seeds)}")

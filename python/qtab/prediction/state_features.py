@@ -1,20 +1,27 @@
 """The features of the states of a prediction, and the initial weights, from the arguments."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
+import gymnasium as gym
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qtab._utils.arrays import numbers
 from qtab._utils.shown import shown
 from qtab.discretizers import Discretizer
+from qtab.discretizers.weighted.polynomial import OF_FUNCTION
+from qtab.planning.policies import discrete_observations
 from qtab.prediction.features import Rows, Vectors, are_floats, feature_rows, feature_vectors
 from qtab.prediction.learning_rates import AVERAGES_ONLY, LEAST_SQUARES, rate_settings
 from qtab.prediction.settings import OFF_POLICY, PredictionSettings
 
 MOST_RECURSIVE, MOST_SOLVED = 4096, 1024
 """The largest numbers of weights of LSTD, if it updates a matrix at each step, and if it solves equations."""
+
+GivenFeatures: TypeAlias = ArrayLike | Callable[[Any], ArrayLike]
+"""The accepted forms of features; see :func:`qtab.estimate_values`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,19 +45,22 @@ class StateFeatures:
         return sum(0 if array is None else array.nbytes for array in (self.rows, self.vectors))
 
 
-def state_features(features: ArrayLike | None, cells: Discretizer, settings: PredictionSettings) -> StateFeatures:
+def state_features(
+    features: GivenFeatures | None, cells: Discretizer, space: gym.Space[Any] | None, settings: PredictionSettings
+) -> StateFeatures:
     """Returns the features of the states of a prediction.
 
     Args:
         features: The argument of :func:`qtab.estimate_values`.
         cells: The discretizer of the observations.
+        space: The observation space, needed only for a function.
         settings: The settings of the prediction.
 
     Raises:
         TypeError: if ``features`` are not numbers.
         ValueError: for another shape, or if the features do not fit the discretizer, the method or its learning rate.
     """
-    found = _of_cells(features, cells) if cells.has_cells else _of_observations(features, cells)
+    found = _of_cells(features, cells, space) if cells.has_cells else _of_observations(features, cells)
     method = settings.method
     if found.is_weighted:
         _check_weighted(settings, "features" if cells.has_cells else "discretizer", cells)
@@ -106,7 +116,9 @@ def initial_weights(
     return np.ascontiguousarray(weights) + 0.0
 
 
-def _of_cells(features: ArrayLike | None, cells: Discretizer) -> StateFeatures:
+def _of_cells(features: GivenFeatures | None, cells: Discretizer, space: gym.Space[Any] | None) -> StateFeatures:
+    if callable(features):
+        features = _of_function(features, cells, space)
     if features is not None and are_floats(features) and np.ndim(features) > 1:
         vectors = feature_vectors(features, cells.n_rows, cells.shape)
         count = vectors.shape[1]
@@ -115,7 +127,28 @@ def _of_cells(features: ArrayLike | None, cells: Discretizer) -> StateFeatures:
     return StateFeatures(rows, None, n_weights, rows.shape[1], is_weighted=False)
 
 
-def _of_observations(features: ArrayLike | None, cells: Discretizer) -> StateFeatures:
+def _of_function(
+    function: Callable[[Any], ArrayLike], cells: Discretizer, space: gym.Space[Any] | None
+) -> NDArray[np.float64]:
+    """Returns (states, d): the numbers that a function returns for the observation of each state."""
+    if not isinstance(space, gym.spaces.Discrete | gym.spaces.MultiDiscrete | gym.spaces.Tuple):
+        raise ValueError(
+            f"features must be an array for observations that are not discrete, got a function; {OF_FUNCTION}"
+        )
+    vectors: list[NDArray[np.float64]] = []
+    for observation in discrete_observations(space, cells):
+        vector = numbers("features", function(observation))
+        if vector.ndim != 1 or not vector.size or (vectors and vector.shape != vectors[0].shape):
+            count = f"{len(vectors[0])}" if vectors else "several"
+            raise ValueError(
+                f"features must return one axis of {count} numbers, got the shape {vector.shape} for the observation "
+                f"{shown(np.asarray(observation).tolist())}"
+            )
+        vectors.append(vector)
+    return np.stack(vectors)
+
+
+def _of_observations(features: GivenFeatures | None, cells: Discretizer) -> StateFeatures:
     if features is not None:
         whose = "which gives the features" if cells.is_weighted else "whose tiles are the features"
         raise ValueError(f"features must be None for discretizer {_name(cells)}, {whose}, got {shown(features)}")

@@ -24,9 +24,24 @@ OF_OBSERVATIONS = (*DISCRETIZER, *OF_WEIGHTED, "actions")
 
 
 def resolve_prediction(
-    env: Any, policy: GivenPolicy, settings: PredictionSettings, seed: int, given: Mapping[str, Any]
+    env: Any,
+    policy: GivenPolicy,
+    settings: PredictionSettings,
+    seed: int,
+    given: Mapping[str, Any],
+    *,
+    reads_space: bool = False,
 ) -> tuple[ResolvedRun, gym.Space[Any] | None]:
-    """Returns the task of a prediction as a run, and its observation space if a function needs it."""
+    """Returns the task of a prediction as a run, and its observation space if a function needs it.
+
+    Args:
+        env: The argument of :func:`qtab.estimate_values`.
+        policy: The policy, which is one such function.
+        settings: The settings of the prediction.
+        seed: The seed of the task.
+        given: The settings of the task.
+        reads_space: Whether there is another such function.
+    """
     brought = _of_policy(policy, given)
     made = env
     if not isinstance(env, gym.Env | str | EnvSpec):
@@ -43,7 +58,8 @@ def resolve_prediction(
     cells = resolved.discretizer
     if cells.reads_space or not (cells.has_cells or isinstance(cells, BoxDiscretizer)):
         raise ValueError(f"env must have discrete observations or a Box with one axis of floats, got {cells!r}")
-    if isinstance(made, gym.Env) or not callable(policy) or isinstance(cells, BoxDiscretizer):
+    is_needed = (callable(policy) or reads_space) and not isinstance(cells, BoxDiscretizer)
+    if isinstance(made, gym.Env) or not is_needed:
         return resolved, made.observation_space if isinstance(made, gym.Env) else None
     # A function of the observation must receive observations of the right type.
     with closing(gym.make(made, **dict(given.get("env_kwargs", {})))) as again:

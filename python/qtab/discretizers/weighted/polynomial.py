@@ -5,6 +5,12 @@ from dataclasses import dataclass
 from qtab._spec import PolynomialSpec
 from qtab.discretizers.weighted.orders import OrderedFeatures
 
+OF_FUNCTION = (
+    "gymnasium.wrappers.TransformObservation makes the numbers of a function the observation, and discretizer="
+    "'polynomial' with order=1 and coupled=False has a weight for each"
+)
+"""What to use instead of a function that returns features, for messages."""
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class PolynomialBasis(OrderedFeatures):
