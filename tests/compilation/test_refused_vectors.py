@@ -7,6 +7,7 @@ import gymnasium as gym
 import pytest
 
 import qtab
+from qtab.compilation.rewriting import rewrite
 from support.environments.gym_classes import refused_vectors
 from support.lockstep.own_vectors import in_lockstep, make
 
@@ -41,12 +42,6 @@ def _unregistered() -> Iterator[None]:
         (refused_vectors.DefaultOptions, "NextStep", "options of reset have no default None"),
         (refused_vectors.Prints, "NextStep", "print"),
         (refused_vectors.Resets, "NextStep", "or draws from self.np_random; do not reset in `__init__`"),
-        (
-            refused_vectors.Divides,
-            "NextStep",
-            "an error might be raised here, in a value that compiled code leaves out",
-        ),
-        (refused_vectors.AddsUp, "NextStep", "an error might be raised here, in a value that compiled code leaves out"),
         (refused_vectors.Keeps, "NextStep", "self.steps keeps its value from one episode to the next"),
         (refused_vectors.Warns, "NextStep", "a message is logged, which compiled code leaves out"),
     ],
@@ -57,6 +52,22 @@ def test_classes_that_would_differ_are_refused_by_name(made: Any, mode: str, rea
         qtab.RustVectorEnv(f"QtabVec/{made.__name__}-v0", 2, autoreset_mode=mode)
     assert reason in str(raised.value)
     assert str(raised.value).endswith("or step it with gymnasium.vector.SyncVectorEnv")
+
+
+@pytest.mark.parametrize(
+    "made",
+    [
+        *(refused_vectors.Divides, refused_vectors.AddsUp, refused_vectors.BecomesNone),
+        *(refused_vectors.BecomesNoneBesides, refused_vectors.ExtendsByNumber, refused_vectors.AppendsTwo),
+        *(refused_vectors.TruthOfArray, refused_vectors.ChoiceByArray, refused_vectors.AddsToText),
+        *(refused_vectors.SmallIntegers, refused_vectors.BooleansOfNumPy),
+    ],
+)
+def test_values_that_nothing_reads_must_be_safe(made: Any) -> None:
+    refusal = rewrite(made()).shown.refusal
+    assert refusal is not None
+    assert "an error might be raised here, in a value that compiled code leaves out" in str(refusal)
+    assert rewrite(refused_vectors.Counted()).shown.refusal is None
 
 
 @pytest.mark.filterwarnings("ignore::UserWarning")

@@ -11,7 +11,18 @@ import numpy as np
 
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting.attributes import Attributes
-from qtab.compilation.rewriting.values import Array, DictKind, Scalar, TupleKind, Value, kind_of
+from qtab.compilation.rewriting.values import (
+    FLOAT,
+    INT,
+    MIXED,
+    Array,
+    DictKind,
+    Kind,
+    Scalar,
+    TupleKind,
+    Value,
+    kind_of,
+)
 
 MAX_INLINE = 64
 """The most elements of a constant array that are written as numbers; larger ones are bytes."""
@@ -93,6 +104,10 @@ class Program:
         """The info dicts that ``reset`` and ``step`` return, with their functions."""
         self.left_out: list[NotCompilable] = []
         """The errors, for vector environments, for code that is left out and that may fail or log messages."""
+        self.unread: dict[str, set[Kind | None]] = {}
+        """The kinds of what is assigned to attributes that are never read; None for other values than numbers."""
+        self.changed_unread: list[tuple[str, Scalar | None, NotCompilable]] = []
+        """Augmented assignments to such attributes: the name, the kind of the number, and the error for others."""
         self.stale: dict[str, NotCompilable] = {}
         """The attributes that are assigned and never read, and the errors for those that reset does not assign."""
         self.stale_in_reset: set[str] | None = None
@@ -108,8 +123,13 @@ class Program:
 
     def refused_in_vectors(self) -> NotCompilable | None:
         """Returns the error for code that is left out, and whose effect a vector environment would show."""
+        changed = [
+            error
+            for name, kind, error in self.changed_unread
+            if not self.unread.get(name, set()) <= {kind, INT, FLOAT, MIXED}
+        ]
         kept = [error for name, error in self.stale.items() if name not in (self.stale_in_reset or ())]
-        return next(iter([*self.left_out, *kept]), None)
+        return next(iter([*self.left_out, *changed, *kept]), None)
 
     def key(self, function: FunctionType, owner: type | None, values: dict[str, Value]) -> Any:
         """Returns the key of a function that is called with given constants and kinds."""

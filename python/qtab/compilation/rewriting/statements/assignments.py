@@ -7,7 +7,7 @@ from qtab.compilation.rewriting import specials
 from qtab.compilation.rewriting.expressions import containers
 from qtab.compilation.rewriting.expressions.operators import SYMBOLS
 from qtab.compilation.rewriting.statements.effects import check_pure
-from qtab.compilation.rewriting.statements.left_out import note_attribute, note_value
+from qtab.compilation.rewriting.statements.left_out import note_attribute, note_change, note_kind, note_value, number
 from qtab.compilation.rewriting.statements.stores import changeable, store, store_element
 from qtab.compilation.rewriting.statements.variables import in_variables, is_simple, kept
 from qtab.compilation.rewriting.values import (
@@ -35,6 +35,7 @@ def assign(scope: "Statements", node: ast.stmt, targets: list[ast.expr], value_n
         for target in targets:
             if isinstance(target, ast.Attribute):
                 note_value(scope, node, value_node)
+                note_kind(scope, target.attr, number(scope, value_node))
                 note_attribute(scope, node, target.attr)
             if isinstance(target, ast.Name):
                 scope.kinds[scope.version(target.id)] = INFO
@@ -167,8 +168,7 @@ def augmented(scope: "Statements", node: ast.AugAssign) -> None:
         return
     if _is_unread(scope, target):
         check_pure(scope, node.value)
-        note_value(scope, node, target, node.value)
-        note_attribute(scope, node, target.attr, is_changed=True)  # type: ignore[union-attr]
+        note_change(scope, node, target)  # type: ignore[arg-type]
         return
     if isinstance(target, ast.Attribute):
         before = scope.expression(target)

@@ -9,7 +9,7 @@ from qtab.compilation.rewriting.attributes import MISSING
 from qtab.compilation.rewriting.program import STALE
 from qtab.compilation.rewriting.source.syntax import GROWING
 from qtab.compilation.rewriting.statements.effects import check_pure, constant_of
-from qtab.compilation.rewriting.values import Array, Scalar, kind_of
+from qtab.compilation.rewriting.values import BOOL, FLOAT, INT, MIXED, Array, Kind, Scalar, TupleKind, kind_of
 
 if TYPE_CHECKING:
     from qtab.compilation.rewriting.expressions.expressions import Expressions
@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 
 EXACT = (ast.Add, ast.Sub, ast.Mult)
 """The operators that never fail for numbers."""
-NEVER_FAIL = (abs, bool, float, str)
+RAISES = "an error might be raised here, in a value that compiled code leaves out as nothing reads it,"
+LEAVE_OUT = "leave it out"
 
 
 def note_value(scope: "Expressions", node: ast.AST, *parts: ast.expr) -> None:
@@ -32,10 +33,21 @@ def note_value(scope: "Expressions", node: ast.AST, *parts: ast.expr) -> None:
     if operator is None:
         is_safe = all(_is_safe(scope, one) for one in parts)
     else:
-        is_safe = isinstance(operator, EXACT) and all(_is_number(scope, one) for one in parts)
+        is_safe = _combined(operator, *[number(scope, one) for one in parts]) is not None
     if not is_safe:
-        reason = "an error might be raised here, in a value that compiled code leaves out as nothing reads it,"
-        scope.program.left_out.append(scope.refuse(node, reason, "leave it out"))
+        scope.program.left_out.append(scope.refuse(node, RAISES, LEAVE_OUT))
+
+
+def note_kind(scope: "Expressions", name: str, kind: Kind | None) -> None:
+    """Notes the kind of a value that is assigned to an attribute that is never read; None if it has none."""
+    scope.program.unread.setdefault(name, set()).add(kind)
+
+
+def note_change(scope: "Expressions", node: ast.AugAssign, target: ast.Attribute) -> None:
+    """Notes an augmented assignment to an attribute that is never read: all its values must be such numbers."""
+    note_value(scope, node, target, node.value)
+    note_attribute(scope, node, target.attr, is_changed=True)
+    scope.program.changed_unread.append((target.attr, number(scope, target), scope.refuse(node, RAISES, LEAVE_OUT)))
 
 
 def note_attribute(scope: "Expressions", node: ast.AST, name: str, is_changed: bool = False) -> None:
@@ -79,6 +91,9 @@ def is_growing_list(scope: "Expressions", node: ast.expr) -> bool:
             values = [*node.args, *[keyword.value for keyword in node.keywords]]
             for value in values:
                 check_pure(scope, value)
+            is_right = len(node.args) == (method != "clear") and not node.keywords
+            if not is_right or (method == "extend" and not _is_sequence(scope, values[0])):
+                scope.program.left_out.append(scope.refuse(node, RAISES, LEAVE_OUT))
             note_value(scope, node, *values)
             note_attribute(scope, node, name, is_changed=True)
             return True
@@ -101,47 +116,101 @@ def _is_safe(scope: "Expressions", node: ast.expr) -> bool:
         case ast.Constant():
             return True
         case ast.Name(id=name):
-            return name in scope.fixed or scope.is_set(name) or not scope.names.is_local(name)
+            if scope.names.is_local(name):
+                return name in scope.fixed or scope.is_set(name)
+            return constant_of(scope, node, scope.source.function, None) is not MISSING
         case ast.Attribute():
             own = next(iter(scope.parameters), None)
             is_constant = constant_of(scope, node, scope.source.function, own) is not MISSING
             return is_constant or _known(scope, node) is not MISSING
         case ast.Call(func=ast.Attribute(value=value, attr="copy"), args=[], keywords=[]):
             return isinstance(kind_of(_known(scope, value)), Array)
-        case ast.Tuple(elts=parts) | ast.List(elts=parts) | ast.BoolOp(values=parts):
+        case ast.Call(func=ast.Name(id="str"), args=[argument], keywords=[]):
+            return _is_builtin(scope, "str") and _is_number(scope, argument)
+        case ast.Tuple(elts=parts) | ast.List(elts=parts):
             return all_safe(parts)
+        case ast.BoolOp(values=parts):
+            return all(_has_truth(scope, one) for one in parts[:-1]) and _is_safe(scope, parts[-1])
         case ast.IfExp(test=test, body=body, orelse=other):
-            return all_safe([test, body, other])
+            return _has_truth(scope, test) and all_safe([body, other])
         case ast.Dict(keys=keys, values=values):
             return all(isinstance(key, ast.Constant) for key in keys) and all_safe(values)
     return _is_number(scope, node)
 
 
+def _has_truth(scope: "Expressions", node: ast.expr) -> bool:
+    """Returns whether a condition is safe and its truth as well, unlike that of an array."""
+    return isinstance(node, ast.Constant) or _is_number(scope, node)
+
+
+def _is_sequence(scope: "Expressions", node: ast.expr) -> bool:
+    """Returns whether an expression is a sequence."""
+    return isinstance(node, ast.Tuple | ast.List) or isinstance(kind_of(_known(scope, node)), Array | TupleKind)
+
+
+def _is_builtin(scope: "Expressions", name: str) -> bool:
+    return constant_of(scope, ast.Name(name, ast.Load()), scope.source.function, None) is getattr(builtins, name, None)
+
+
 def _is_number(scope: "Expressions", node: ast.expr) -> bool:
     """Returns whether an expression is a number, which Python computes without an error."""
+    return number(scope, node) is not None
+
+
+def number(scope: "Expressions", node: ast.expr) -> Scalar | None:
+    """Returns the kind of a number, which Python computes without an error; None for other expressions.
+
+    The kind of what may be a boolean is a boolean's.
+    """
+
+    def any_of(parts: list[ast.expr]) -> Scalar | None:
+        kinds = [number(scope, one) for one in parts]
+        return None if None in kinds else BOOL if BOOL in kinds else kinds[0] if len({*kinds}) == 1 else MIXED
+
     match node:
         case ast.Constant(value=value):
-            return isinstance(value, bool | int | float)
+            return _scalar(kind_of(value))
         case ast.Name(id=name):
-            is_number = isinstance(scope.kind_of_local(name), Scalar) or isinstance(
-                kind_of(_known(scope, node)), Scalar
-            )
-            return is_number and _is_safe(scope, node)
+            kind = _scalar(scope.kind_of_local(name)) or _scalar(kind_of(_known(scope, node)))
+            return kind if _is_safe(scope, node) else None
         case ast.Attribute():
-            return isinstance(kind_of(_known(scope, node)), Scalar)
+            return _scalar(kind_of(_known(scope, node)))
         case ast.BinOp(left=left, op=op, right=right):
-            return isinstance(op, EXACT) and _is_number(scope, left) and _is_number(scope, right)
+            return _combined(op, number(scope, left), number(scope, right))
         case ast.UnaryOp(op=op, operand=operand):
-            return not isinstance(op, ast.Invert) and _is_number(scope, operand)
+            kind = number(scope, operand)
+            if isinstance(op, ast.Not):
+                return None if kind is None else BOOL
+            return None if isinstance(op, ast.Invert) or kind == BOOL else kind
         case ast.Compare(left=left, ops=ops, comparators=others):
             simple = not any(isinstance(op, ast.In | ast.NotIn) for op in ops)
-            return simple and all(_is_number(scope, one) for one in (left, *others))
+            return BOOL if simple and all(_is_number(scope, one) for one in (left, *others)) else None
+        case ast.BoolOp(values=parts):
+            return any_of(parts)
         case ast.IfExp(test=test, body=body, orelse=other):
-            return all(_is_number(scope, one) for one in (test, body, other))
-        case ast.Call(func=ast.Name(id=name), args=[argument], keywords=[]):
-            is_builtin = name not in scope.source.function.__globals__ and not scope.names.is_local(name)
-            return is_builtin and getattr(builtins, name, None) in NEVER_FAIL and _is_number(scope, argument)
-    return False
+            return any_of([body, other]) if _is_number(scope, test) else None
+        case ast.Call(func=ast.Name(id=name), args=[argument], keywords=[]) if _is_builtin(scope, name):
+            kind = number(scope, argument)
+            made = {"bool": BOOL, "float": FLOAT, "abs": kind}
+            return None if kind is None else made.get(name)
+    return None
+
+
+def _scalar(kind: Kind | None) -> Scalar | None:
+    return kind if isinstance(kind, Scalar) else None
+
+
+def _combined(operator: ast.AST, left: Scalar | None, right: Scalar | None) -> Scalar | None:
+    """Returns the kind of a number that an operator gives; None if it may fail.
+
+    NumPy has no difference of booleans, and refuses Python's integers beside its own smaller ones.
+    """
+    if left is None or right is None or not isinstance(operator, EXACT):
+        return None
+    if left == right:
+        return None if left == BOOL and isinstance(operator, ast.Sub) else left
+    is_small = any("int" in kind.name and kind != INT for kind in (left, right))
+    return None if is_small else MIXED
 
 
 def _known(scope: "Expressions", node: ast.expr) -> Any:

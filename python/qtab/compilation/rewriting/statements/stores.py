@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from qtab.compilation.rewriting import specials
 from qtab.compilation.rewriting.expressions import containers
-from qtab.compilation.rewriting.statements.left_out import note_attribute
+from qtab.compilation.rewriting.statements.left_out import note_attribute, note_kind
 from qtab.compilation.rewriting.statements.variables import in_variables, is_simple
 from qtab.compilation.rewriting.values import (
     BOOL,
@@ -17,6 +17,7 @@ from qtab.compilation.rewriting.values import (
     TupleKind,
     Value,
     in_words,
+    kind_of,
     scalar_of,
 )
 
@@ -35,6 +36,7 @@ def store(scope: "Statements", node: ast.stmt, name: str, value: Value) -> None:
     known.note_assigned(name)
     if name not in known.read:
         note_attribute(scope, node, name)
+        note_kind(scope, name, kind_of(value.fixed) if value.is_fixed else value.kind)
         if scope.has_effects(value):
             scope.emit(value.code, node)
         return
