@@ -65,8 +65,3 @@ def test_a_learned_policy_acts_and_is_evaluated_as_in_python(lander: Path, tmp_p
         estimates.append(qtab.estimate_values(env, policy, seeds=1, episodes=4, discretizer="tiles"))
     assert estimates[0].weights.tobytes() == estimates[1].weights.tobytes()
     assert np.any(estimates[0].weights)
-
-
-def test_action_masks_are_refused(lander: Path) -> None:
-    with pytest.raises(ValueError, match="action_mask must be False for discretizer 'fourier', got"):
-        qtab.train(qtab.NativeEnv(lander), episodes=2, action_mask=lambda seen: [True, True], **FOURIER)
