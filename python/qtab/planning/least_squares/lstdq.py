@@ -34,7 +34,7 @@ def lstdq(
     Research 4, 2003.
 
     It runs in NumPy, in a time that grows with the cube of d * actions, and with memory for its square: 1,000 weights
-    take about a tenth of a second. If the policy uses at most half of the weights in the next states, as with a
+    take less than a second. If the policy uses at most half of the weights in the next states, as with a
     feature for each state, the time grows with the cube of their number and of d instead.
 
     Args:
