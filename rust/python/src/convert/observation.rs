@@ -83,7 +83,7 @@ impl<T: Float + Default + numpy::Element, F: Features<[T]>> ObservationReader fo
     type Active = F::Active;
 
     fn active_rows(&self, observation: &Bound<'_, PyAny>) -> Result<F::Active, RunError> {
-        self.read(observation, |features, numbers| features.active_rows(numbers))
+        self.read(observation, Features::active_rows)
     }
 }
 
