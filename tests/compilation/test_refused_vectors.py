@@ -61,6 +61,7 @@ def test_classes_that_would_differ_are_refused_by_name(made: Any, mode: str, rea
         *(refused_vectors.BecomesNoneBesides, refused_vectors.ExtendsByNumber, refused_vectors.AppendsTwo),
         *(refused_vectors.TruthOfArray, refused_vectors.ChoiceByArray, refused_vectors.AddsToText),
         *(refused_vectors.SmallIntegers, refused_vectors.BooleansOfNumPy),
+        *(refused_vectors.SmallIntegersOrOthers, refused_vectors.SmallIntegersAtTimes),
     ],
 )
 def test_values_that_nothing_reads_must_be_safe(made: Any) -> None:

@@ -43,6 +43,8 @@ REFUSED = {
     "np.array([x]).view(np.int64)[0]": r"array.view\(\) shows the sign of a NaN",
     "np.sin(np.float32(x))": "write math.sin",
     "math.exp(np.float32(x))": "math.exp of a float32",
+    "np.float32(x).item()": r"item\(\) of a float32 keeps its dtype",
+    "np.array([np.float32(x)]).item()": r"array.item\(\) of float32 keeps its dtype",
     "np.allclose(n, m)": r"write abs\(a - b\) <= 1e-8",
     "np.linspace(x, 0, 1)[0]": r"np.linspace may give another result in compiled code",
     "np.linalg.det(np.array([[x, y], [y, x]]))": r"np.det may give another result in compiled code",
@@ -108,7 +110,7 @@ def test_numbers_of_known_types_are_compiled(expression: str) -> None:
 
 @pytest.mark.parametrize("compile_it", [in_functional_env, in_ordinary_class])
 @pytest.mark.parametrize("expression", ["float(np.float32(x)) * float(np.float32(y))", "float(np.float32(x)) / 3.3",
-                                        "float(n) + float(p)"])  # fmt: skip
+                                        "float(n) + float(p)", "float('nan')"])  # fmt: skip
 def test_float_makes_a_float_of_64_bits(compile_it: Any, expression: str) -> None:
     values = (2**53 + 1, 2, 0.1, 0.7, True, False)
     assert bits(compile_it(expression)(*values)) == bits(in_python(expression)(*values))

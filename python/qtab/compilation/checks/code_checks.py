@@ -267,6 +267,8 @@ class Checks(TypedCode):
                 return [*(one for check in checks for one in check), *own]
         elif isinstance(of, types.Array):
             return check_array_method(self, expression, scope, name, of)
+        elif name == "item" and (is_narrow(of) or of == types.float32):
+            return self.refuse(expression, f"item() of a {of} keeps its dtype", "write float(...) or int(...)")
         return []
 
     def check_integer_argument(self, variable: Any, scope: Any, loc: Any) -> list[Any]:

@@ -6,7 +6,7 @@ import numpy as np
 from numba.core import ir
 from numba.core.compiler import CompilerBase, DefaultPassBuilder
 from numba.core.compiler_machinery import FunctionPass, register_pass
-from numba.core.ir_utils import get_definition, guard
+from numba.core.errors import ConstantInferenceError
 from numba.core.typed_passes import NopythonTypeInference
 
 from qtab.compilation.checks.code_checks import Checks
@@ -30,20 +30,31 @@ class FloatCalls(FunctionPass):  # type: ignore[misc]
         for block in code.blocks.values():
             body: list[Any] = []
             for statement in block.body:
-                call = getattr(statement, "value", None)
-                if isinstance(call, ir.Expr) and call.op == "call" and len(call.args) == 1 and not call.kws:
-                    found = guard(get_definition, code, call.func)
-                    number = guard(get_definition, code, call.args[0])
-                    is_text = isinstance(number, ir.Const | ir.Global | ir.FreeVar) and isinstance(number.value, str)
-                    if isinstance(found, ir.Global | ir.FreeVar) and found.value is float and not is_text:
-                        made += 1
-                        call.func = ir.Var(block.scope, f"$float64_{made}_{id(state)}", call.loc)
-                        double = ir.Global("float64", np.float64, call.loc)
-                        code._definitions[call.func.name] = [double]
-                        body.append(ir.Assign(double, call.func, call.loc))
+                call: Any = getattr(statement, "value", None)
+                if _is_float(code, call):
+                    made += 1
+                    call.func = ir.Var(block.scope, f"$float64_{made}_{id(state)}", call.loc)
+                    double = ir.Global("float64", np.float64, call.loc)
+                    code._definitions[call.func.name] = [double]
+                    body.append(ir.Assign(double, call.func, call.loc))
                 body.append(statement)
             block.body = body
         return made > 0
+
+
+def _is_float(code: ir.FunctionIR, call: Any) -> bool:
+    """Returns whether an expression is a call of ``float`` with something else than a text."""
+    if not isinstance(call, ir.Expr) or call.op != "call" or len(call.args) != 1 or call.kws:
+        return False
+    return _constant(code, call.func) is float and not isinstance(_constant(code, call.args[0]), str)
+
+
+def _constant(code: ir.FunctionIR, variable: ir.Var) -> Any:
+    """Returns the value of a variable that is constant; None for others."""
+    try:
+        return code.infer_constant(variable)
+    except ConstantInferenceError:
+        return None
 
 
 @register_pass(mutates_CFG=False, analysis_only=False)

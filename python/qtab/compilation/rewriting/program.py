@@ -15,6 +15,7 @@ from qtab.compilation.rewriting.values import (
     FLOAT,
     INT,
     MIXED,
+    WIDE,
     Array,
     DictKind,
     Kind,
@@ -104,9 +105,9 @@ class Program:
         """The info dicts that ``reset`` and ``step`` return, with their functions."""
         self.left_out: list[NotCompilable] = []
         """The errors, for vector environments, for code that is left out and that may fail or log messages."""
-        self.unread: dict[str, set[Kind | None]] = {}
+        self.stale_kinds: dict[str, set[Kind | None]] = {}
         """The kinds of what is assigned to attributes that are never read; None for other values than numbers."""
-        self.changed_unread: list[tuple[str, Scalar | None, NotCompilable]] = []
+        self.changed_stale: list[tuple[str, Scalar | None, NotCompilable]] = []
         """Augmented assignments to such attributes: the name, the kind of the number, and the error for others."""
         self.stale: dict[str, NotCompilable] = {}
         """The attributes that are assigned and never read, and the errors for those that reset does not assign."""
@@ -125,8 +126,8 @@ class Program:
         """Returns the error for code that is left out, and whose effect a vector environment would show."""
         changed = [
             error
-            for name, kind, error in self.changed_unread
-            if not self.unread.get(name, set()) <= {kind, INT, FLOAT, MIXED}
+            for name, kind, error in self.changed_stale
+            if not self.stale_kinds.get(name, set()) <= ({kind, INT, FLOAT, MIXED} if kind in WIDE else {kind})
         ]
         kept = [error for name, error in self.stale.items() if name not in (self.stale_in_reset or ())]
         return next(iter([*self.left_out, *changed, *kept]), None)

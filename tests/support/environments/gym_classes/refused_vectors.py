@@ -1,6 +1,7 @@
 """Ordinary classes that show more in a vector environment than compiled code gives."""
 
 import itertools
+import math
 from typing import Any
 
 import gymnasium as gym
@@ -190,20 +191,30 @@ class Numbered(DriftEnv):
         return super().step(action)
 
 
+FULL, COST = 100.0, 0.5
+
+
 class Counted(DriftEnv):
     """Without an error: numbers that are added, and conditions and sequences of a safe kind."""
 
     total: Any
     path: Any
+    energy: Any
+    limit: Any
 
     def reset(self, *, seed=None, options=None):
         self.total, self.last, self.path, self.is_left = 0, None, [], False
+        self.energy, self.limit = FULL, math.inf
         return super().reset(seed=seed)
 
     def step(self, action):
         self.total += 0.5 * (action - 1)
         self.last = (action == 1 and 0.5) or -1
         self.path.extend(self.position)
+        seen = (action, 1.0)
+        self.path.extend(seen)
+        self.energy -= COST
+        self.limit -= 1
         self.path.append(2 if action else str(action))
         self.is_left = not action
         return super().step(action)
@@ -258,6 +269,29 @@ class SmallIntegers(Counted):
 
     def step(self, action):
         self.last = self.few + 300
+        return super().step(action)
+
+
+class SmallIntegersOrOthers(Counted):
+    few = np.int8(5)
+
+    def step(self, action):
+        self.last = (self.few if action else 1) + 300
+        return super().step(action)
+
+
+class SmallIntegersAtTimes(Counted):
+    few = np.int8(5)
+    strength: Any
+
+    def reset(self, *, seed=None, options=None):
+        self.strength = self.few
+        return super().reset(seed=seed)
+
+    def step(self, action):
+        if action == 1:
+            self.strength = 300
+        self.strength += self.few
         return super().step(action)
 
 

@@ -40,6 +40,9 @@ def method(scope: "Expressions", node: ast.Call, name: str, base: Value) -> Valu
         size = None if kind.shape is None else (int(np.prod(kind.shape)),)
         views = base.views if name == "ravel" else frozenset[str]()  # in Python, ravel may return a view
         return Value(Array(kind.dtype, 1, size), f"{base.code}.flatten()", fresh=True, views=views)
+    if name in ("tolist", "item") and not values and kind.dtype not in ("bool", "int64", "float64"):
+        wide = "np.float64" if "float" in kind.dtype else "np.int64"
+        raise scope.refuse(node, f"the method {name} of an array of {kind.dtype}", f"write .astype({wide}).{name}()")
     if name == "tolist" and kind.ndim == 1 and not values:
         return containers.as_tuple(scope, node, base)
     if name == "item" and not values and kind.shape is not None and np.prod(kind.shape) == 1:

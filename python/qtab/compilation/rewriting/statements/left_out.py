@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 EXACT = (ast.Add, ast.Sub, ast.Mult)
 """The operators that never fail for numbers."""
 RAISES = "an error might be raised here, in a value that compiled code leaves out as nothing reads it,"
-LEAVE_OUT = "leave it out"
+LEAVE_OUT = "compute its numbers in local variables first, or leave it out"
 
 
 def note_value(scope: "Expressions", node: ast.AST, *parts: ast.expr) -> None:
@@ -40,14 +40,14 @@ def note_value(scope: "Expressions", node: ast.AST, *parts: ast.expr) -> None:
 
 def note_kind(scope: "Expressions", name: str, kind: Kind | None) -> None:
     """Notes the kind of a value that is assigned to an attribute that is never read; None if it has none."""
-    scope.program.unread.setdefault(name, set()).add(kind)
+    scope.program.stale_kinds.setdefault(name, set()).add(kind)
 
 
 def note_change(scope: "Expressions", node: ast.AugAssign, target: ast.Attribute) -> None:
     """Notes an augmented assignment to an attribute that is never read: all its values must be such numbers."""
     note_value(scope, node, target, node.value)
     note_attribute(scope, node, target.attr, is_changed=True)
-    scope.program.changed_unread.append((target.attr, number(scope, target), scope.refuse(node, RAISES, LEAVE_OUT)))
+    scope.program.changed_stale.append((target.attr, number(scope, target), scope.refuse(node, RAISES, LEAVE_OUT)))
 
 
 def note_attribute(scope: "Expressions", node: ast.AST, name: str, is_changed: bool = False) -> None:
@@ -145,7 +145,8 @@ def _has_truth(scope: "Expressions", node: ast.expr) -> bool:
 
 def _is_sequence(scope: "Expressions", node: ast.expr) -> bool:
     """Returns whether an expression is a sequence."""
-    return isinstance(node, ast.Tuple | ast.List) or isinstance(kind_of(_known(scope, node)), Array | TupleKind)
+    kind = scope.kind_of_local(node.id) if isinstance(node, ast.Name) else None
+    return isinstance(node, ast.Tuple | ast.List) or isinstance(kind or kind_of(_known(scope, node)), Array | TupleKind)
 
 
 def _is_builtin(scope: "Expressions", name: str) -> bool:
@@ -164,8 +165,12 @@ def number(scope: "Expressions", node: ast.expr) -> Scalar | None:
     """
 
     def any_of(parts: list[ast.expr]) -> Scalar | None:
-        kinds = [number(scope, one) for one in parts]
-        return None if None in kinds else BOOL if BOOL in kinds else kinds[0] if len({*kinds}) == 1 else MIXED
+        kinds = {number(scope, one) for one in parts}
+        if len(kinds) == 1:
+            return kinds.pop()
+        if any(kind is None or _is_small(kind) for kind in kinds):
+            return None
+        return BOOL if BOOL in kinds else MIXED
 
     match node:
         case ast.Constant(value=value):
@@ -209,19 +214,24 @@ def _combined(operator: ast.AST, left: Scalar | None, right: Scalar | None) -> S
         return None
     if left == right:
         return None if left == BOOL and isinstance(operator, ast.Sub) else left
-    is_small = any("int" in kind.name and kind != INT for kind in (left, right))
-    return None if is_small else MIXED
+    return None if _is_small(left) or _is_small(right) else MIXED
+
+
+def _is_small(kind: Scalar) -> bool:
+    """Returns whether numbers are integers of fewer than 64 bits, which overflow beside Python's."""
+    return "int" in kind.name and kind != INT
 
 
 def _known(scope: "Expressions", node: ast.expr) -> Any:
     """Returns a constant, or a value that an attribute of the environment may have; ``MISSING`` if there is none."""
     if isinstance(node, ast.Name):
-        found = scope.fixed.get(node.id)
-        return MISSING if found is None else found.fixed
+        is_local = node.id not in scope.fixed and scope.names.is_local(node.id)
+        return MISSING if is_local else constant_of(scope, node, scope.source.function, None)
     if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
         known = scope.program.attributes
         own = next(iter(scope.parameters), None)
         member, _ = known.find(node.attr)
         if node.value.id == own and not hasattr(type(member), "__get__"):
             return vars(known.twin).get(node.attr, member)
+        return constant_of(scope, node, scope.source.function, own)
     return MISSING
