@@ -35,7 +35,7 @@ class Batch:
         φ(s, a) is x(s) in the block of the action, so that A consists of a block for each pair of actions:
         A = D - γP. D has only the blocks of an action with itself, and does not depend on the policy. The columns of P
         are zero for features that no next state has with the action of the policy. If these are most columns, as with a
-        feature for each state, w = D⁻¹(b + γPw) is solved for the other weights first.
+        feature for each state, w = D⁻¹(b + γPw) is first solved for the weights that P uses, and the others follow.
 
         Raises:
             ValueError: if A is singular up to rounding errors, or numbers overflowed.
@@ -96,7 +96,7 @@ class Batch:
         if not all(np.isfinite(array).all() for array in (A, self._b, self._scale)):
             raise ValueError("features and rewards must be smaller: their products exceed the range of float64")
         scaled = A / self._scale / self._scale[:, None]
-        if not _is_regular(scaled, k * d):
+        if not _condition(scaled) * k * d * EPS < 1.0:
             raise self._singular(scaled)
         weights: FloatArray = np.linalg.solve(scaled, self._b / self._scale) / self._scale
         return weights
@@ -106,14 +106,19 @@ class Batch:
         """(actions, d, d): the scaled blocks of D.
 
         Raises:
-            ValueError: if one of them is singular, so that A is singular.
+            ValueError: if a feature is always zero for an action, so that A is singular.
         """
         d, k = self.x.shape[1], self.transitions.n_actions
         scale = self._scale.reshape(k, d)
         scaled = (self._blocks + self.epsilon * np.eye(d)) / scale[:, None, :] / scale[:, :, None]
-        if not all(_is_regular(block, k * d) for block in scaled):
+        if not np.diagonal(scaled, axis1=1, axis2=2).all():
             raise self._singular(scaled)
         return scaled
+
+    @cached_property
+    def _condition_of_blocks(self) -> float:
+        """The largest condition number of the scaled blocks of D."""
+        return max(map(_condition, self._scaled_blocks))
 
     def _solved_by_blocks(self, next_actions: NDArray[np.int64], used: NDArray[np.intp]) -> FloatArray | None:
         """Returns w, (actions * d,), from D and the given columns of P; None if this is too inexact."""
@@ -128,11 +133,15 @@ class Batch:
             P /= scale[:, None] * scale[used]  # noqa: N806
         if not (np.isfinite(P).all() and np.isfinite(b).all()):
             return None
+        rounding = k * d * EPS
+        if not self._condition_of_blocks * rounding < 1.0:
+            return None
         given = np.column_stack([b, self.discount * P]).reshape(k, d, -1)
         by_blocks = np.concatenate([np.linalg.solve(*pair) for pair in zip(self._scaled_blocks, given, strict=True)])
         of_b, of_P = by_blocks[:, 0], by_blocks[:, 1:]  # noqa: N806
         reduced = np.eye(len(used)) - of_P[used]
-        if not _is_regular(reduced, k * d, 1.0 + np.linalg.norm(of_P[used], 1)):
+        of_reduced = _condition(reduced, 1.0 + np.linalg.norm(of_P[used], 1)) if len(used) else 1.0
+        if not self._condition_of_blocks * of_reduced * rounding < 1.0:
             return None
         weights: FloatArray = (of_b + of_P @ np.linalg.solve(reduced, of_b[used])) / scale
         return weights
@@ -144,7 +153,7 @@ class Batch:
             columns = [a * d + column for a, block in enumerate(scaled) for column in dependent_columns(block)]
         else:
             columns = list(dependent_columns(scaled))
-        advice = "set epsilon above 0" if self.epsilon == 0.0 else f"set another epsilon than {self.epsilon:g}"
+        advice = "set epsilon above 0" if self.epsilon == 0.0 else f"set epsilon to a value other than {self.epsilon:g}"
         return ValueError(
             "features must determine all weights, but A is singular: the transitions leave open "
             f"{self._undetermined(columns)}; {advice}, or use more transitions or fewer features"
@@ -165,19 +174,15 @@ class Batch:
         return f"the weights of features {listed} of action {action}"
 
 
-def _is_regular(matrix: FloatArray, size: int, norm: np.floating[Any] | None = None) -> bool:
-    """Returns whether the solution of equations is determined, in spite of rounding errors.
+def _condition(matrix: FloatArray, norm: np.floating[Any] | None = None) -> float:
+    """Returns the condition number of a matrix in the 1-norm, infinity if it is singular.
 
     Args:
         matrix: The matrix.
-        size: The number of equations.
         norm: The norm of the terms whose difference the matrix is; None for that of the matrix.
     """
-    if not len(matrix):
-        return True
     try:
         norm_of_inverse = np.linalg.norm(np.linalg.inv(matrix), 1)
     except np.linalg.LinAlgError:
-        return False
-    condition = norm_of_inverse * (np.linalg.norm(matrix, 1) if norm is None else norm)
-    return bool(condition * size * EPS < 1.0)
+        return np.inf
+    return float(norm_of_inverse * (np.linalg.norm(matrix, 1) if norm is None else norm))

@@ -52,7 +52,7 @@ class LeastSquaresPolicy:
         return weights
 
     def q_values(self, observations: ArrayLike, iteration: int = -1) -> FloatArray:
-        """Returns the action values x(s) · w_a of n observations, (n, actions).
+        """Returns the action values x(s) · w_a of n observations, (n, actions); -inf for masked actions.
 
         Args:
             observations: (n, *shape): the observations.
@@ -65,17 +65,17 @@ class LeastSquaresPolicy:
         """
         x = feature_vectors(self.features, observed("observations", observations))
         values: FloatArray = x @ self.history[iteration]
-        return values
+        if self.action_mask is None:
+            return values
+        masks = _masks(self.action_mask, np.asarray(observations), values.shape[1])
+        return np.where(masks, values, -np.inf)
 
     def actions(self, observations: ArrayLike, iteration: int = -1) -> NDArray[np.int64]:
         """Returns the greedy actions of n observations, (n,), counted from 0; see :meth:`q_values`.
 
         Ties go to the first action. Actions that ``action_mask`` excludes are never chosen.
         """
-        values = self.q_values(observations, iteration)
-        if self.action_mask is None:
-            return _greedy(values, None)
-        return _greedy(values, _masks(self.action_mask, np.asarray(observations), values.shape[1]))
+        return _greedy(self.q_values(observations, iteration), None)
 
     def __call__(self, observation: Any) -> int:
         """Returns the greedy action of one observation, counted from 0."""
@@ -118,14 +118,16 @@ def lspi(
         policy: The initial policy, as for :func:`qtab.planning.lstdq`: a single action for all states; an array; or a
             function from an observation to an action. Where ``action_mask`` excludes its action, it takes the first
             available one.
-        epsilon: ε, at least 0: A begins as ε times the identity. A small ε holds weights near zero that the
-            transitions leave open.
+        epsilon: ε, at least 0: A begins as ε times the identity. A small ε keeps weights that the transitions do
+            not determine near zero.
         tolerance: The iterations end when no weight changes by as much as this. The greedy action is the one with the
             largest value; ties go to the first action.
         max_iterations: The largest number of iterations. The policies may repeat in a cycle and never converge.
         action_mask: A function from an observation to (actions,) booleans or 0 and 1, the available actions, among
-            which each policy chooses; as for :func:`qtab.train`. None means that all actions are. The recorded episodes
-            of a run with action masks need it.
+            which each policy chooses; as for :func:`qtab.train`, but observations of several numbers are arrays, also
+            where the environment's are tuples: ``table[tuple(observation)]``. The policy that is found reads the masks
+            of terminal states, too, if it is asked there. None means that all actions are. The recorded episodes of
+            a run with action masks need it.
 
     Raises:
         TypeError: for an argument of the wrong type, or a mask that does not hold booleans or integers.

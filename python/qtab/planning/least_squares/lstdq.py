@@ -45,8 +45,8 @@ def lstdq(
         policy: The action in each state, counted from 0: a single one; (states,) or (*cells,) integers; or a function
             from an observation to an action.
         discount: The discount γ, in [0, 1].
-        epsilon: ε, at least 0: A begins as ε times the identity. A small ε holds weights near zero that the
-            transitions leave open.
+        epsilon: ε, at least 0: A begins as ε times the identity. A small ε keeps weights that the transitions do
+            not determine near zero.
 
     Raises:
         TypeError: for an argument of the wrong type.
