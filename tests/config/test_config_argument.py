@@ -205,3 +205,26 @@ def test_a_bad_config_is_refused(config: Any, error: type[Exception], message: s
 def test_the_seed_of_a_mapping_is_not_for_many_runs() -> None:
     with pytest.raises(TypeError, match=r"^unknown setting 'seed'"):
         qtab.train_many(CAR, config={"seed": 3})
+
+
+def test_rates_and_initial_weights_do_not_outlive_the_features_that_they_were_for() -> None:
+    tiles = qtab.train("CartPole-v1", preset="solved", episodes=1, seed=0).config
+    waves = qtab.train("CartPole-v1", preset="solved", episodes=1, seed=0, discretizer="fourier", order=1).config
+    assert tiles.learning_rate != waves.learning_rate == 0.001
+    replaced = tiles.replace(discretizer="fourier", tilings=None, tiles=None)
+    for one in (qtab.train(config=tiles, discretizer="fourier", order=1).config, replaced):
+        assert (one.learning_rate, one.learning_rate_schedule, one.initial_q) == (0.001, "constant", 0.0)
+    assert qtab.train(config=waves, discretizer="tiles").config.learning_rate == tiles.learning_rate
+    assert qtab.train(config=tiles, discretizer="fourier", order=1, learning_rate=0.002).config.learning_rate == 0.002
+    swept = qtab.sweep("CartPole-v1", {"discretizer": ["tiles", "fourier"]}, config=tiles, seeds=1)
+    assert [one["learning_rate"] for one in swept.configs] == [tiles.learning_rate, 0.001]
+
+
+def test_the_rates_of_both_tables_follow_features_that_sum_to_one() -> None:
+    config = qtab.Config("MountainCar-v0", discretizer="radial", algorithm="actor_critic", episodes=1)
+    assert config.learning_rate == 0.001
+    run = qtab.train(config=config, normalized=True)
+    assert (run.config.learning_rate, run.config.value_learning_rate) == (0.1, 0.1)
+    again = qtab.train(config=run.config, normalized=False)
+    assert (again.config.learning_rate, again.config.value_learning_rate) == (0.001, 0.005)
+    assert qtab.train(config=run.config, centers=4).config.learning_rate == 0.1

@@ -85,9 +85,9 @@ class Config(WithOrigin):
     """The learning algorithm."""
     learning_rate: float = 0.2
     """α: the fraction of the error that an update corrects, in [0, 1]. With tile coding it is divided among the
-    tilings, and may be up to 2. For preferences any step size that is not negative. Weighted features (fourier,
-    polynomial, radial, coarse), among which it is not divided, have a default of 0.001, whatever the preset; normalized
-    ones, which sum to 1, of 0.1."""
+    tilings, and may be up to 2. For preferences any step size that is not negative. For weighted features
+    (fourier, polynomial, radial, coarse) it is not divided; the default, whatever the preset, is 0.001, or 0.1 with
+    normalized=True."""
     discount: float = 0.9
     """γ: the discount factor, in [0, 1]. It is 1 if the average reward is learned, and 0 for the gradient bandit."""
     learning_rate_schedule: LearningRateSchedule = "constant"

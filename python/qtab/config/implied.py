@@ -69,6 +69,23 @@ _WITH_RATE = {
 """For each rate that can fall, the setting that names its schedule, and the options of the schedule."""
 
 
+def _scale(fields: Mapping[str, Any]) -> tuple[bool, bool]:
+    """Returns whether features are weighted, and whether they sum to 1."""
+    name = fields["discretizer"]
+    return uses_weighted(name), isinstance(name, str) and name == "radial" and bool(fields["normalized"])
+
+
+def rescaled_settings(before: Mapping[str, Any], changes: Mapping[str, Any]) -> set[str]:
+    """Returns the names of the settings that mean something else after a change of discretizer, and are not changed.
+
+    Weighted features do not share a step size, unless they sum to 1, and initial weights are no values.
+    """
+    old, new = _scale(before), _scale({**before, **changes})
+    rates = {"learning_rate", *_WITH_RATE["learning_rate"], "value_learning_rate"} if old != new else set()
+    weights = {"initial_q"} if old[0] != new[0] else set()
+    return {name for name in rates | weights if not is_set(changes.get(name))}
+
+
 def implied_schedules(asked: Mapping[str, Any], fields: Mapping[str, Any]) -> dict[str, str]:
     """Returns the schedules of the rates that were requested without naming one; see :func:`implied_schedule`.
 
@@ -162,6 +179,10 @@ def with_followers(
         origin = None
     algorithm = changes.get("algorithm", config.algorithm)
     own |= {name: defaults[name] for name in freed_settings(config.algorithm, algorithm)}
+    rescaled = rescaled_settings(vars(config), changes)
+    own |= {name: defaults[name] for name in rescaled}
+    chosen = {name: changes.get(name, getattr(config, name)) for name in ("discretizer", "normalized")}
+    own |= {name: value for name, value in weighted_defaults(chosen).items() if name in rescaled}
     if changes.get("time_aware", config.time_aware):
         own["on_truncation"] = "terminate"
     elif config.time_aware:

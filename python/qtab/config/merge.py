@@ -14,7 +14,13 @@ from gymnasium.envs.registration import EnvSpec
 
 from qtab._utils.shown import shown
 from qtab.config.config import DEFAULTS, Config, replace_checked
-from qtab.config.implied import algorithm_defaults, implied_schedules, weighted_defaults, without_rates
+from qtab.config.implied import (
+    algorithm_defaults,
+    implied_schedules,
+    rescaled_settings,
+    weighted_defaults,
+    without_rates,
+)
 from qtab.config.options import freed_settings, is_set
 from qtab.config.origin import copied
 from qtab.config.presets import preset
@@ -72,11 +78,13 @@ def over(base: Base, settings: Mapping[str, Any]) -> dict[str, Any]:
     """Returns settings over the base of a call.
 
     The items of a mapping count like keywords. A Config contributes fewer: fields that are not set, that do not apply
-    to the other settings, or that are derived again are left out. An option that is off in the config of a run stays
+    to the other settings, or that are derived again are left out, as are rates and initial weights that mean something
+    else with the requested discretizer. An option that is off in the config of a run stays
     off, even if a preset sets it.
     """
     if isinstance(base, Config):
         left_out = {"env", *freed_settings(base.algorithm, settings.get("algorithm", base.algorithm))}
+        left_out |= rescaled_settings(vars(base), settings)
         if base.origin is not None:
             left_out |= base.origin.derived_again
         if base.time_aware and not settings.get("time_aware", True):

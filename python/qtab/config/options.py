@@ -254,7 +254,7 @@ SETTINGS: Mapping[str, Setting] = {
         check.counts(1, check.MAX_BINS), "discretizer", ("bins",), (10,), other_names="n_bins num_bins buckets"
     ),
     "edges": Option(check.edges, "discretizer", ("edges",), None),
-    "order": Option(check.integer(1, check.MAX_FEATURES - 1), "discretizer", ("fourier", "polynomial"), 3, added=True),
+    "order": Option(check.order, "discretizer", ("fourier", "polynomial"), 3, other_names="degree", added=True),
     "coupled": Option(checks.boolean, "discretizer", ("fourier", "polynomial"), True, added=True),
     "scale_step_sizes": Option(checks.boolean, "discretizer", ("fourier",), True, added=True),
     "centers": Option(check.counts(2, check.MAX_FEATURES), "discretizer", ("radial", "coarse"), (5,), added=True),
@@ -265,7 +265,7 @@ SETTINGS: Mapping[str, Setting] = {
     "high": Option(check.each, "discretizer", ("bins", "tiles", *WEIGHTED), None),
     "actions": Setting(check.actions, other_names="n_actions num_actions", may_be_none=True),
 }
-"""Every setting except ``discretizer``, whose check also needs its options; see ``keyed_discretizers.py``."""
+"""Every setting except ``discretizer``, whose check also needs its options; see ``checked_discretizer``."""
 OPTIONS: Mapping[str, Option] = {name: setting for name, setting in SETTINGS.items() if isinstance(setting, Option)}
 """The settings that apply only to certain choices."""
 OFF_BY_NONE = tuple(name for name, option in OPTIONS.items() if option.off_by_none)

@@ -97,9 +97,10 @@ def _mismatch_with_weighted(name: str, value: Any, discretizer: str) -> str | No
     if name == "algorithm" and value not in LEARNS_WEIGHTED:
         return f"algorithm must be {listed(LEARNS_WEIGHTED)} {where}, got {shown(value)}"
     if name == "traces" and value in ("replacing", "clearing"):
-        reason = "" if discretizer == "coarse" else ", because the others set traces to 1, and its features are not 1,"
+        not_1 = discretizer != "coarse"
+        reason = "the others set traces to 1, and its features are not 1" if not_1 else "the others are not implemented"
         return (
-            f"traces must be 'accumulating' {where}{reason or ','} got {shown(value)}; algorithm "
+            f"traces must be 'accumulating' {where}, because {reason}, got {shown(value)}; algorithm "
             "'true_online_sarsa_lambda' has dutch traces"
         )
     if name == "action_mask" and value is not False:

@@ -61,6 +61,8 @@ def integer(least: int, most: int | None = None) -> Check:
     return partial(checks.integer, least=least, most=most)
 
 
+order = integer(1, MAX_FEATURES - 1)
+"""Returns the order of a basis: with one component and order n there are n + 1 features."""
 count: Check = partial(checks.count, least=1)
 """Returns a number of episodes or steps: at least 1."""
 
