@@ -161,7 +161,7 @@ def test_a_value_is_the_sum_of_products_and_the_prediction_its_argmax(tmp_path: 
     assert "36 features" in discretizer._repr_html_()
     with pytest.raises(ValueError, match=r"^q_table needs cells, which discretizer 'fourier' does not have"):
         _ = run.q_table
-    with pytest.raises(ValueError, match=r"^FourierBasis has no rows of its own"):
+    with pytest.raises(ValueError, match=r"^every row of FourierBasis is active for every observation"):
         discretizer.active_rows(observations)
 
 
@@ -237,7 +237,7 @@ def test_the_default_rate_learns_cart_pole() -> None:
         ({"algorithm": "monte_carlo"}, r"^algorithm must be 'q_learning', .* for discretizer 'fourier', got 'monte_c"),
         (
             {"exploration": "ucb"},
-            r"^exploration must be .* for discretizer 'fourier', whose features are active in every",
+            r"^exploration must be .* for discretizer 'fourier', whose features have no visits to count",
         ),
         ({"learning_rate_schedule": "visits"}, r"^learning_rate_schedule must be .* for discretizer 'fourier'"),
         ({"terminal_update": "assign"}, r"^terminal_update must be 'target' for discretizer 'fourier', got 'assign'"),

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 import qtab
 from qtab.cli.command import parser_of
 from qtab.cli.commands.train import env_and_settings
-from qtab.config.options import LEARNS_WEIGHTED
+from qtab.config.options import LEARNS_WEIGHTED, WITH_STATE_VALUES
 from qtab.config.options import WEIGHTED as NAMES
 from qtab.discretizers.named import DISCRETIZERS, class_at
 from qtab.reference.parts.weighted import WEIGHTED as REFERENCES
@@ -218,7 +218,7 @@ def test_the_command_line_reads_the_options() -> None:
     [
         (
             {"discretizer": "coarse", "algorithm": "sarsa_lambda", "traces": "replacing"},
-            r"^traces must be 'accumulating' for discretizer 'coarse', got 'replacing'; .* has dutch traces$",
+            r"^traces must be 'accumulating' for .*, because the others are not implemented, got 'replacing'; .* dutch",
         ),
         ({"discretizer": "polynomial", "order": 0}, r"^order must be an integer from 1 to 1023, got 0"),
         (
@@ -232,7 +232,7 @@ def test_the_command_line_reads_the_options() -> None:
         ({"discretizer": "radial", "centers": 1}, r"^centers must be an integer from 2 to 1024, got 1"),
         (
             {"discretizer": "radial", "centers": (40, 30)},
-            r"^centers must give at most 1,024 features, got \(40, 30\), which gives 1,200; centers=30 gives 900$",
+            r"^centers must give at most 1,024 features, got \(40, 30\), which gives 1,200; centers=32 gives 1,024$",
         ),
         ({"discretizer": "coarse", "centers": (3, 3, 3)}, r"^centers must hold 2 numbers .*, got \(3, 3, 3\)"),
         ({"discretizer": "radial", "width": 0}, r"^width must lie in \[0.1, 1000\], got 0"),
@@ -247,7 +247,7 @@ def test_the_command_line_reads_the_options() -> None:
         ),
         (
             {"discretizer": "coarse", "centers": 3, "radius": 9},
-            r"^radius must be small enough that an observation lies outside .*, got \(9, 9\) with \(3, 3\) centers",
+            r"^radius must be small .* below 2.828 for each of 2 components with \(3, 3\) centers, got \(9, 9\)$",
         ),
         (
             {"discretizer": "coarse", "width": 1.0},
@@ -273,3 +273,15 @@ def test_spaces_without_finite_bounds_need_limits(kind: str) -> None:
         class_at(DISCRETIZERS[kind]).build(space, resolve(CAR, options).config.replace(low=None, high=None), 2)  # type: ignore[index]
     with pytest.raises(ValueError, match=rf"^discretizer must be another one .*, got '{kind}'"):
         qtab.train("Blackjack-v1", episodes=1, **options)
+
+
+@pytest.mark.parametrize("algorithm", WITH_STATE_VALUES)
+def test_the_values_of_a_critic_are_its_own(algorithm: Any) -> None:
+    run = qtab.train(CAR, algorithm=algorithm, discretizer="fourier", order=2, episodes=2, max_episode_steps=50)
+    basis: Any = run.discretizer
+    at = np.array([[-0.5, 0.0], [0.3, 0.05]], np.float32)
+    values = run.values(at)
+    assert values.shape == (2,)
+    assert values[0] == run.values(at[0])
+    expected = [basis.feature_values(one) @ run.tables[1][:, 0] for one in at]
+    assert np.allclose(values, expected, rtol=1e-12)

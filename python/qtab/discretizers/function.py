@@ -113,7 +113,7 @@ class Function(Discretizer):
         if indices is None:
             one_axis = self.cell_shape is not None and len(self.cell_shape) == 1
             wanted = self._wanted if one_axis else f"integers, {self._wanted}"
-            instead = f"; {OF_FUNCTION}" if _are_floats(returned) else ""
+            instead = f"; {OF_FUNCTION}" if _have_fractions(returned) else ""
             raise TypeError(f"discretizer must return {wanted}, got {shown(returned)}{instead}")
         cell = tuple(int(index) for index in np.atleast_1d(indices))
         if self.cell_shape is None:
@@ -187,12 +187,13 @@ class Function(Discretizer):
         return super().split(observation, count) if self.layout is None else self.layout.split(observation, count)
 
 
-def _are_floats(returned: Any) -> bool:
-    """Returns whether the result of a function is an array of numbers that are not integers."""
+def _have_fractions(returned: Any) -> bool:
+    """Returns whether the result of a function holds numbers with a fractional part."""
     try:
-        return np.asarray(returned).dtype.kind == "f"
+        found = np.asarray(returned)
     except ValueError:  # parts of different lengths
         return False
+    return found.dtype.kind == "f" and bool(np.any(found != np.floor(found)))
 
 
 def _integers(returned: Any) -> NDArray[Any] | None:

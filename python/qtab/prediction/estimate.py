@@ -86,8 +86,8 @@ def estimate_values(
             discrete, or a Box with one axis of floats, which a discretizer divides.
         policy: ``"random"`` for equal probabilities; an array (*cells,) of actions or (*cells, actions) of
             probabilities; a function from an observation to an action's number or to (actions,) probabilities; a run,
-            for its greedy policy; or an optimum that does not depend on the steps left. Functions, and runs with other
-            cells, choose by the observation, not by its cell.
+            for its greedy policy, with preferences the most likely action; or an optimum that does not depend on the
+            steps left. Functions, and runs with other cells, choose by the observation, not by its cell.
         method: ``"td"`` is TD(0) (Sutton & Barto, 2nd ed., eq. 6.2), ``"n_step_td"`` eq. 7.2, ``"td_lambda"`` and
             ``"true_online_td_lambda"`` the boxes in sections 12.2 and 12.5, ``"offline_lambda_return"`` eq. 12.4,
             ``"monte_carlo"`` eq. 6.1 and the box in section 5.1, ``"importance_sampling"`` eqs. 5.5 and 5.6,
@@ -149,7 +149,8 @@ def estimate_values(
         features: None for a table; or (states,) or (states, n_active) integers: the features that are active in each
             state, as :func:`qtab.prediction.state_aggregation` and :func:`qtab.prediction.tile_coding` return them; or
             (states, d) or (*cells, d) floats: the feature vector of each state; or, for discrete observations, a
-            function from an observation to its feature vector, (d,) numbers.
+            function from an observation to its feature vector, (d,) numbers. Integers that a function returns are the
+            numbers of a vector, too, not active features as in an array.
         initial_value: The value of every state before the first episode, 0 for features with values other than 1.
         initial_weights: (n_weights,): the weights before the first episode, instead of ``initial_value``.
         on_truncation: The end of a return at the time limit: it continues with the value of the last state

@@ -83,7 +83,7 @@ class ValueEstimates:
 
     @property
     def is_weighted(self) -> bool:
-        """Whether the features have values other than 1: feature vectors, or those of "fourier", "radial" and so on."""
+        """Whether the features have values other than 1: vectors, or a discretizer such as "fourier"."""
         return self.feature_vectors is not None or (self.discretizer is not None and self.discretizer.is_weighted)
 
     @property

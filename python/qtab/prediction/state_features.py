@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qtab._utils.arrays import numbers
-from qtab._utils.shown import shown
+from qtab._utils.shown import counted, shown
 from qtab.discretizers import Discretizer
 from qtab.discretizers.weighted.polynomial import OF_FUNCTION
 from qtab.planning.policies import discrete_observations
 from qtab.prediction.features import Rows, Vectors, are_floats, feature_rows, feature_vectors
 from qtab.prediction.learning_rates import AVERAGES_ONLY, LEAST_SQUARES, rate_settings
-from qtab.prediction.settings import OFF_POLICY, PredictionSettings
+from qtab.prediction.settings import PredictionSettings
 
 MOST_RECURSIVE, MOST_SOLVED = 4096, 1024
 """The largest numbers of weights of LSTD, if it updates a matrix at each step, and if it solves equations."""
@@ -103,9 +103,8 @@ def initial_weights(
                 "initial_value must be 0 for features with values other than 1; initial_weights= sets each weight, got "
                 f"{shown(value)}"
             )
-        weights = np.full(features.n_weights, value / features.n_active)
-        # The references of these methods add 0 to the weights that do not change, which turns -0.0 into 0.0.
-        return weights + 0.0 if method in OFF_POLICY and method not in AVERAGES_ONLY else weights
+        # Some references add 0 to the weights that do not change, which turns -0.0 into 0.0.
+        return np.full(features.n_weights, value / features.n_active) + 0.0
     if method == LEAST_SQUARES:
         raise ValueError(f"initial_weights must be None for method {method!r}, whose weights follow from the steps")
     if value != 0.0:
@@ -137,13 +136,14 @@ def _of_function(
         )
     vectors: list[NDArray[np.float64]] = []
     for observation in discrete_observations(space, cells):
-        vector = numbers("features", function(observation))
+        where = f"for the observation {shown(np.asarray(observation).tolist())}"
+        returned = function(observation)
+        if returned is None:
+            raise TypeError(f"features must return a vector of numbers, got None {where}")
+        vector = numbers(f"features {where}", returned)
         if vector.ndim != 1 or not vector.size or (vectors and vector.shape != vectors[0].shape):
-            count = f"{len(vectors[0])}" if vectors else "several"
-            raise ValueError(
-                f"features must return one axis of {count} numbers, got the shape {vector.shape} for the observation "
-                f"{shown(np.asarray(observation).tolist())}"
-            )
+            wanted = counted(len(vectors[0]), "number") if vectors else "numbers"
+            raise ValueError(f"features must return a vector of {wanted}, got the shape {vector.shape} {where}")
         vectors.append(vector)
     return np.stack(vectors)
 

@@ -64,8 +64,10 @@ def state_values(run: "Run", observation: Any, steps: Any = 0) -> NDArray[np.flo
         ValueError: for an algorithm that learns only preferences.
     """
     if run.config.algorithm in WITH_STATE_VALUES:
-        active = np.moveaxis(rows_of(run, observation, steps), -1, 0)
-        return summed(run.tables[1][row, 0] for row in active)
+        rows = rows_of(run, observation, steps)
+        if run.discretizer.is_weighted:
+            return np.asarray(weighted_sum(rows, run.tables[1][:, :1])[..., 0])
+        return summed(run.tables[1][row, 0] for row in np.moveaxis(rows, -1, 0))
     if run.config.algorithm in PREFERENCES:
         raise ValueError(
             f"values needs an algorithm that learns values, got a run of {run.config.algorithm!r}, which learns "

@@ -83,7 +83,7 @@ impl From<RunError> for PyErr {
             ),
             RunError::Diverged { episode, weighted } => {
                 let cause = if weighted {
-                    ": try a tenth of it, and of value_learning_rate if the algorithm has one"
+                    ": try a tenth of it, and of value_learning_rate, or a smaller trace_decay, if the algorithm has them"
                 } else {
                     ", or trace_decay or discount with these traces"
                 };

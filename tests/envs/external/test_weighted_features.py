@@ -61,7 +61,7 @@ def test_a_learned_policy_acts_and_is_evaluated_as_in_python(lander: Path, tmp_p
     assert played.tobytes() == qtab.evaluate(stored, 4, seed=1, env=in_python()).returns.tobytes()
     estimates = []
     for one in (run, stored):
-        policy: Any = partial(chosen, one)
-        estimates.append(qtab.estimate_values(env, policy, seeds=1, episodes=4, discretizer="tiles"))
-    assert estimates[0].weights.tobytes() == estimates[1].weights.tobytes()
+        for policy in (one, partial(chosen, one)):
+            estimates.append(qtab.estimate_values(env, policy, seeds=1, episodes=4, discretizer="tiles"))
+    assert len({found.weights.tobytes() for found in estimates}) == 1
     assert np.any(estimates[0].weights)

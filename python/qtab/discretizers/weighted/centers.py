@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
 
 from qtab._utils.checks import required
+from qtab._utils.shown import counted
 from qtab.config import Config
 from qtab.config.value_checks import MAX_FEATURES
 from qtab.discretizers.box import per_dimension
@@ -43,10 +44,12 @@ class CenteredFeatures(WeightedFeatures):
         if self.n_rows > MAX_FEATURES:
             given = f"{self.n_rows:,}" if self.n_rows < 10**9 else "more than a billion"
             dimensions = len(self.centers)
-            most = max(count for count in range(1, min(self.centers) + 1) if count**dimensions <= MAX_FEATURES)
+            most = max(count for count in range(1, max(self.centers) + 1) if count**dimensions <= MAX_FEATURES)
             instead = f"; centers={most} gives {most**dimensions:,}" if most > 1 else ""
+            differ = len(set(self.centers)) > 1
+            centers = self.centers if differ else f"{self.centers[0]} for each of {counted(dimensions, 'component')}"
             raise ValueError(
-                f"centers must give at most {MAX_FEATURES:,} features, got {self.centers}, which gives {given}{instead}"
+                f"centers must give at most {MAX_FEATURES:,} features, got {centers}, which gives {given}{instead}"
             )
 
     def settings(self) -> dict[str, Any]:

@@ -35,9 +35,11 @@ class CoarseCoding(CenteredFeatures):
                 f"{math.ceil(least * 1000) / 1000:g} for each of {dimensions}, got {_shown(self.radius)}"
             )
         if self._squared(count - 1 for count in self.centers) <= 1:
+            most = math.sqrt(sum((count - 1) ** 2 for count in self.centers))
             raise ValueError(
-                "radius must be small enough that an observation lies outside some receptive field, got "
-                f"{_shown(self.radius)} with {_shown(self.centers)} centers"
+                "radius must be small enough that an observation lies outside some receptive field: below "
+                f"{math.floor(most * 1000) / 1000:g} for each of {dimensions} with {_shown(self.centers)} centers, got "
+                f"{_shown(self.radius)}"
             )
 
     def _squared(self, distances: Iterable[float]) -> float:

@@ -43,7 +43,7 @@ class WeightedFeatures(BoxDiscretizer):
 
     @abstractmethod
     def check_options(self) -> None:
-        """Raises an error for options without sense together.
+        """Raises an error for options that do not fit together.
 
         Raises:
             ValueError: for such options, or more features than possible.
@@ -74,7 +74,7 @@ class WeightedFeatures(BoxDiscretizer):
         with np.errstate(over="ignore"):
             if not np.isfinite(limits[1] - limits[0]).all():
                 raise ValueError(
-                    f"high must not lie so far above low, got {limits[0].tolist()} and {limits[1].tolist()}"
+                    f"high - low must be finite, got low={limits[0].tolist()} and high={limits[1].tolist()}"
                 )
         return built
 
@@ -137,7 +137,7 @@ class WeightedFeatures(BoxDiscretizer):
             ValueError: always.
         """
         raise ValueError(
-            f"{type(self).__name__} has no rows of its own for an observation; feature_values(observation) works"
+            f"every row of {type(self).__name__} is active for every observation; use feature_values(observation)"
         )
 
     def box_spec(self) -> BoxSpec:

@@ -6,8 +6,8 @@ from qtab._spec import PolynomialSpec
 from qtab.discretizers.weighted.orders import OrderedFeatures
 
 OF_FUNCTION = (
-    "gymnasium.wrappers.TransformObservation makes the numbers of a function the observation, and discretizer="
-    "'polynomial' with order=1 and coupled=False has a weight for each"
+    "to learn with features of your own, return them as the observation with gymnasium.wrappers.TransformObservation, "
+    "in a Box that contains them, and use discretizer='polynomial' with order=1 and coupled=False"
 )
 """What to use instead of a function that returns features, for messages."""
 

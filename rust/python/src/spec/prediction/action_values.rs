@@ -73,10 +73,11 @@ impl ActionValues {
         }
     }
 
-    /// The action with the largest value, as by `np.argmax`.
+    /// The action with the largest value, as by `np.argmax`, which takes the first NaN.
     pub(super) fn best(&self) -> usize {
+        let is_better = |new: f64, old: f64| new > old || new.is_nan() && !old.is_nan();
         let values = &self.values;
-        (1..values.len()).fold(0, |best, index| if values[index] > values[best] { index } else { best })
+        (1..values.len()).fold(0, |best, index| if is_better(values[index], values[best]) { index } else { best })
     }
 
     /// The number of products for an observation.

@@ -92,7 +92,7 @@ impl PredictionSpec {
         }
     }
 
-    /// The policies that read observations. `rows` makes the row finder of a discretizer.
+    /// The policies that read observations. `features` makes the features of a discretizer.
     pub(crate) fn policies<G>(
         &self,
         spec: &RunSpec,
