@@ -8,7 +8,7 @@ import pytest
 
 import qtab
 from qtab.compilation.rewriting import rewrite
-from support.environments.gym_classes import refused_vectors
+from support.environments.gym_classes import refused_vectors, unsafe_values
 from support.lockstep.own_vectors import in_lockstep, make
 
 pytest.importorskip("numba")
@@ -57,18 +57,18 @@ def test_classes_that_would_differ_are_refused_by_name(made: Any, mode: str, rea
 @pytest.mark.parametrize(
     "made",
     [
-        *(refused_vectors.Divides, refused_vectors.AddsUp, refused_vectors.BecomesNone),
-        *(refused_vectors.BecomesNoneBesides, refused_vectors.ExtendsByNumber, refused_vectors.AppendsTwo),
-        *(refused_vectors.TruthOfArray, refused_vectors.ChoiceByArray, refused_vectors.AddsToText),
-        *(refused_vectors.SmallIntegers, refused_vectors.BooleansOfNumPy),
-        *(refused_vectors.SmallIntegersOrOthers, refused_vectors.SmallIntegersAtTimes),
+        *(refused_vectors.Divides, refused_vectors.AddsUp, unsafe_values.BecomesNone),
+        *(unsafe_values.BecomesNoneBesides, unsafe_values.ExtendsByNumber, unsafe_values.AppendsTwo),
+        *(unsafe_values.TruthOfArray, unsafe_values.ChoiceByArray, unsafe_values.AddsToText),
+        *(unsafe_values.SmallIntegers, unsafe_values.BooleansOfNumPy),
+        *(unsafe_values.SmallIntegersOrOthers, unsafe_values.SmallIntegersAtTimes),
     ],
 )
 def test_values_that_nothing_reads_must_be_safe(made: Any) -> None:
     refusal = rewrite(made()).shown.refusal
     assert refusal is not None
     assert "an error might be raised here, in a value that compiled code leaves out" in str(refusal)
-    assert rewrite(refused_vectors.Counted()).shown.refusal is None
+    assert rewrite(unsafe_values.Counted()).shown.refusal is None
 
 
 @pytest.mark.filterwarnings("ignore::UserWarning")

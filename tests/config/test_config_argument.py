@@ -227,4 +227,14 @@ def test_the_rates_of_both_tables_follow_features_that_sum_to_one() -> None:
     assert (run.config.learning_rate, run.config.value_learning_rate) == (0.1, 0.1)
     again = qtab.train(config=run.config, normalized=False)
     assert (again.config.learning_rate, again.config.value_learning_rate) == (0.001, 0.005)
+    assert qtab.train(config=run.config.replace(initial_q=-20.0), normalized=False).config.initial_q == 0.0
     assert qtab.train(config=run.config, centers=4).config.learning_rate == 0.1
+
+
+def test_the_options_of_a_schedule_keep_it_when_the_discretizer_changes() -> None:
+    falls = qtab.Config("MountainCar-v0", discretizer="bins", learning_rate=0.2, min_learning_rate=0.01, episodes=1)
+    waves = falls.replace(discretizer="fourier", bins=None, min_learning_rate=1e-5)
+    assert (waves.learning_rate, waves.learning_rate_schedule, waves.min_learning_rate) == (0.001, "linear", 1e-5)
+    wrong: Any = np.array([True, False])
+    with pytest.raises(TypeError, match=r"^normalized must be True or False"):
+        waves.replace(discretizer="radial", order=None, normalized=wrong)

@@ -264,7 +264,9 @@ class Config(WithOrigin):
         """Returns a copy with some settings changed.
 
         With another ``env``, the config of a run loses its preset, the settings that training derived from the old
-        environment, and the keyword arguments from the old environment's registration.
+        environment, and the keyword arguments from the old environment's registration. With a discretizer whose
+        features have another scale, or another ``normalized``, learning rates, their schedule and ``initial_q`` have
+        their defaults unless they are changed, too.
 
         Raises:
             TypeError: for an unknown setting, or a value of the wrong type.

@@ -48,9 +48,7 @@ def weighted_defaults(asked: Mapping[str, Any]) -> dict[str, Any]:
     """Returns the settings that come with weighted features, those of the requested discretizer; else none."""
     if not uses_weighted(asked.get("discretizer")):
         return {}
-    normalized = asked.get("normalized")
-    sums_to_one = isinstance(normalized, bool | np.bool_) and normalized
-    own = {**_OF_WEIGHTED, **_OF_NORMALIZED} if sums_to_one else _OF_WEIGHTED
+    own = {**_OF_WEIGHTED, **_OF_NORMALIZED} if _is_true(asked.get("normalized")) else _OF_WEIGHTED
     return {name: value for name, value in own.items() if not is_set(asked.get(name))}
 
 
@@ -69,21 +67,30 @@ _WITH_RATE = {
 """For each rate that can fall, the setting that names its schedule, and the options of the schedule."""
 
 
+def _is_true(value: Any) -> bool:
+    """Whether a setting that has not been checked yet is True."""
+    return isinstance(value, bool | np.bool_) and bool(value)
+
+
 def _scale(fields: Mapping[str, Any]) -> tuple[bool, bool]:
     """Returns whether features are weighted, and whether they sum to 1."""
     name = fields["discretizer"]
-    return uses_weighted(name), isinstance(name, str) and name == "radial" and bool(fields["normalized"])
+    return uses_weighted(name), isinstance(name, str) and name == "radial" and _is_true(fields["normalized"])
 
 
 def rescaled_settings(before: Mapping[str, Any], changes: Mapping[str, Any]) -> set[str]:
     """Returns the names of the settings that mean something else after a change of discretizer, and are not changed.
 
-    Weighted features do not share a step size, unless they sum to 1, and initial weights are no values.
+    Weighted features do not share a step size, and initial weights are no values, unless the features sum to 1. A
+    schedule stays if its options are changed.
     """
-    old, new = _scale(before), _scale({**before, **changes})
-    rates = {"learning_rate", *_WITH_RATE["learning_rate"], "value_learning_rate"} if old != new else set()
-    weights = {"initial_q"} if old[0] != new[0] else set()
-    return {name for name in rates | weights if not is_set(changes.get(name))}
+    if _scale(before) == _scale({**before, **changes}):
+        return set()
+    schedule, *options = _WITH_RATE["learning_rate"]
+    names = {"learning_rate", schedule, *options, "value_learning_rate", "initial_q"}
+    if before[schedule] in ("linear", "exponential") and any(is_set(changes.get(name)) for name in options):
+        names.discard(schedule)
+    return {name for name in names if not is_set(changes.get(name))}
 
 
 def implied_schedules(asked: Mapping[str, Any], fields: Mapping[str, Any]) -> dict[str, str]:

@@ -79,8 +79,8 @@ def over(base: Base, settings: Mapping[str, Any]) -> dict[str, Any]:
 
     The items of a mapping count like keywords. A Config contributes fewer: fields that are not set, that do not apply
     to the other settings, or that are derived again are left out, as are rates and initial weights that mean something
-    else with the requested discretizer. An option that is off in the config of a run stays
-    off, even if a preset sets it.
+    else with the requested discretizer. An option that is off in the config of a run stays off, even if a preset sets
+    it.
     """
     if isinstance(base, Config):
         left_out = {"env", *freed_settings(base.algorithm, settings.get("algorithm", base.algorithm))}

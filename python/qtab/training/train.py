@@ -59,9 +59,9 @@ def train(
             logger ``qtab`` gives the reason once, unless ``progress`` is False.
         config: The settings to start from. ``qtab.train(config=run.config)`` repeats a run exactly, in the environment
             that it was trained on, with its wrappers. Settings of a Config that do not apply together with the
-            keywords are ignored; with another environment, so are its ``env_kwargs``, its ``preset`` and settings
-            derived from its own environment, such as the time limit. A mapping gives only some settings, as keywords
-            do.
+            keywords are ignored, as are learning rates and ``initial_q`` where a new discretizer gives them another
+            scale; with another environment, so are its ``env_kwargs``, its ``preset`` and settings derived from its
+            own environment, such as the time limit. A mapping gives only some settings, as keywords do.
         resume: A run that was stopped early, or the path of its file, to continue exactly where it stopped; see
             :func:`qtab.resume`. Its settings apply: any given here must be the same, except for ``episodes``. Visits
             and snapshots are continued if the run has them. A run that has all its episodes is returned unchanged,

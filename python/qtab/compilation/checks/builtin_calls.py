@@ -27,6 +27,8 @@ def check_builtin(code: TypedCode, statement: Any, scope: Any, function: Any) ->
     """
     expression = statement.value
     kinds = [types.unliteral(code.type_of(one)) for one in expression.args]
+    if function is float and types.float32 in kinds:  # FloatCalls replaces those that are called by one constant
+        return code.refuse(expression, "float of a float32 through a variable", "write np.float64(...)")
     if (refused := _refused(function, kinds, bool(expression.kws))) is not None:
         return code.refuse(expression, *refused)
     if function is abs and isinstance(kinds[0], types.Integer):

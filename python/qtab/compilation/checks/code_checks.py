@@ -48,6 +48,7 @@ from qtab.compilation.checks.number_types import (
     joins_boolean,
     leaf,
     mixed,
+    wide_instead,
 )
 from qtab.compilation.checks.numpy_calls import check_array_method, check_numpy_call
 from qtab.compilation.checks.typed_code import TypedCode
@@ -203,6 +204,8 @@ class Checks(TypedCode):
         given = [self.type_of(one) for one in expression.args]
         if isinstance(function, types.BoundFunction):
             return self._method_call(statement, scope, given)
+        if expression.vararg is not None and isinstance(function, types.NumberClass | types.Function):
+            return self.refuse(expression, "a call with *arguments", "write the arguments one by one")
         if isinstance(function, types.NumberClass):
             of, value = function.instance_type, types.unliteral(given[0]) if given else None
             if given and not isinstance(value, NUMBERS):
@@ -268,7 +271,7 @@ class Checks(TypedCode):
         elif isinstance(of, types.Array):
             return check_array_method(self, expression, scope, name, of)
         elif name == "item" and (is_narrow(of) or of == types.float32):
-            return self.refuse(expression, f"item() of a {of} keeps its dtype", "write float(...) or int(...)")
+            return self.refuse(expression, f"item() of {of} keeps its dtype", wide_instead(of))
         return []
 
     def check_integer_argument(self, variable: Any, scope: Any, loc: Any) -> list[Any]:

@@ -27,6 +27,11 @@ def is_narrow(of: Any) -> bool:
     return isinstance(of, types.Integer) and (of.bitwidth < 64 or not of.signed)
 
 
+def wide_instead(of: Any) -> str:
+    """Returns what to write instead of a number of fewer than 64 bits."""
+    return f"write {'np.float64' if of == types.float32 else 'np.int64'}(...)"
+
+
 def mixed(kinds: list[Any]) -> str:
     """Returns why the type of a result can differ from NumPy's; an empty text if it does not."""
     narrow = next((kind for kind in kinds if is_narrow(kind)), None)

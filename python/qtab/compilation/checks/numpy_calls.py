@@ -18,7 +18,15 @@ from qtab.compilation.checks.known_functions import (
     NUMPY_WRITES,
 )
 from qtab.compilation.checks.made_arrays import check_made_array, check_numbers
-from qtab.compilation.checks.number_types import CONVERT, NUMBERS, is_narrow, leaf, mixed, of_integers
+from qtab.compilation.checks.number_types import (
+    CONVERT,
+    NUMBERS,
+    is_narrow,
+    leaf,
+    mixed,
+    of_integers,
+    wide_instead,
+)
 from qtab.compilation.checks.typed_code import TypedCode
 
 
@@ -81,7 +89,7 @@ def check_array_method(code: TypedCode, expression: Any, scope: Any, name: str, 
     if name in ("sort", "fill", "partition", "put", "itemset") and not of.mutable:
         return code.refuse(expression, f"array.{name}() changes an array of self", "copy the array first")
     if name == "item" and (is_narrow(of.dtype) or of.dtype == types.float32):
-        return code.refuse(expression, f"array.item() of {of.dtype} keeps its dtype", "write float(...) or int(...)")
+        return code.refuse(expression, f"array.item() of {of.dtype} keeps its dtype", wide_instead(of.dtype))
     if name == "view":
         return code.refuse(expression, "array.view() shows the sign of a NaN", "convert it with array.astype(...)")
     if name == "fill" and expression.args:

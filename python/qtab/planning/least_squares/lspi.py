@@ -60,8 +60,10 @@ class LeastSquaresPolicy:
 
         Raises:
             IndexError: for an iteration that was not made.
-            TypeError: if the observations are not numbers, or not integers for features in an array.
-            ValueError: if the observations do not fit the features.
+            TypeError: if the observations are not numbers, or not integers for features in an array; or for a mask that
+                does not hold booleans or integers.
+            ValueError: if the observations do not fit the features, or a mask leaves no action, as it may in a terminal
+                state.
         """
         x = feature_vectors(self.features, observed("observations", observations))
         values: FloatArray = x @ self.history[iteration]
