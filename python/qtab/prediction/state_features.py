@@ -20,7 +20,7 @@ from qtab.prediction.settings import PredictionSettings
 MOST_RECURSIVE, MOST_SOLVED = 4096, 1024
 """The largest numbers of weights of LSTD, if it updates a matrix at each step, and if it solves equations."""
 
-GivenFeatures: TypeAlias = ArrayLike | Callable[[Any], ArrayLike]
+GivenFeatures: TypeAlias = ArrayLike | Callable[[Any], Any]
 """The accepted forms of features; see :func:`qtab.estimate_values`."""
 
 
@@ -127,7 +127,7 @@ def _of_cells(features: GivenFeatures | None, cells: Discretizer, space: gym.Spa
 
 
 def _of_function(
-    function: Callable[[Any], ArrayLike], cells: Discretizer, space: gym.Space[Any] | None
+    function: Callable[[Any], Any], cells: Discretizer, space: gym.Space[Any] | None
 ) -> NDArray[np.float64]:
     """Returns (states, d): the numbers that a function returns for the observation of each state."""
     if not isinstance(space, gym.spaces.Discrete | gym.spaces.MultiDiscrete | gym.spaces.Tuple):

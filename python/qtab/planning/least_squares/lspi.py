@@ -40,9 +40,9 @@ class LeastSquaresPolicy:
     """Whether the last two weights differ by less than the tolerance; if not, the last policy need not be the best."""
     discount: float
     """The discount γ."""
-    features: GivenFeatures = field(repr=False)
-    """x(s), as given."""
-    action_mask: Callable[[Any], ArrayLike] | None = field(default=None, repr=False)
+    features: Any = field(repr=False)
+    """x(s), an array or a function, as given."""
+    action_mask: Callable[[Any], Any] | None = field(default=None, repr=False)
     """The available actions of an observation, as given; None if all actions always are."""
 
     @property
@@ -103,7 +103,7 @@ def lspi(
     epsilon: float = 0.0,
     tolerance: float = 1e-5,
     max_iterations: int = 100,
-    action_mask: Callable[[Any], ArrayLike] | None = None,
+    action_mask: Callable[[Any], Any] | None = None,
 ) -> LeastSquaresPolicy:
     """Finds a policy by least-squares policy iteration: evaluates it by LSTDQ, makes it greedy, and repeats.
 
@@ -164,7 +164,7 @@ def _greedy(values: FloatArray, masks: NDArray[np.bool_] | None) -> NDArray[np.i
     return chosen
 
 
-def _next_masks(action_mask: Callable[[Any], ArrayLike] | None, transitions: Transitions) -> NDArray[np.bool_] | None:
+def _next_masks(action_mask: Callable[[Any], Any] | None, transitions: Transitions) -> NDArray[np.bool_] | None:
     """Returns the available actions of each next state, (n, actions), all in terminal states; None without masks.
 
     Raises:
@@ -186,7 +186,7 @@ def _next_masks(action_mask: Callable[[Any], ArrayLike] | None, transitions: Tra
     return masks
 
 
-def _masks(action_mask: Callable[[Any], ArrayLike], observations: NDArray[Any], n_actions: int) -> NDArray[np.bool_]:
+def _masks(action_mask: Callable[[Any], Any], observations: NDArray[Any], n_actions: int) -> NDArray[np.bool_]:
     """Returns the masks of n observations, (n, actions)."""
     found = [checked_mask("action_mask", action_mask(one), n_actions) for one in each(observations)]
     return np.array(found, np.bool_).reshape(-1, n_actions)

@@ -12,7 +12,7 @@ from qtab._utils.shown import shown
 from qtab.planning.least_squares.equations import Batch, FloatArray
 from qtab.planning.least_squares.transitions import Transitions
 
-GivenFeatures: TypeAlias = ArrayLike | Callable[[Any], ArrayLike]
+GivenFeatures: TypeAlias = ArrayLike | Callable[[Any], Any]
 """The accepted forms of features; see :func:`feature_vectors`."""
 GivenActions: TypeAlias = ArrayLike | Callable[[Any], Any]
 """The accepted forms of a policy; see :func:`chosen_actions`."""
