@@ -1,6 +1,7 @@
 """Weighted features in plain NumPy: a number for each row of the table (Sutton & Barto, 2nd ed., section 9.5)."""
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from functools import reduce
 from itertools import product
@@ -23,7 +24,7 @@ class WeightedRows(list[int]):
         self.x = x
 
 
-class WeightedFeatures:
+class WeightedFeatures(ABC):
     """Features of states s in [0, 1]^d, to which observations between the limits are scaled."""
 
     n_active = 1  # the features do not share the learning rate
@@ -36,13 +37,13 @@ class WeightedFeatures:
         self.prepare(config, len(self.low))
         self.shape: tuple[int, ...] = (len(self.x([0.0] * len(self.low))),)
 
+    @abstractmethod
     def prepare(self, config: Config, d: int) -> None:
         """Reads the options of the features of ``d`` components."""
-        raise NotImplementedError
 
+    @abstractmethod
     def x(self, s: list[float]) -> list[float]:
         """Returns the features of a state."""
-        raise NotImplementedError
 
     def rows(self, observation: ArrayLike) -> WeightedRows:
         """Returns every row, with its feature."""
