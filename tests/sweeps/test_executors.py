@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import sys
+import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor, ThreadPoolExecutor, wait
 from contextlib import contextmanager, nullcontext
@@ -122,9 +123,26 @@ def die() -> Any:
     return make_brittle()
 
 
+def die_with_a_lock() -> Any:
+    """Does the same, but dies as soon as it holds a lock that processes share, if it takes one within a second."""
+    from multiprocessing import parent_process, synchronize
+
+    take = synchronize.SemLock.__enter__
+
+    def take_and_die(lock: Any) -> Any:
+        take(lock)
+        return die()
+
+    if parent_process() is not None:
+        synchronize.SemLock.__enter__ = take_and_die  # type: ignore[method-assign]
+        time.sleep(1.0)
+    return die()
+
+
 @pytest.mark.slow
 @pytest.mark.skipif(os.name != "posix", reason="kills a process")
-def test_a_killed_worker_of_this_package_is_said_to_be_killed(tmp_path):
+@pytest.mark.parametrize("die", [die, die_with_a_lock])
+def test_a_killed_worker_of_this_package_is_said_to_be_killed(tmp_path, die):
     message = r"a worker process ended abruptly \(killed, or out of memory\).*0 of 4 runs are kept in store"
     with pytest.raises(RuntimeError, match=message):
         qtab.sweep(

@@ -6,13 +6,12 @@ import os
 import pickle
 import signal
 import threading
-import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import closing, contextmanager
+from contextlib import closing, contextmanager, suppress
 from operator import itemgetter
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import cloudpickle
 
@@ -22,8 +21,11 @@ from qtab.envs.registry import spec_of
 from qtab.training.setup.resolve import resolve
 from qtab.training.setup.resolved_run import ResolvedRun, masks_of
 
+if TYPE_CHECKING:
+    from multiprocessing.connection import Connection
+
 POLL_SECONDS = 0.2
-"""The interval of checks for Ctrl-C, which cannot interrupt a wait on Windows, and, in workers, for the pool's end."""
+"""The interval of checks for Ctrl-C, which cannot interrupt a wait on Windows."""
 STOPPED = "the other runs were stopped"
 
 
@@ -67,17 +69,19 @@ def process_pool(workers: int, task: bytes | None = None) -> Iterator[ProcessPoo
     """
     # Never fork: a copy of a process with threads can hang.
     context = multiprocessing.get_context("spawn")
-    stop = context.Event()
-    executor = ProcessPoolExecutor(workers, context, _start_worker, (stop, task))
-    try:
-        yield executor
-    except BrokenProcessPool as error:
-        raise RuntimeError(
-            "a worker process ended abruptly; a script must keep its call behind if __name__ == '__main__':"
-        ) from error
-    finally:
-        stop.set()
-        executor.shutdown(cancel_futures=True)
+    # A pipe has no lock, which a killed worker could still hold. No worker reads from it, so that all see what is sent.
+    stop, ours = context.Pipe(duplex=False)
+    with stop, ours:
+        executor = ProcessPoolExecutor(workers, context, _start_worker, (stop, task))
+        try:
+            yield executor
+        except BrokenProcessPool as error:
+            raise RuntimeError(
+                "a worker process ended abruptly; a script must keep its call behind if __name__ == '__main__':"
+            ) from error
+        finally:
+            ours.send_bytes(b"stop")
+            executor.shutdown(cancel_futures=True)
 
 
 @contextmanager
@@ -102,7 +106,7 @@ def trained_in_python(
         _Worker.training = True
         try:
             for episode in range(resolved.config.episodes):
-                if _Worker.stop is not None and _Worker.stop.is_set():
+                if _Worker.stopped:
                     raise InterruptedError(STOPPED)
                 trainer.advance(episode + 1)
             trainer.check_tables()
@@ -144,9 +148,10 @@ def _fill(index: int, future: "Future[Any]", results: Results) -> Exception | No
 
 
 class _Worker:
-    """The data that a worker process receives at its start."""
+    """The state of a worker process, and the data that it receives at its start."""
 
-    stop: Any = None
+    stopped = False
+    """Whether the parent has ended the pool."""
     training = False
     """Whether a run is in progress; the end of the pool interrupts it."""
     env: Any
@@ -154,13 +159,12 @@ class _Worker:
     memory: tuple[int, int]
 
 
-def _start_worker(stop: Any, task: bytes | None) -> None:
+def _start_worker(stop: "Connection", task: bytes | None) -> None:
     # Ctrl-C reaches the whole process group; only the parent handles it.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, _interrupt)
     threading.Thread(target=_end_with, args=(multiprocessing.parent_process(),), daemon=True).start()
     threading.Thread(target=_interrupt_after, args=(stop,), daemon=True).start()
-    _Worker.stop = stop
     if task is not None:
         _Worker.env, _Worker.settings, _Worker.memory = pickle.loads(task)  # noqa: S301 - from the parent process
 
@@ -171,17 +175,17 @@ def _end_with(parent: Any) -> None:
     os._exit(1)
 
 
-def _interrupt_after(stop: Any) -> None:
+def _interrupt_after(stop: "Connection") -> None:
     """Interrupts the run in progress when the pool ends: its episode may never end."""
-    # Not stop.wait(): the parent's stop.set() would wait for a waiting process that was killed.
-    while not stop.is_set():
-        time.sleep(POLL_SECONDS)
+    with suppress(OSError):  # on Windows, the parent may have closed its end
+        stop.poll(None)
+    _Worker.stopped = True
     _thread.interrupt_main(signal.SIGTERM)
 
 
 def _interrupt(number: int, _frame: Any) -> None:
     """Handles SIGTERM: sent at the end of the pool, it stops the run; otherwise it ends the process as usual."""
-    if _Worker.stop is None or not _Worker.stop.is_set():
+    if not _Worker.stopped:
         signal.signal(number, signal.SIG_DFL)
         signal.raise_signal(number)
     elif _Worker.training:
