@@ -1,6 +1,5 @@
 """Ordinary classes that vector environments refuse to compile, since they would differ from SyncVectorEnv."""
 
-from collections.abc import Iterator
 from typing import Any
 
 import gymnasium as gym
@@ -12,13 +11,7 @@ from support.environments.gym_classes import refused_vectors, unsafe_values
 from support.lockstep.own_vectors import in_lockstep, make
 
 pytest.importorskip("numba")
-
-
-@pytest.fixture(scope="module", autouse=True)
-def _unregistered() -> Iterator[None]:
-    yield
-    for name in [one for one in gym.registry if one.startswith("QtabVec/")]:
-        del gym.registry[name]
+pytestmark = pytest.mark.usefixtures("unregistered")
 
 
 @pytest.mark.parametrize(

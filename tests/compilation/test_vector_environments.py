@@ -3,7 +3,6 @@
 import copy
 import logging
 import pickle
-from collections.abc import Iterator
 from typing import Any
 
 import gymnasium as gym
@@ -39,12 +38,9 @@ CLASSES: dict[str, Any] = {
 
 
 @pytest.fixture(scope="module", autouse=True)
-def registered() -> Iterator[None]:
+def registered(unregistered: None) -> None:
     for name, cls in {**CLASSES, "Fragile": vectors.FragileEnv, "Growing": vectors.GrowingEnv}.items():
         gym.register(f"QtabVec/{name}-v0", cls, vector_entry_point=f"qtab.envs.make_vector:QtabVec/{name}-v0")
-    yield
-    for name in [one for one in gym.registry if one.startswith("QtabVec/")]:
-        del gym.registry[name]
 
 
 @pytest.mark.parametrize("name", CLASSES)
