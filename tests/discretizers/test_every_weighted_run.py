@@ -3,6 +3,7 @@
 The cases are those of the tables of the package, so that a new algorithm or kind is tested without a change here.
 """
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -75,12 +76,13 @@ def test_a_run_is_that_of_the_reference_alone_and_among_others_and_in_python(kin
 
 @posix_only
 @pytest.mark.parametrize(("kind", "algorithm"), CASES)
-def test_a_run_resumes_wherever_it_was_stopped(kind: str, algorithm: Any) -> None:
+def test_a_stored_run_resumes_wherever_it_was_stopped(kind: str, algorithm: Any, tmp_path: Path) -> None:
     settings = {**settings_of(kind, algorithm), "episodes": 2_000_000, "seed": 1}
     stopped = stopped_by_a_timer(0.01, "CartPole-v1", **settings)
     episodes = len(stopped.episode_returns) + 2
     ending: Any = {"callback": lambda _: False, "callback_every": episodes}
-    resumed = qtab.resume(stopped, progress=False, **ending)
+    stopped.save(tmp_path / "run.npz")
+    resumed = qtab.resume(qtab.load(tmp_path / "run.npz"), progress=False, **ending)
     whole = qtab.train("CartPole-v1", **settings, **ending)
     assert parts(resumed) == parts(whole)
     assert resumed.tables.tobytes() == whole.tables.tobytes()

@@ -114,35 +114,6 @@ def test_python_and_rust_learn_with_the_same_algorithms(algorithm: Any) -> None:
             _core.Trainer(spec, 0)
 
 
-@pytest.mark.parametrize("algorithm", [one for one in LEARNS_WEIGHTED if one not in ("q_learning", "expected_sarsa")])
-def test_a_resumed_run_is_the_uninterrupted_one(algorithm: Any, tmp_path: Path) -> None:
-    whole = qtab.train(CAR, algorithm=algorithm, episodes=9, order=4, **FOURIER)
-    stopped = qtab.train(
-        CAR,
-        algorithm=algorithm,
-        episodes=9,
-        order=4,
-        callback=lambda seen: seen.episodes < 4,
-        callback_every=1,
-        **FOURIER,
-    )
-    stopped.save(tmp_path / "run.npz")
-    resumed = qtab.resume(qtab.load(tmp_path / "run.npz"), progress=False)
-    assert len(stopped.episode_returns) < 9
-    assert resumed.tables.tobytes() == whole.tables.tobytes()
-    assert resumed.episode_returns.tobytes() == whole.episode_returns.tobytes()
-
-
-def test_runs_differ_from_others_by_their_seeds_alone() -> None:
-    given_settings = {name: value for name, value in FOURIER.items() if name != "seed"}
-    runs = qtab.train_many(CAR, seeds=[3, 4], episodes=3, tables=True, **given_settings)
-    alone = qtab.train(CAR, episodes=3, **FOURIER)
-    assert runs.tables is not None
-    assert runs.tables[0].tobytes() == alone.tables.tobytes()
-    python = qtab.train(CAR, episodes=3, backend="gymnasium", **FOURIER)
-    assert python.tables.tobytes() == alone.tables.tobytes()
-
-
 def test_a_value_is_the_sum_of_products_and_the_prediction_its_argmax(tmp_path: Path) -> None:
     run = qtab.train(CAR, episodes=20, order=5, algorithm="sarsa", **FOURIER)
     run.save(tmp_path / "run.npz")
@@ -174,9 +145,7 @@ def test_pictures_show_the_values_between_the_limits() -> None:
     shown = np.asarray(axes.collections[0].get_array() if axes.collections else axes.images[0].get_array())
     assert np.isfinite(shown).all()
     middle = run.values(np.array([-0.3 + 0.9 / 200, 0.07 / 200], np.float32))
-    assert np.isclose(shown.reshape(200, 200)[100, 100], middle) or np.isclose(
-        -shown.reshape(200, 200)[100, 100], middle
-    )
+    assert np.isclose(shown.reshape(200, 200)[100, 100], middle)
     qtab.plots.policy(run)
     plt.close("all")
 

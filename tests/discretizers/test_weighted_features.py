@@ -145,7 +145,7 @@ def test_random_settings_give_the_table_of_the_reference(algorithm: str) -> None
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_run_is_resumed_saved_evaluated_and_shown(kind: str, tmp_path: Path) -> None:
+def test_a_run_is_saved_resumed_and_shown(kind: str, tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")
     import matplotlib.pyplot as plt
 
@@ -158,12 +158,9 @@ def test_a_run_is_resumed_saved_evaluated_and_shown(kind: str, tmp_path: Path) -
     resumed = qtab.resume(loaded, progress=False)
     assert len(stopped.episode_returns) < 9
     assert resumed.tables.tobytes() == whole.tables.tobytes()
-    stepped_in_python = qtab.train(CAR, backend="gymnasium", **chosen)
-    assert stepped_in_python.tables.tobytes() == whole.tables.tobytes()
     observations = np.array([[-0.5, 0.0], [0.3, 0.02], [-1.1, -0.01]], np.float32)
     assert loaded.q_values(observations).tobytes() == stopped.q_values(observations).tobytes()
     assert np.array_equal(whole.predict(observations)[0], whole.q_values(observations).argmax(axis=1))
-    assert len(qtab.evaluate(whole, 2, seed=0).returns) == 2
     axes = qtab.plots.values(whole)
     shown = np.asarray(axes.collections[0].get_array() if axes.collections else axes.images[0].get_array())
     assert np.isfinite(shown).all()
