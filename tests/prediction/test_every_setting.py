@@ -46,10 +46,29 @@ PAIRS: dict[str, tuple[tuple[Any, Any], dict[str, Any]]] = {
 NEUTRAL = {
     **dict.fromkeys(("env", "method"), "every pair of values has one"),
     **dict.fromkeys(("threads", "progress", "record"), "they say how to compute and what to keep"),
-    **dict.fromkeys(
-        OF_OBSERVATIONS,
-        "they are for a Box of observations, as the tests of its estimates show",
-    ),
+    **dict.fromkeys(OF_OBSERVATIONS, "they are for a Box of observations, and have two values below"),
+}
+RADIAL: dict[str, Any] = {"discretizer": "radial", "learning_rate": 0.1}
+FOURIER: dict[str, Any] = {"discretizer": "fourier", "learning_rate": 0.1}
+CAR = "MountainCar-v0"
+BOXES: dict[str, tuple[tuple[Any, Any], dict[str, Any]]] = {
+    "discretizer": (("bins", "tiles"), {}),
+    "tilings": ((4, 8), {"discretizer": "tiles"}),
+    "tiles": ((4, 8), {"discretizer": "tiles"}),
+    "hashed_rows": ((7, 11), {"discretizer": "tiles"}),
+    "bins": ((10, 20), {"discretizer": "bins"}),
+    "edges": ((((-0.5,), (0.0,)), ((-0.52, -0.48), (0.0,))), {"discretizer": "edges"}),
+    "scale": (((10, 100), (20, 100)), {"discretizer": "round"}),
+    "low": (((-1.2, -0.07), (-0.7, -0.07)), {"discretizer": "bins", "bins": 10, "high": (0.6, 0.07)}),
+    "high": (((0.6, 0.07), (-0.3, 0.07)), {"discretizer": "bins", "bins": 10, "low": (-1.2, -0.07)}),
+    "order": ((2, 3), FOURIER),
+    "coupled": ((True, False), FOURIER),
+    "scale_step_sizes": ((True, False), FOURIER),
+    "centers": ((4, 5), RADIAL),
+    "width": ((1.0, 0.5), RADIAL),
+    "normalized": ((True, False), RADIAL),
+    "radius": ((1.5, 1.0), {"discretizer": "coarse", "learning_rate": 0.1}),
+    "actions": ((2, 3), {"env": "Pendulum-v1", "discretizer": "bins", "bins": 2}),
 }
 NEEDED: dict[str, dict[str, Any]] = {
     "n_step_td": {"n_steps": 2},
@@ -67,6 +86,19 @@ NEEDED: dict[str, dict[str, Any]] = {
 
 def test_every_setting_has_two_values_here_or_a_reason_why_not() -> None:
     assert inspect.signature(qtab.estimate_values).parameters.keys() == PAIRS.keys() | NEUTRAL.keys()
+
+
+def test_every_setting_of_a_box_has_two_values_here() -> None:
+    assert set(BOXES) == set(OF_OBSERVATIONS)
+
+
+@pytest.mark.parametrize("name", BOXES)
+def test_a_setting_of_a_box_changes_the_estimates(name: str) -> None:
+    values, common = BOXES[name]
+    given: dict[str, Any] = {"env": CAR, "policy": "random", "episodes": 3, "max_episode_steps": 40, "seeds": [0]}
+    found = [qtab.estimate_values(**{**given, **common, name: value}, progress=False) for value in values]
+    at = np.array([[1.0, 0.0, 0.0]] if "env" in common else [[-0.5, 0.0], [-0.55, 0.005]], np.float32)
+    assert found[0].value(at).tobytes() != found[1].value(at).tobytes(), f"{name} is ignored"
 
 
 @pytest.mark.parametrize("method", METHODS)
