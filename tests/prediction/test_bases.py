@@ -4,13 +4,15 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import qtab
+from qtab.config.options import WEIGHTED as BASES
 from support.learners.box_prediction import CAR, PENDULUM, POLE, with_the_velocity
 from support.learners.weighted_prediction import WEIGHTED, options_of
 
+PROFILE: Any = settings.default
 LIMITS: dict[str, Any] = {"low": [-2.4, -3.0, -0.2, -3.0], "high": [2.4, 3.0, 0.2, 3.0]}
 BOXES: dict[str, tuple[list[Any], dict[str, Any]]] = {
     CAR: (["random", with_the_velocity, lambda at: [0.7, 0.2, 0.1] if at[1] < 0 else [0.1, 0.2, 0.7]], {}),
@@ -33,10 +35,11 @@ def options_of_basis(basis: str, env: str, data: st.DataObject) -> dict[str, Any
     return {"centers": centers, "radius": data.draw(st.floats(1.0, 1.4))}
 
 
+@pytest.mark.parametrize("basis", BASES)
+@pytest.mark.parametrize("method", WEIGHTED)
+@settings(max_examples=max(3, PROFILE.max_examples // 10))
 @given(data=st.data())
-def test_any_method_with_any_basis_equals_plain_numpy(data: st.DataObject) -> None:
-    method: Any = data.draw(st.sampled_from(WEIGHTED))
-    basis: Any = data.draw(st.sampled_from(["fourier", "polynomial", "radial", "coarse"]))
+def test_every_method_with_every_basis_equals_plain_numpy(method: Any, basis: Any, data: st.DataObject) -> None:
     env = data.draw(st.sampled_from(list(BOXES)))
     policies, given = BOXES[env]
     options = {**given, **options_of(method, data), **options_of_basis(basis, env, data)}
