@@ -12,7 +12,6 @@ from qtab.config.options import WEIGHTED as BASES
 from support.learners.box_prediction import CAR, PENDULUM, POLE, with_the_velocity
 from support.learners.weighted_prediction import WEIGHTED, options_of
 
-PROFILE: Any = settings.default
 LIMITS: dict[str, Any] = {"low": [-2.4, -3.0, -0.2, -3.0], "high": [2.4, 3.0, 0.2, 3.0]}
 BOXES: dict[str, tuple[list[Any], dict[str, Any]]] = {
     CAR: (["random", with_the_velocity, lambda at: [0.7, 0.2, 0.1] if at[1] < 0 else [0.1, 0.2, 0.7]], {}),
@@ -37,7 +36,7 @@ def options_of_basis(basis: str, env: str, data: st.DataObject) -> dict[str, Any
 
 @pytest.mark.parametrize("basis", BASES)
 @pytest.mark.parametrize("method", WEIGHTED)
-@settings(max_examples=max(3, PROFILE.max_examples // 10))
+@settings(max_examples=settings().max_examples // 10)
 @given(data=st.data())
 def test_every_method_with_every_basis_equals_plain_numpy(method: Any, basis: Any, data: st.DataObject) -> None:
     env = data.draw(st.sampled_from(list(BOXES)))

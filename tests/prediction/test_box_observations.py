@@ -6,7 +6,7 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
@@ -44,10 +44,11 @@ DISCRETIZERS: list[dict[str, Any]] = [
 ]
 
 
+@pytest.mark.parametrize("method", METHODS)
+@settings(max_examples=settings().max_examples // 6)
 @given(data=st.data())
-def test_any_settings_equal_plain_numpy(data: st.DataObject) -> None:
+def test_any_settings_equal_plain_numpy(method: Any, data: st.DataObject) -> None:
     env = data.draw(st.sampled_from(list(ENVIRONMENTS)))
-    method: Any = data.draw(st.sampled_from(METHODS))
     policies, options = ENVIRONMENTS[env]
     arguments = dict(data.draw(st.sampled_from(DISCRETIZERS[-1:] if method in AVERAGES else DISCRETIZERS)))
     cells = arguments["discretizer"] == "bins"

@@ -5,7 +5,7 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import qtab
@@ -61,9 +61,10 @@ def test_policies_and_features_may_have_any_order_in_memory(method: Any) -> None
         assert found.verify().equal
 
 
+@pytest.mark.parametrize("method", METHODS)
+@settings(max_examples=settings().max_examples // 6)
 @given(data=st.data())
-def test_any_settings_equal_plain_numpy(data: st.DataObject) -> None:
-    method: Any = data.draw(st.sampled_from(METHODS))
+def test_any_settings_equal_plain_numpy(method: Any, data: st.DataObject) -> None:
     options = dict(OPTIONS[method])
     # Emphases grow to thousands within an episode.
     rate = st.floats(0.0, 1e-3 if method == "emphatic_td" else 0.5 if method in OFF_POLICY else 1.0)

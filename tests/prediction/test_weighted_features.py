@@ -5,7 +5,7 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
@@ -19,9 +19,10 @@ FOURIER: dict[str, Any] = {"discretizer": "fourier", "learning_rate": 0.01, "epi
 TARGET = np.random.default_rng(0).dirichlet(np.ones(3), size=6)
 
 
+@pytest.mark.parametrize("method", WEIGHTED)
+@settings(max_examples=settings().max_examples // 6)
 @given(data=st.data())
-def test_vectors_of_states_equal_plain_numpy(data: st.DataObject) -> None:
-    method: Any = data.draw(st.sampled_from(WEIGHTED))
+def test_vectors_of_states_equal_plain_numpy(method: Any, data: st.DataObject) -> None:
     options = options_of(method, data)
     count, limit = data.draw(st.integers(1, 7)), data.draw(st.sampled_from([3, 30]))
     vectors = np.random.default_rng(count).uniform(-1.0, 1.0, (6, count))
