@@ -2,6 +2,7 @@
 
 from typing import Any
 
+import gymnasium as gym
 import numpy as np
 import pytest
 
@@ -16,4 +17,32 @@ def test_a_policy_that_is_deterministic_up_to_rounding_is_verified(behavior: Any
     estimates = qtab.estimate_values(
         "MountainCar-v0", policy, behavior=behavior, method="importance_sampling", episodes=20, seeds=1, **settings
     )
+    assert estimates.verify().equal
+
+
+def mirrored() -> gym.Env[Any, Any]:
+    """The car with its position negated by a wrapper."""
+    space = gym.spaces.Box(np.array([-0.6, -0.07]), np.array([1.2, 0.07]), dtype=np.float64)
+    env = gym.make("MountainCar-v0")
+    return gym.wrappers.TransformObservation(env, lambda at: np.array([-at[0], at[1]], np.float64), space)
+
+
+@pytest.mark.parametrize("discretizer", ["bins", "tiles", "polynomial"])
+def test_a_wrapped_environment_is_verified_with_its_wrapper(discretizer: Any) -> None:
+    settings: dict[str, Any] = {"discretizer": discretizer, "learning_rate": 0.01, "max_episode_steps": 40}
+    estimates = qtab.estimate_values(mirrored(), "random", episodes=3, **settings)
+    assert estimates.verify(env=mirrored()).equal
+    with pytest.raises(ValueError, match=r"^env must be given: .* its wrapper TransformObservation was made with the"):
+        estimates.verify()
+    with pytest.raises(
+        ValueError, match=r"^env must be that of the estimates, got another one: .*TransformObservation"
+    ):
+        estimates.verify(env=gym.make("MountainCar-v0"))
+    with pytest.raises(TypeError, match=r"^env must be an environment, got 'MountainCar-v0'$"):
+        estimates.verify(env="MountainCar-v0")  # type: ignore[arg-type]
+
+
+def test_a_wrapper_that_can_be_made_again_is() -> None:
+    env = gym.wrappers.ClipReward(gym.make("MountainCar-v0"), -0.5, 0.0)
+    estimates = qtab.estimate_values(env, "random", episodes=3, discretizer="tiles", max_episode_steps=40)
     assert estimates.verify().equal

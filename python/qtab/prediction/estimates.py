@@ -5,13 +5,14 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import gymnasium as gym
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qtab._utils import html
 from qtab._utils.checks import required
 from qtab._utils.fields import with_fields
-from qtab._utils.shown import shown
+from qtab._utils.shown import counted, shown
 from qtab.config import Config
 from qtab.discretizers import Discretizer
 from qtab.prediction import storage
@@ -129,16 +130,14 @@ class ValueEstimates:
     @property
     def mean(self) -> NDArray[np.float64]:
         """(*cells,): the mean of the final values over the seeds."""
-        mean: NDArray[np.float64] = self.values.mean(axis=0)
-        return mean
+        return np.asarray(self.values.mean(axis=0))
 
     @property
     def standard_error(self) -> NDArray[np.float64]:
         """(*cells,): the standard error of :attr:`mean`; NaN for a single seed."""
         if len(self.seeds) == 1:
             return np.full(self.shape, np.nan)
-        error: NDArray[np.float64] = self.values.std(axis=0, ddof=1) / np.sqrt(len(self.seeds))
-        return error
+        return np.asarray(self.values.std(axis=0, ddof=1) / np.sqrt(len(self.seeds)))
 
     def values_after(self, point: int) -> NDArray[np.float64]:
         """Returns (seeds, *cells): the values at one of the recorded points, by its index."""
@@ -194,19 +193,25 @@ class ValueEstimates:
             ]
         return np.stack(errors, axis=1)
 
-    def verify(self, episodes: int | None = None, seed: int | None = None) -> "ValuesVerification":
+    def verify(
+        self, episodes: int | None = None, seed: int | None = None, env: gym.Env | None = None
+    ) -> "ValuesVerification":
         """Repeats the estimate in plain NumPy in Gymnasium's environment, and compares the weights byte for byte.
 
         Args:
             episodes: The number of episodes, one of :attr:`episodes`; None means all.
             seed: One of :attr:`seeds`; None means the first.
+            env: The environment, if qtab cannot make it again. It must be that of the estimates, and is not closed.
 
         Raises:
-            ValueError: for a number that was not recorded, another seed, or an environment without an id.
+            gymnasium.error.UnregisteredEnv: without ``env``, for an environment that is not registered.
+            TypeError: for an argument of the wrong type.
+            ValueError: for a number that was not recorded, another seed, another environment than that of the
+                estimates, or, without ``env``, one that cannot be made again.
         """
         from qtab.prediction.verification import verify_values
 
-        return verify_values(self, episodes, seed)
+        return verify_values(self, episodes, seed, env)
 
     def plot(self, ax: "Axes | None" = None, *, true_values: ArrayLike | None = None) -> "Axes":
         """Draws the mean values over the states, and returns the axes.
@@ -231,9 +236,8 @@ class ValueEstimates:
             from qtab.plots import values
 
             return values(self, ax)
-        return draw_values(
-            self, ax, None if true_values is None else _of_shape("true_values", true_values, self.shape, "states")
-        )
+        exact = None if true_values is None else _of_shape("true_values", true_values, self.shape, "states")
+        return draw_values(self, ax, exact)
 
     def _subject(self) -> "Subject":
         """The data that :func:`qtab.plots.values` draws."""
@@ -261,10 +265,8 @@ class ValueEstimates:
 
     def __repr__(self) -> str:
         """A one-line summary without the values."""
-        runs = "1 run" if len(self.seeds) == 1 else f"{len(self.seeds):,} runs"
-        size = self._size(" x ")
-        episodes = f"{runs} of {self.settings.episodes:,} episodes"
-        return f"<ValueEstimates of {self.env}: {self.settings.method}, {size}, {episodes}>"
+        episodes = f"{counted(len(self.seeds), 'run')} of {self.settings.episodes:,} episodes"
+        return f"<ValueEstimates of {self.env}: {self.settings.method}, {self._size(' x ')}, {episodes}>"
 
     def _repr_html_(self) -> str:
         """A table and, if there are states, the mean values, for notebooks."""
@@ -276,10 +278,8 @@ class ValueEstimates:
             "seeds": f"{len(self.seeds):,}",
             "time": f"{self.seconds:.3g} s",
         }
-        title = f"Estimated values in {self.env}"
-        if not self.of_cells:
-            return html.summary(title, facts)
-        return html.summary(title, facts, html.state_values("Mean values", self.mean))
+        values = (html.state_values("Mean values", self.mean),) if self.of_cells else ()
+        return html.summary(f"Estimated values in {self.env}", facts, *values)
 
     def _size(self, times: str) -> str:
         if not self.of_cells:

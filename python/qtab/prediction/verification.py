@@ -1,6 +1,6 @@
 """The comparison of estimated values with the same method in plain NumPy, in Gymnasium's environment."""
 
-from contextlib import closing
+from contextlib import AbstractContextManager, closing, nullcontext
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -12,8 +12,8 @@ from qtab._utils.arrays import same_bytes
 from qtab._utils.fields import with_fields
 from qtab._utils.shown import shown
 from qtab.config.config import replace_checked
-from qtab.envs.registry import ENTRIES, gymnasium_id, spec_of_run
 from qtab.prediction.reference import estimate
+from qtab.training.setup.run_env import check_described, make_run_env
 
 if TYPE_CHECKING:
     from qtab.prediction.estimates import ValueEstimates
@@ -45,16 +45,9 @@ class ValuesVerification:
 
 
 def verify_values(
-    estimates: "ValueEstimates", episodes: int | None, seed: int | None, env: gym.Env | None = None
+    estimates: "ValueEstimates", episodes: int | None = None, seed: int | None = None, env: gym.Env | None = None
 ) -> ValuesVerification:
-    """Compares a run of some estimates with plain NumPy; see :meth:`qtab.ValueEstimates.verify`.
-
-    Args:
-        estimates: The estimates to verify.
-        episodes: The number of episodes; None means all.
-        seed: The seed of the run; None means the first.
-        env: The environment, if it has no id. It is not closed.
-    """
+    """Compares a run of some estimates with plain NumPy; see :meth:`qtab.ValueEstimates.verify`."""
     config = estimates.config
     if config is None:
         raise ValueError("estimates from a file cannot be verified: their task is not in it")
@@ -67,18 +60,14 @@ def verify_values(
         recorded = shown(estimates.episodes.tolist())
         raise ValueError(f"episodes must be one of those that were recorded, {recorded}, got {count}")
     if env is None:
-        spec = spec_of_run(config.env)
-        theirs = gymnasium_id(config.env)
-        made = gym.make(
-            theirs if theirs in ENTRIES else spec, max_episode_steps=config.max_episode_steps, **config.env_kwargs
-        )
-        with closing(made):
-            return verify_values(estimates, episodes, seed, made)
-    limited = (
-        env
-        if env.spec is not None
-        else gym.wrappers.TimeLimit(env, checks.required("max_episode_steps", config.max_episode_steps))
-    )
-    weights = estimate(limited, replace_checked(config, seed=number), estimates, count)
+        opened: AbstractContextManager[gym.Env] = closing(make_run_env(config, of="gymnasium"))
+    else:
+        if not isinstance(env, gym.Env):
+            raise TypeError(f"env must be an environment, got {shown(env)}")
+        check_described(config, env, "estimates")
+        limit = checks.required("max_episode_steps", config.max_episode_steps)
+        opened = nullcontext(gym.wrappers.TimeLimit(env, limit))
+    with opened as made:
+        weights = estimate(made, replace_checked(config, seed=number), estimates, count)
     ours = estimates.weights[estimates.seeds.index(number), found[0]]
     return ValuesVerification(config.env, estimates.settings.method, number, count, same_bytes(ours, weights))

@@ -229,9 +229,23 @@ def check_same(run: Run, env: gym.Env) -> None:
         ValueError: if it is not; the message lists the differences.
     """
     check_spaces(run, env)
-    description = trained_on(run.config)
+    check_described(run.config, env, "run")
+
+
+def check_described(config: Config, env: gym.Env, owner: str) -> None:
+    """Checks that an environment is that of a config, as far as that is known.
+
+    Args:
+        config: The config.
+        env: The environment.
+        owner: The word for what has the config, for messages.
+
+    Raises:
+        ValueError: if it is not; the message lists the differences.
+    """
+    description = trained_on(config)
     if description is not None and (found := differences(description, describe(env))):
-        raise ValueError(f"env must be that of the run, got another one: {'; '.join(found)}")
+        raise ValueError(f"env must be that of the {owner}, got another one: {'; '.join(found)}")
 
 
 def check_env(env: Any) -> None:
