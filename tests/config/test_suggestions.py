@@ -1,6 +1,7 @@
 """Errors suggest what was probably meant: misspelled settings, other libraries' names for them, wrong choices."""
 
 import re
+from typing import Any
 
 import numpy as np
 import pytest
@@ -44,6 +45,23 @@ def test_an_unknown_setting_names_the_one_that_was_meant(name: str, ours: str) -
     with pytest.raises(TypeError) as caught:
         qtab.train(CAR, **{name: 1})  # type: ignore[arg-type]
     assert str(caught.value) == f"unknown setting {name!r} (did you mean {ours!r}?)"
+
+
+@pytest.mark.parametrize(
+    ("sigma", "message"),
+    [
+        (1.0, "sigma applies to algorithm 'n_step_q_sigma', not to 'q_learning', got 1.0"),
+        (2.0, "sigma must lie in [0, 1], got 2.0"),
+        ((1.0, 2.0), "sigma must be a number in [0, 1], got (1.0, 2.0)"),
+    ],
+)
+def test_the_sigma_of_radial_basis_functions_is_their_width(sigma: Any, message: str) -> None:
+    with pytest.raises((TypeError, ValueError), match=f"^{re.escape(message)} \\(did you mean 'width'\\?\\)$"):
+        qtab.train(CAR, discretizer="radial", sigma=sigma)
+    with pytest.raises((TypeError, ValueError), match=f"^{re.escape(message)}$"):
+        qtab.train(CAR, discretizer="tiles", sigma=sigma)
+    with pytest.raises(TypeError, match=r"^unknown argument 'sigma' \(did you mean 'width'\?\)$"):
+        qtab.estimate_values(CAR, "random", discretizer="radial", sigma=sigma)  # type: ignore[call-arg]
 
 
 def test_steps_are_not_episodes() -> None:

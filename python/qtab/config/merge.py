@@ -21,11 +21,11 @@ from qtab.config.implied import (
     weighted_defaults,
     without_rates,
 )
-from qtab.config.options import freed_settings, is_set
+from qtab.config.options import OFF_BY_NONE, OPTIONS, freed_settings, is_set
 from qtab.config.origin import copied
 from qtab.config.presets import preset
 from qtab.config.unknown import check_names
-from qtab.config.validation import applicable, turned_off
+from qtab.config.validation import defaults, mismatch
 from qtab.envs.registry import versioned
 
 Base: TypeAlias = Config | Mapping[str, Any]
@@ -90,7 +90,7 @@ def over(base: Base, settings: Mapping[str, Any]) -> dict[str, Any]:
         if base.time_aware and not settings.get("time_aware", True):
             left_out.add("on_truncation")
         given = {name: value for name, value in vars(base).items() if name not in left_out and is_set(value)}
-        base = applicable({**given, **turned_off(vars(base))}, {**vars(base), **settings})
+        base = _applicable({**given, **_turned_off(vars(base))}, {**vars(base), **settings})
     return {**base, **settings}
 
 
@@ -112,8 +112,8 @@ def config_of(env: str, asked: Mapping[str, Any]) -> Config:
     own = {**weighted, **algorithm_defaults(start, asked)}
     start = without_rates(start, {**weighted, **asked})
     own = {**implied_schedules({**weighted, **asked}, {**DEFAULTS, **start, **own, **asked}), **own}
-    start = applicable(start, {**DEFAULTS, **start, **own, **asked})
-    own = applicable(own, {**DEFAULTS, **start, **own, **asked})
+    start = _applicable(start, {**DEFAULTS, **start, **own, **asked})
+    own = _applicable(own, {**DEFAULTS, **start, **own, **asked})
     try:
         return Config(**{**start, **own, **asked, "env": env, "preset": name})
     except ValueError as error:
@@ -148,3 +148,22 @@ def merge(env: str, *layers: Mapping[str, Any]) -> Config:
     for layer in layers:
         asked.update(layer)
     return config_of(env, asked)
+
+
+def _turned_off(fields: Mapping[str, Any]) -> dict[str, Any]:
+    """Returns the options that are off in a complete config, such as that of a run, each as None.
+
+    A config with unset options is not complete, so any of its options may be unset.
+    """
+    if defaults(fields):
+        return {}
+    return {name: None for name in OFF_BY_NONE if fields[name] is None and not mismatch(name, None, fields)}
+
+
+def _applicable(fields: Mapping[str, Any], others: Mapping[str, Any]) -> dict[str, Any]:
+    """Returns the settings in ``fields`` that are compatible with the others, without options that do not apply."""
+    kept = {name: value for name, value in fields.items() if not mismatch(name, value, others)}
+    for name, option in OPTIONS.items():
+        if option.choice in fields and option.choice not in kept:
+            kept.pop(name, None)
+    return kept

@@ -258,7 +258,9 @@ SETTINGS: Mapping[str, Setting] = {
     "coupled": Option(checks.boolean, "discretizer", ("fourier", "polynomial"), True, added=True),
     "scale_step_sizes": Option(checks.boolean, "discretizer", ("fourier",), True, added=True),
     "centers": Option(check.counts(2, check.MAX_FEATURES), "discretizer", ("radial", "coarse"), (5,), added=True),
-    "width": Option(check.sizes(0.1, 1000), "discretizer", ("radial",), (1.0,), other_names="std_dev", added=True),
+    "width": Option(
+        check.sizes(0.1, 1000), "discretizer", ("radial",), (1.0,), other_names="sigma std_dev", added=True
+    ),
     "normalized": Option(checks.boolean, "discretizer", ("radial",), False, other_names="normalize", added=True),
     "radius": Option(check.sizes(0.5, 1e4), "discretizer", ("coarse",), (1.5,), added=True),
     "low": Option(check.each, "discretizer", ("bins", "tiles", *WEIGHTED), None),

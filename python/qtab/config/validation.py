@@ -14,7 +14,6 @@ from qtab.config.options import (
     FIXED,
     LEARNS_WEIGHTED,
     NO_MASKED_TILES,
-    OFF_BY_NONE,
     ONE_STEP,
     OPTIONS,
     PREFERENCES,
@@ -43,7 +42,8 @@ def mismatch(name: str, value: Any, fields: Mapping[str, Any]) -> str | None:
             option = OPTIONS[option.choice]
             chosen = fields[option.choice]
         if chosen not in option.values:
-            return f"{name} applies to {option.choice} {listed(option.values)}, not to {chosen!r}, got {shown(value)}"
+            applies = f"{option.choice} {listed(option.values)}, not to {chosen!r}"
+            return f"{name} applies to {applies}, got {shown(value)}{_instead(name, fields)}"
     algorithm = fields["algorithm"]
     with_tiles = uses_tiles(fields["discretizer"])
     if (name, value) == ("terminal_update", "assign"):
@@ -87,6 +87,14 @@ def mismatch(name: str, value: Any, fields: Mapping[str, Any]) -> str | None:
     return None
 
 
+def _instead(name: str, fields: Mapping[str, Any]) -> str:
+    """Returns the end of a message about an option: another that applies and also has this name; or nothing."""
+    for other, option in OPTIONS.items():
+        if name in option.other_names.split() and _effective(option.choice, fields) in option.values:
+            return f" (did you mean {other!r}?)"
+    return ""
+
+
 def _mismatch_with_weighted(name: str, value: Any, discretizer: str) -> str | None:
     """Returns why a value of a setting has no meaning, or is not supported, with weighted features."""
     where = f"for discretizer {discretizer!r}"
@@ -110,25 +118,6 @@ def _mismatch_with_weighted(name: str, value: Any, discretizer: str) -> str | No
     if name == "time_aware" and value:
         return f"time_aware must be False {where}, got True; gymnasium.wrappers.TimeAwareObservation adds the time"
     return None
-
-
-def turned_off(fields: Mapping[str, Any]) -> dict[str, Any]:
-    """Returns the options that are off in a complete config, such as that of a run, each as None.
-
-    A config with unset options is not complete, so any of its options may be unset.
-    """
-    if defaults(fields):
-        return {}
-    return {name: None for name in OFF_BY_NONE if fields[name] is None and not mismatch(name, None, fields)}
-
-
-def applicable(fields: Mapping[str, Any], others: Mapping[str, Any]) -> dict[str, Any]:
-    """Returns the settings in ``fields`` that are compatible with the others, without options that do not apply."""
-    kept = {name: value for name, value in fields.items() if not mismatch(name, value, others)}
-    for name, option in OPTIONS.items():
-        if option.choice in fields and option.choice not in kept:
-            kept.pop(name, None)
-    return kept
 
 
 def other_choice(name: str, value: str, excluded: Sequence[str], where: str) -> str:
@@ -268,7 +257,12 @@ def validated(fields: Mapping[str, Any], standard: Mapping[str, Any]) -> dict[st
         value = fields[name]
         is_default = value is standard[name] and not isinstance(value, dict)  # of which the config gets its own
         if not is_default and (value is not None or not setting.may_be_none):
-            checked[name] = setting.check(name, value)
+            try:
+                checked[name] = setting.check(name, value)
+            except (TypeError, ValueError) as error:
+                if instead := _instead(name, fields):
+                    raise type(error)(f"{error}{instead}") from None
+                raise
     checked["discretizer"] = checked_discretizer("discretizer", fields["discretizer"])
     for name in (*OPTIONS, *_CHECKED):
         if (name in _CHECKED or is_set(checked[name])) and (reason := mismatch(name, checked[name], checked)):
