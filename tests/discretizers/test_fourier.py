@@ -228,7 +228,7 @@ def test_the_default_rate_learns_cart_pole() -> None:
         ({"discretizer": {"x": "fourier"}}, r"^discretizer\['x'\] must be 'round', .*, because 'fourier' has no rows"),
         (
             {"initial_q": np.array([[0.0, -np.inf, 0.0]] * 16)},
-            r"^discretizer must be .* for an initial_q with -inf, got 'fourier'",
+            "^discretizer must be 'round', 'bins', 'edges' or 'identity' for an initial_q that contains -inf, got 'fou",
         ),
     ],
     ids=str,

@@ -9,7 +9,7 @@ from typing import Any
 
 from qtab._utils import checks
 from qtab.config import value_checks as check
-from qtab.config.choices import FUNCTION, MAPPING
+from qtab.config.choices import CHOICES, FUNCTION, MAPPING
 from qtab.config.functions import mask_setting
 from qtab.config.value_checks import Check
 
@@ -90,22 +90,10 @@ ONE_STEP = (
 """The algorithms that can assign the reward as the value at a terminal state, as the article does, if they learn a
 table."""
 TABLES_ONLY = ("dyna_q", "dyna_q_plus", *MONTE_CARLO, "prioritized_sweeping", "gradient_bandit")
-"""The algorithms that do not work with tile coding."""
+"""The algorithms that work with neither tile coding nor weighted features."""
 WEIGHTED = ("fourier", "polynomial", "radial", "coarse")
 """The discretizers with weighted features: each row of the table has a number for an observation."""
-LEARNS_WEIGHTED = (
-    "q_learning",
-    "sarsa",
-    "expected_sarsa",
-    "double_q_learning",
-    "n_step_sarsa",
-    *_WITH_TARGET_POLICY,
-    *AVERAGE_REWARD,
-    *_WITH_TRACES,
-    "true_online_sarsa_lambda",
-    "reinforce",
-    *WITH_STATE_VALUES,
-)
+LEARNS_WEIGHTED = tuple(name for name in CHOICES["algorithm"] if name not in TABLES_ONLY)
 """The algorithms that learn with weighted features."""
 DEFAULTS_OF_WEIGHTED: Mapping[str, Any] = {"traces": "accumulating", "value_learning_rate": 0.005}
 """The defaults of options that differ with weighted features."""

@@ -12,7 +12,6 @@ from qtab.config.options import (
     DEFAULTS_OF_NORMALIZED,
     DEFAULTS_OF_WEIGHTED,
     FIXED,
-    LEARNS_WEIGHTED,
     NO_MASKED_TILES,
     ONE_STEP,
     OPTIONS,
@@ -45,18 +44,22 @@ def mismatch(name: str, value: Any, fields: Mapping[str, Any]) -> str | None:
             applies = f"{option.choice} {listed(option.values)}, not to {chosen!r}"
             return f"{name} applies to {applies}, got {shown(value)}{_instead(name, fields)}"
     algorithm = fields["algorithm"]
-    with_tiles = uses_tiles(fields["discretizer"])
+    with_tiles, with_weighted = uses_tiles(fields["discretizer"]), uses_weighted(fields["discretizer"])
+    where = f"for discretizer {'tiles' if with_tiles else fields['discretizer']!r}"
     if (name, value) == ("terminal_update", "assign"):
         if algorithm not in ONE_STEP:
             return f"terminal_update must be 'target' for algorithm {algorithm!r}, got 'assign'"
-        if with_tiles:
-            return "terminal_update must be 'target' for discretizer 'tiles', got 'assign'"
-    if uses_weighted(fields["discretizer"]) and (reason := _mismatch_with_weighted(name, value, fields["discretizer"])):
+        if with_tiles or with_weighted:
+            return f"terminal_update must be 'target' {where}, got 'assign'"
+    if name == "algorithm" and value in TABLES_ONLY and (with_tiles or with_weighted):
+        others = other_choice(name, value, TABLES_ONLY, where)
+        return f"{others}, which works with discretizer 'round', 'bins', 'edges' or 'identity'"
+    if with_weighted and (reason := _mismatch_with_weighted(name, value, fields["discretizer"])):
         return reason
     by_episode = ("true_online_sarsa_lambda", *PREFERENCES)
     if (name, value) == ("learning_rate_schedule", "visits") and algorithm in by_episode:
         return other_choice(name, value, ("visits",), f"for algorithm {algorithm!r}")
-    only_visits = algorithm == "off_policy_monte_carlo" and not uses_weighted(fields["discretizer"])
+    only_visits = algorithm == "off_policy_monte_carlo" and not with_weighted
     if name == "learning_rate_schedule" and value != "visits" and only_visits:
         return f"{name} must be 'visits' for algorithm {algorithm!r}, got {shown(value)}"
     if name in fixed_settings(algorithm) and value != (only := FIXED[algorithm].values[name]):
@@ -64,9 +67,6 @@ def mismatch(name: str, value: Any, fields: Mapping[str, Any]) -> str | None:
         return (
             f"{name} must be {wanted} for algorithm {algorithm!r}, which {FIXED[algorithm].reason}, got {shown(value)}"
         )
-    if name == "algorithm" and value in TABLES_ONLY and with_tiles:
-        others = other_choice(name, value, TABLES_ONLY, "for discretizer 'tiles'")
-        return f"{others}, which works with discretizer 'round', 'bins', 'edges' or 'identity'"
     if name == "exploration" and algorithm in PREFERENCES and value != "softmax":
         return f"exploration must be 'softmax' for algorithm {algorithm!r}, got {shown(value)}"
     if name == "action_mask" and value is not False and algorithm in NO_MASKED_TILES and with_tiles:
@@ -98,12 +98,8 @@ def _instead(name: str, fields: Mapping[str, Any]) -> str:
 def _mismatch_with_weighted(name: str, value: Any, discretizer: str) -> str | None:
     """Returns why a value of a setting has no meaning, or is not supported, with weighted features."""
     where = f"for discretizer {discretizer!r}"
-    if (name, value) == ("terminal_update", "assign"):
-        return f"terminal_update must be 'target' {where}, got 'assign'"
     if (name, value) in (("learning_rate_schedule", "visits"), ("exploration", "ucb")):
         return other_choice(name, value, (value,), f"{where}, whose features have no visits to count")
-    if name == "algorithm" and value not in LEARNS_WEIGHTED:
-        return f"algorithm must be {listed(LEARNS_WEIGHTED)} {where}, got {shown(value)}"
     if name == "traces" and value in ("replacing", "clearing"):
         not_1 = discretizer != "coarse"
         reason = "the others set traces to 1, and its features are not 1" if not_1 else "the others are not implemented"
@@ -267,12 +263,12 @@ def validated(fields: Mapping[str, Any], standard: Mapping[str, Any]) -> dict[st
     for name in (*OPTIONS, *_CHECKED):
         if (name in _CHECKED or is_set(checked[name])) and (reason := mismatch(name, checked[name], checked)):
             raise ValueError(reason)
-    missing = isinstance(checked["initial_q"], np.ndarray) and np.isneginf(checked["initial_q"]).any()
-    if missing and uses_tiles(checked["discretizer"]):
-        raise ValueError(other_choice("discretizer", "tiles", ("tiles",), "for an initial_q that contains -inf"))
-    if missing and uses_weighted(checked["discretizer"]):
-        raise ValueError(other_choice("discretizer", checked["discretizer"], WEIGHTED, "for an initial_q with -inf"))
-    without_cells = uses_tiles(checked["discretizer"]) or uses_weighted(checked["discretizer"])
+    with_tiles = uses_tiles(checked["discretizer"])
+    without_cells = with_tiles or uses_weighted(checked["discretizer"])
+    if without_cells and isinstance(checked["initial_q"], np.ndarray) and np.isneginf(checked["initial_q"]).any():
+        given = "tiles" if with_tiles else checked["discretizer"]
+        without = ("tiles", *WEIGHTED)
+        raise ValueError(other_choice("discretizer", given, without, "for an initial_q that contains -inf"))
     most_rate = 2 if without_cells else 1
     if checked["algorithm"] in PREFERENCES:
         not_negative("learning_rate", checked["learning_rate"])
