@@ -124,7 +124,7 @@ def test_limits_are_given_for_all_components_or_none() -> None:
         ({"low": (0.0, 0.0), "high": (1.0, 0.0)}, r"^high must lie above low"),
         ({"low": (float("nan"), 0.0)}, r"^low must be finite, got nan"),
         ({"low": (None, 0.0)}, r"^low must be a finite number, got None"),
-        ({"low": (-1e39, 0.0), "high": (1e39, 1.0)}, r"^high must not lie so far above low"),
+        ({"low": (-1e39, 0.0), "high": (1e39, 1.0)}, r"^high - low must be finite in float32, got low="),
         ({"edges": ((0.0,), (0.0,))}, r"^edges applies to discretizer 'edges', not to 'bins'"),
         ({"tiles": 4}, r"^tiles applies to discretizer 'tiles', not to 'bins'"),
         ({"discretizer": "edges"}, r"^edges must hold 2 rows of numbers for this observation space, got None"),

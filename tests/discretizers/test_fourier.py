@@ -224,6 +224,7 @@ def test_the_default_rate_learns_cart_pole() -> None:
             r"^order must give at most 1,024 features, got 1023 with 2 .* gives 2,047$",
         ),
         ({"low": (0.6, 0.0), "high": (-1.2, 0.1)}, r"^high must lie above low"),
+        ({"low": (-1e308, 0.0), "high": (1e308, 1.0)}, r"^high - low must be finite in float64, got low="),
         ({"visits": True}, r"^visits must be False for discretizer 'fourier', whose states cannot be counted"),
         ({"discretizer": {"x": "fourier"}}, r"^discretizer\['x'\] must be 'round', .*, because 'fourier' has no rows"),
         (

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from qtab._utils.checks import required
 from qtab.config import Config
 from qtab.discretizers.base import check_table_size
-from qtab.discretizers.box import Span, box_of, per_dimension, span
+from qtab.discretizers.box import Span, box_of, per_dimension, span, too_far_apart
 from qtab.discretizers.edges import Edges
 
 
@@ -35,7 +35,7 @@ class Bins(Edges):
         check_table_size("bins", counts, math.prod(map(float, counts)) * n_actions)
         bins = cls(box.low, box.high, _edges(box.low.dtype, (low, high), counts), (low, high))
         if not all(np.isfinite(edges).all() for edges in bins.edges):
-            raise ValueError(f"high must not lie so far above low, got {low.tolist()} and {high.tolist()}")
+            raise too_far_apart((low, high), box.low.dtype)
         return bins
 
     @classmethod

@@ -66,6 +66,12 @@ def span(space: spaces.Box, low: Sequence[float] | None, high: Sequence[float] |
     return limits[0], limits[1]
 
 
+def too_far_apart(limits: Span, dtype: "np.dtype[Any]") -> ValueError:
+    """Returns the error for limits whose difference overflows in the dtype of the computation."""
+    low, high = (limit.tolist() for limit in limits)
+    return ValueError(f"high - low must be finite in {dtype}, got low={low} and high={high}")
+
+
 def example_of_limits(space: spaces.Box, more: str = "") -> str:
     """Returns the end of a message, an example of limits: the bounds of a space, and -3 and 3 for infinite ones.
 

@@ -12,7 +12,7 @@ from qtab._spec import TilesSpec
 from qtab._utils.checks import required
 from qtab.config import Config
 from qtab.discretizers.base import check_table_size
-from qtab.discretizers.box import BoxDiscretizer, Span, box_of, check_stored_bounds, per_dimension, span
+from qtab.discretizers.box import BoxDiscretizer, Span, box_of, check_stored_bounds, per_dimension, span, too_far_apart
 
 MAX_OFFSETS = 2**32 - 1
 """The limit of tiles times tilings along a component: positions are counted in parts of a tile, one per tiling."""
@@ -45,11 +45,12 @@ class TileCoding(BoxDiscretizer):
             )
         low, high = self.span
         with np.errstate(over="ignore", divide="ignore"):
-            tiles_per_unit = np.array(self.tiles) / (high - low)
-        if not (np.isfinite(tiles_per_unit) & (tiles_per_unit > 0)).all():
-            raise ValueError(
-                f"high must be neither so close to low nor so far above it, got {low.tolist()} and {high.tolist()}"
-            )
+            extent = high - low
+            tiles_per_unit = np.array(self.tiles) / extent
+        if not np.isfinite(extent).all():
+            raise too_far_apart(self.span, np.dtype(np.float64))
+        if not np.isfinite(tiles_per_unit).all():
+            raise ValueError(f"high must not be so close to low, got low={low.tolist()} and high={high.tolist()}")
 
     @classmethod
     def build(cls, space: Any, config: Config, n_actions: int) -> "TileCoding":

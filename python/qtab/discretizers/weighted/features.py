@@ -15,7 +15,7 @@ from qtab._utils import html
 from qtab._utils.checks import required
 from qtab.config import Config
 from qtab.discretizers.base import MAX_SHOWN
-from qtab.discretizers.box import BoxDiscretizer, Span, check_stored_bounds, span
+from qtab.discretizers.box import BoxDiscretizer, Span, check_stored_bounds, span, too_far_apart
 from qtab.envs.actions import FLOATS
 
 
@@ -73,9 +73,7 @@ class WeightedFeatures(BoxDiscretizer):
         built.check_options()
         with np.errstate(over="ignore"):
             if not np.isfinite(limits[1] - limits[0]).all():
-                raise ValueError(
-                    f"high - low must be finite, got low={limits[0].tolist()} and high={limits[1].tolist()}"
-                )
+                raise too_far_apart(limits, np.dtype(np.float64))
         return built
 
     @classmethod
