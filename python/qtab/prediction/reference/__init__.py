@@ -12,29 +12,26 @@ from qtab.prediction.reference.common import Prediction
 from qtab.prediction.reference.linear import emphatic_td, gtd2, lstd, off_policy_td, tdc
 from qtab.prediction.reference.returns import importance_sampling, monte_carlo, offline_lambda_return
 from qtab.prediction.reference.td import batch_td, n_step_td, td
-from qtab.prediction.reference.traces import off_policy_td_lambda, td_lambda, true_online_td_lambda
+from qtab.prediction.reference.traces import td_lambda, true_online_td_lambda
 
 if TYPE_CHECKING:
     from qtab.prediction.estimates import ValueEstimates
 
 METHODS: Mapping[str, Callable[[Prediction], None]] = {
-    method.__name__: method
-    for method in (
-        td,
-        n_step_td,
-        td_lambda,
-        true_online_td_lambda,
-        offline_lambda_return,
-        monte_carlo,
-        importance_sampling,
-        batch_td,
-        off_policy_td,
-        off_policy_td_lambda,
-        gtd2,
-        tdc,
-        emphatic_td,
-        lstd,
-    )
+    "td": td,
+    "n_step_td": n_step_td,
+    "td_lambda": td_lambda,
+    "true_online_td_lambda": true_online_td_lambda,
+    "offline_lambda_return": offline_lambda_return,
+    "monte_carlo": monte_carlo,
+    "importance_sampling": importance_sampling,
+    "batch_td": batch_td,
+    "off_policy_td": off_policy_td,
+    "off_policy_td_lambda": td_lambda,
+    "gtd2": gtd2,
+    "tdc": tdc,
+    "emphatic_td": emphatic_td,
+    "lstd": lstd,
 }
 """Each method by its name."""
 

@@ -1,4 +1,4 @@
-"""TD(λ), true online TD(λ) and off-policy TD(λ) in plain NumPy (Sutton & Barto, 2nd ed., chapter 12)."""
+"""TD(λ), on and off policy, and true online TD(λ) in plain NumPy (Sutton & Barto, 2nd ed., chapter 12)."""
 
 import numpy as np
 
@@ -7,19 +7,7 @@ from qtab.prediction.reference.common import Prediction
 
 
 def td_lambda(prediction: Prediction) -> None:
-    """Z <- γλ z + x, then w <- w + α δ z (the box in section 12.2)."""
-    decay = prediction.discount * required("trace_decay", prediction.settings.trace_decay)
-    for episode in prediction.episodes():
-        z = np.zeros_like(prediction.w)
-        for visit in episode:
-            z *= decay
-            for row, x in prediction.features(visit.state):
-                z[row] += x
-            prediction.w += prediction.steps() * prediction.error(visit) * z
-
-
-def off_policy_td_lambda(prediction: Prediction) -> None:
-    """Z <- ρ (γλ z + x), then w <- w + α δ z (equations 12.23 to 12.25)."""
+    """Z <- ρ (γλ z + x), then w <- w + α δ z (equations 12.23 to 12.25); on policy ρ is 1 (the box in section 12.2)."""
     decay = prediction.discount * required("trace_decay", prediction.settings.trace_decay)
     for episode in prediction.episodes():
         z = np.zeros_like(prediction.w)
