@@ -14,8 +14,8 @@ from qtab.config.unknown import suggesting
 from qtab.planning.policies import SUM_TOLERANCE, GivenPolicy, probabilities
 from qtab.planning.policy_values import policy_values
 from qtab.planning.table import opened_table
+from qtab.prediction.features import feature_matrix
 from qtab.prediction.linear.chain import FloatArray, chain_of
-from qtab.prediction.linear.features import feature_matrix
 from qtab.prediction.linear.geometry import LinearGeometry
 
 
