@@ -22,7 +22,7 @@ from qtab.planning.policies import (
     probabilities,
     refuse_time_aware,
 )
-from qtab.results.action_values import masked_tables
+from qtab.results.action_values import masked_tables, of_observations
 from qtab.results.run import Run
 
 
@@ -96,7 +96,7 @@ def reads_observations(policy: GivenPolicy, cells: Discretizer) -> bool:
     if not cells.has_cells:
         return True
     if isinstance(policy, Run):
-        return not same_cells(policy.discretizer, cells)
+        return callable(policy.config.action_mask) or not same_cells(policy.discretizer, cells)
     if isinstance(policy, Optimum):
         return policy.search is not None
     return callable(policy)
@@ -146,7 +146,7 @@ def observation_policy(name: str, policy: GivenPolicy, cells: Discretizer, actio
     return TablePolicy(as_followed(probabilities(name, policy, None, cells, actions)))
 
 
-def _of_run(name: str, run: Run, cells: Discretizer, actions: Actions) -> GreedyPolicy:
+def _of_run(name: str, run: Run, cells: Discretizer, actions: Actions) -> GreedyPolicy | FunctionPolicy:
     refuse_time_aware(name, run)
     theirs = run.discretizer
     if not isinstance(theirs, BoxDiscretizer) or theirs.spec()["type"] not in ("round", "bins", "tiles", *WEIGHTED):
@@ -158,8 +158,13 @@ def _of_run(name: str, run: Run, cells: Discretizer, actions: Actions) -> Greedy
         )
     if not same_actions(run.actions, actions):
         raise ValueError(f"{name} must be a run with the actions {actions!r}, got {run.actions!r}")
+    if callable(run.config.action_mask):  # the actions of an observation need not be those of its cell
+        return FunctionPolicy(name, lambda at: int(np.argmax(of_observations(run, at))) + actions.first, actions)
     if run.config.action_mask is not False and run.action_masks is None:
-        raise ValueError(f"{name} must be a run whose action masks are known by its cells, got action_mask= without")
+        raise ValueError(
+            f"{name} must be a run that knows its action masks, got action_mask={shown(run.config.action_mask)} with "
+            f"{theirs!r}, which has no cells to keep masks for"
+        )
     return GreedyPolicy(run)
 
 
