@@ -101,3 +101,20 @@ def test_a_value_that_is_not_a_number_is_the_largest_as_for_argmax(kind: Any) ->
         by_run, by_function = (qtab.estimate_values(CAR, policy, **LSTD, **STATES[2]) for policy in (run, choices(run)))
         assert by_run.weights.tobytes() == by_function.weights.tobytes()
         assert by_run.verify().equal
+
+
+def test_a_run_without_cells_has_no_policy_for_numbered_states() -> None:
+    run = qtab.train(CAR, discretizer="fourier", episodes=1, max_episode_steps=5, progress=False)
+    with pytest.raises(
+        ValueError,
+        match=r"^policy must be a run with a table of shape \(16, 4\), got one without: <FourierBasis: 16 feat",
+    ):
+        qtab.policy_values("FrozenLake-v1", run)
+
+
+@pytest.mark.parametrize("kind", ["fourier", "tiles"])
+def test_a_function_of_features_beside_a_discretizer_is_told_what_to_use(kind: Any) -> None:
+    with pytest.raises(
+        ValueError, match=r"^features must be None for discretizer .*; to learn with features of your own"
+    ):
+        qtab.estimate_values(CAR, "random", learning_rate=0.1, features=lambda at: at, discretizer=kind)

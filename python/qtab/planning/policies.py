@@ -143,7 +143,9 @@ def refuse_time_aware(name: str, run: Run) -> None:
 def _of_run(name: str, run: Run, cells: Discretizer, actions: Actions) -> NDArray[np.float64]:
     refuse_time_aware(name, run)
     expected, found = (*cells.shape, len(actions)), (*run.discretizer.shape, len(run.actions))
-    if not run.discretizer.has_cells or found != expected:
+    if not run.discretizer.has_cells:
+        raise ValueError(f"{name} must be a run with a table of shape {expected}, got one without: {run.discretizer!r}")
+    if found != expected:
         raise ValueError(f"{name} must be a run with a table of shape {expected}, got {found}")
     best = np.argmax(run.q_table, axis=-1).ravel() + actions.first
     return _of_actions(name, best, actions)

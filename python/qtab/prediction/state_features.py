@@ -151,7 +151,10 @@ def _of_function(
 def _of_observations(features: GivenFeatures | None, cells: Discretizer) -> StateFeatures:
     if features is not None:
         whose = "which gives the features" if cells.is_weighted else "whose tiles are the features"
-        raise ValueError(f"features must be None for discretizer {_name(cells)}, {whose}, got {shown(features)}")
+        instead = f"; {OF_FUNCTION}" if callable(features) else ""
+        raise ValueError(
+            f"features must be None for discretizer {_name(cells)}, {whose}, got {shown(features)}{instead}"
+        )
     return StateFeatures(None, None, cells.n_rows, cells.n_active, is_weighted=cells.is_weighted)
 
 
