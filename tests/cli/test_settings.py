@@ -41,6 +41,9 @@ def test_help_has_the_explanations_of_the_api(capsys: pytest.CaptureFixture[str]
         (["--episodes", "77", "--initial-q", "a.npz"], ["default: 77", "default: a.npz"]),
         (["qtab/MaximizationBias-v0"], ["default: an array of shape (3, 10)"]),
         (["--no-such-flag"], ["default: 0.8"]),
+        (["--discretizer", "fourier"], ["default: 0.001", "default: 3"]),
+        (["--discretizer", "coarse", "--algorithm", "sarsa_lambda"], ["default: accumulating"]),
+        (["--discretizer", "radial", "--algorithm", "actor_critic"], ["default: 0.005"]),
     ],
 )
 def test_help_shows_what_a_run_would_use(

@@ -19,6 +19,7 @@ from qtab.config import DEFAULTS, Config
 from qtab.config.help import default
 from qtab.config.merge import merge
 from qtab.config.options import is_set
+from qtab.config.validation import defaults
 from qtab.envs.registry import named_spec
 from qtab.results.recording import snapshot_episodes
 from qtab.training.setup.resolve import resolve
@@ -107,7 +108,8 @@ def _effective_defaults(env: str, settings: Mapping[str, Any]) -> dict[str, Any]
     """Returns the values of the settings that are not given as flags."""
     env, spec = named_spec(env)
     given = {name: value for name, value in settings.items() if not isinstance(value, Path)}
-    merged = vars(merge(env, {"env_kwargs": dict(spec.kwargs)}, given))
+    merged = dict(vars(merge(env, {"env_kwargs": dict(spec.kwargs)}, given)))
+    merged |= defaults(merged)
     shown = {name: value if is_set(value) else default(name) for name, value in merged.items()}
     return {**shown, **{name: settings[name] for name in settings.keys() - given.keys()}}
 
