@@ -44,5 +44,8 @@ def test_a_wrapped_environment_is_verified_with_its_wrapper(discretizer: Any) ->
 
 def test_a_wrapper_that_can_be_made_again_is() -> None:
     env = gym.wrappers.ClipReward(gym.make("MountainCar-v0"), -0.5, 0.0)
-    estimates = qtab.estimate_values(env, "random", episodes=3, discretizer="tiles", max_episode_steps=40)
-    assert estimates.verify().equal
+    estimates = qtab.estimate_values(env, "random", episodes=1, discretizer="tiles", max_episode_steps=40)
+    verification = estimates.verify()
+    assert verification.equal
+    assert repr(estimates) == "<ValueEstimates of MountainCar-v0: td, 8 of 648 features, 1 run of 1 episode>"
+    assert repr(verification) == "<ValuesVerification of td in MountainCar-v0: seed 0, 1 episode, equal>"

@@ -265,7 +265,7 @@ class ValueEstimates:
 
     def __repr__(self) -> str:
         """A one-line summary without the values."""
-        episodes = f"{counted(len(self.seeds), 'run')} of {self.settings.episodes:,} episodes"
+        episodes = f"{counted(len(self.seeds), 'run')} of {counted(self.settings.episodes, 'episode')}"
         return f"<ValueEstimates of {self.env}: {self.settings.method}, {self._size(' x ')}, {episodes}>"
 
     def _repr_html_(self) -> str:

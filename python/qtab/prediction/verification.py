@@ -10,7 +10,7 @@ import numpy as np
 from qtab._utils import checks, html
 from qtab._utils.arrays import same_bytes
 from qtab._utils.fields import with_fields
-from qtab._utils.shown import shown
+from qtab._utils.shown import counted, shown
 from qtab.config.config import replace_checked
 from qtab.prediction.reference import estimate
 from qtab.training.setup.run_env import check_described, make_run_env
@@ -35,12 +35,12 @@ class ValuesVerification:
     def __repr__(self) -> str:
         """A one-line summary."""
         found = "equal" if self.equal else "DIFFERENT"
-        compared = f"seed {self.seed}, {self.episodes:,} episodes"
+        compared = f"seed {self.seed}, {counted(self.episodes, 'episode')}"
         return f"<ValuesVerification of {self.method} in {self.env}: {compared}, {found}>"
 
     def _repr_html_(self) -> str:
         """The result as a table, for notebooks."""
-        facts = {"compared": f"{self.episodes:,} episodes", "weights": "equal" if self.equal else "DIFFERENT"}
+        facts = {"compared": counted(self.episodes, "episode"), "weights": "equal" if self.equal else "DIFFERENT"}
         return html.summary(f"Verification of {self.method} in {self.env}, seed {self.seed}", facts)
 
 

@@ -65,8 +65,9 @@ class WeightedFeatures(BoxDiscretizer):
             is_flat = isinstance(space, spaces.Box) and len(space.shape) == 1
             wrapper = "DtypeObservation(env, np.float32)" if is_flat else "FlattenObservation"
             raise ValueError(
-                "discretizer must be another one for an observation space that is not a Box of floats with one axis, "
-                f"{' '.join(str(space).split())}, got {config.discretizer!r}; gymnasium.wrappers.{wrapper} makes one"
+                "discretizer must be another one for an observation space that is not a Box of float32 or float64 with "
+                f"one axis, {' '.join(str(space).split())}, got {config.discretizer!r}; gymnasium.wrappers.{wrapper} "
+                "makes one"
             )
         limits = span(space, config.low, config.high)
         built = cls(space.low, space.high, limits, **cls.options(config, len(space.low)))
