@@ -13,7 +13,6 @@ from qtab.diagnosis.checks import CHECKS, Check
 from qtab.diagnosis.diagnosis import Diagnosis
 from qtab.diagnosis.facts import Facts
 from qtab.diagnosis.finding import Finding, Unchecked
-from qtab.discretizers.base import check_binary
 from qtab.planning.optimum import Optimum
 from qtab.results.run import Run
 from qtab.training.setup.run_env import check_same
@@ -45,7 +44,10 @@ def diagnose(
             the optimum of another environment, or if ``env`` differs from the environment of the run.
     """
     checks.instance("run", run, Run)
-    check_binary("run", run.discretizer, "be diagnosed")
+    if run.discretizer.is_weighted:
+        raise ValueError(
+            f"run must have rows for its observations to be diagnosed, got weighted features: {run.discretizer!r}"
+        )
     if optimum is not None:
         checks.instance("optimum", optimum, Optimum)
         optimum.check_same_env(run)

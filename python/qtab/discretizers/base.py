@@ -204,23 +204,6 @@ class Discretizer(ABC):
         return {field.name: getattr(self, field.name) for field in fields(self)}
 
 
-def check_binary(name: str, discretizer: Discretizer, purpose: str) -> None:
-    """Raises an error for weighted features, for a function that reads the rows of observations.
-
-    Args:
-        name: The argument that has the discretizer, for the message.
-        discretizer: The discretizer.
-        purpose: What the function does, such as "be explained".
-
-    Raises:
-        ValueError: if the features are weighted.
-    """
-    if discretizer.is_weighted:
-        raise ValueError(
-            f"{name} must have rows for its observations to {purpose}, got weighted features: {discretizer!r}"
-        )
-
-
 def check_table_size(name: str, given: Any, values: float, instead: str = "") -> None:
     """Raises an error for a table that is too large, before it is allocated.
 
