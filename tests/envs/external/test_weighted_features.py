@@ -65,3 +65,4 @@ def test_a_learned_policy_acts_and_is_evaluated_as_in_python(lander: Path, tmp_p
             estimates.append(qtab.estimate_values(env, policy, seeds=1, episodes=4, discretizer="tiles"))
     assert len({found.weights.tobytes() for found in estimates}) == 1
     assert np.any(estimates[0].weights)
+    assert estimates[0].verify(env=env).equal
