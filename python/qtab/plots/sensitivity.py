@@ -25,7 +25,7 @@ RESAMPLES = 999
 _LARGER_IS_BETTER = ("final_return", "mean_return", "best_return", "terminated_rate")
 _STATISTICS = ("mean", "median", "iqm")
 _WORDS = {"mean": "mean", "median": "median", "iqm": "interquartile mean of the"}
-"""What the y axis calls the statistic."""
+"""The words for each statistic on the y axis."""
 
 
 @dataclass(frozen=True)

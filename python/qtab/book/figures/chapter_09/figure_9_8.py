@@ -36,7 +36,7 @@ def square_wave(s: FloatArray) -> FloatArray:
 def interval_features(s: FloatArray, width: float) -> FloatArray:
     """Returns (..., d): 1 for each interval that contains s, else 0.
 
-    The centers are equally spaced, and go beyond the extent by half a width, so that as many intervals contain each s.
+    The centers are equally spaced, up to half a width beyond the extent, so that every s is in equally many intervals.
     """
     count = round(DENSITY * (1.0 + width))
     centers = (np.arange(count) + 0.5) / DENSITY - width / 2

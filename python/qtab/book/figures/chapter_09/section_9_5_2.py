@@ -75,11 +75,11 @@ EXPERIMENT = TrainingExperiment(
     "radial basis functions, and cites Konidaris, Osentoski & Thomas (2011), who compare bases of equal size by "
     "Sarsa(λ)",
     unspecified="everything else: λ = 0.9, γ = 1 and ε = 0; accumulating traces, for 8 tilings replacing ones; initial "
-    f"weights of zero; 100 episodes, 100 runs ({POLYNOMIAL_RUNS} with polynomials). α has the fewest steps per episode "
-    "in 20 other runs, of 0.002, 0.005, 0.01, 0.02, 0.03, 0.05 and 0.1 for the Fourier basis and radial basis "
-    "functions, and of 0.1, 0.2, 0.3, 0.5, 0.7, 0.9, 1.1, 1.3 and 1.6, divided by 8, for tile coding; so has the width "
-    "of radial basis functions, of 0.5, 1, 1.5 and 2 distances between their centers. Polynomials learn with none of "
-    "ten step sizes from 1e-6 to 0.3",
+    f"weights of zero; 100 episodes, 100 runs ({POLYNOMIAL_RUNS} with polynomials). The values of α are those with the "
+    "fewest steps per episode in 20 other runs, among 0.002, 0.005, 0.01, 0.02, 0.03, 0.05 and 0.1 for the Fourier "
+    "basis and radial basis functions, and among 0.1, 0.2, 0.3, 0.5, 0.7, 0.9, 1.1, 1.3 and 1.6, divided by 8, for "
+    "tile coding. The width of radial basis functions was chosen in the same way, among 0.5, 1, 1.5 and 2 distances "
+    "between their centers. Polynomials learn with none of ten step sizes from 1e-6 to 0.3",
     settings=tuple(_settings()),
     runs=100,
     x_label="episode",
