@@ -12,12 +12,12 @@ from qtab._utils.memory import memory_limit
 from qtab._utils.progress import check_progress
 from qtab.config.choices import DiscretizerName, LearningRateSchedule
 from qtab.config.unknown import suggesting
+from qtab.planning.least_squares.lstdq import GivenFeatures
 from qtab.planning.policies import GivenPolicy
 from qtab.prediction.estimates import ValueEstimates
 from qtab.prediction.learning_rates import LEAST_SQUARES
 from qtab.prediction.runs import recorded_episodes, run_prediction
 from qtab.prediction.settings import Method, PredictionSettings
-from qtab.prediction.state_features import GivenFeatures
 from qtab.prediction.task import OF_OBSERVATIONS, resolve_prediction
 from qtab.training.setup.resolved_run import log_default_limit, log_python_stepping
 from qtab.training.train_many import seed_sequence, thread_count

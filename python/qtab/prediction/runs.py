@@ -15,12 +15,13 @@ from qtab._utils.memory import check_memory, memory_left, memory_limit
 from qtab._utils.progress import ProgressBar
 from qtab._utils.shown import counted, listed, shown
 from qtab.discretizers import Discretizer
+from qtab.planning.least_squares.lstdq import GivenFeatures
 from qtab.planning.policies import GivenPolicy, as_followed, probabilities
 from qtab.prediction.estimates import ValueEstimates
 from qtab.prediction.learning_rates import LEAST_SQUARES, rate_settings
 from qtab.prediction.observation_policies import ObservationPolicies, observation_policy, reads_observations
 from qtab.prediction.settings import NEEDS_BEHAVIOR, OFF_POLICY, PredictionSettings
-from qtab.prediction.state_features import GivenFeatures, initial_weights, state_features
+from qtab.prediction.state_features import initial_weights, state_features
 from qtab.training.setup.resolved_run import ResolvedRun
 
 BYTES_PER_WEIGHT = 8 + 4

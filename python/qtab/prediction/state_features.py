@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
@@ -12,6 +12,7 @@ from qtab._utils.arrays import numbers
 from qtab._utils.shown import counted, shown
 from qtab.discretizers import Discretizer
 from qtab.discretizers.weighted.polynomial import OF_FUNCTION
+from qtab.planning.least_squares.lstdq import GivenFeatures
 from qtab.planning.policies import discrete_observations
 from qtab.prediction.features import Rows, Vectors, are_floats, feature_rows, feature_vectors
 from qtab.prediction.learning_rates import AVERAGES_ONLY, LEAST_SQUARES, rate_settings
@@ -19,9 +20,6 @@ from qtab.prediction.settings import PredictionSettings
 
 MOST_RECURSIVE, MOST_SOLVED = 4096, 1024
 """The largest numbers of weights of LSTD, if it updates a matrix at each step, and if it solves equations."""
-
-GivenFeatures: TypeAlias = ArrayLike | Callable[[Any], Any]
-"""The accepted forms of features; see :func:`qtab.estimate_values`."""
 
 
 @dataclass(frozen=True, eq=False)

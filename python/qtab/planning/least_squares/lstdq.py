@@ -13,7 +13,7 @@ from qtab.planning.least_squares.equations import Batch, FloatArray
 from qtab.planning.least_squares.transitions import Transitions
 
 GivenFeatures: TypeAlias = ArrayLike | Callable[[Any], Any]
-"""The accepted forms of features; see :func:`feature_vectors`."""
+"""The accepted forms of features: an array, or a function from an observation to its feature vector."""
 GivenActions: TypeAlias = ArrayLike | Callable[[Any], Any]
 """The accepted forms of a policy; see :func:`chosen_actions`."""
 
