@@ -52,6 +52,7 @@ def test_classes_that_would_differ_are_refused_by_name(made: Any, mode: str, rea
     [
         *(refused_vectors.Divides, refused_vectors.AddsUp, unsafe_values.BecomesNone),
         *(unsafe_values.BecomesNoneBesides, unsafe_values.ExtendsByNumber, unsafe_values.AppendsTwo),
+        unsafe_values.ReadsProperty,
         *(unsafe_values.TruthOfArray, unsafe_values.ChoiceByArray, unsafe_values.AddsToText),
         *(unsafe_values.SmallIntegers, unsafe_values.BooleansOfNumPy),
         *(unsafe_values.SmallIntegersOrOthers, unsafe_values.SmallIntegersAtTimes),

@@ -62,6 +62,16 @@ class AppendsTwo(Counted):
         return super().step(action)
 
 
+class ReadsProperty(Counted):
+    @property
+    def share(self):
+        return 1.0 / (self.position[1] - 7.0)
+
+    def step(self, action):
+        self.last = self.share
+        return super().step(action)
+
+
 class TruthOfArray(Counted):
     def step(self, action):
         self.last = self.position and 1.0

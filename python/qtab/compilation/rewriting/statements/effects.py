@@ -94,7 +94,8 @@ def constant_of(scope: "Expressions", node: ast.expr, function: FunctionType, ow
         return MISSING
     if isinstance(node.value, ast.Name) and node.value.id == own:
         known = scope.program.attributes
-        return MISSING if node.attr in known.assigned else vars(known.env).get(node.attr, known.find(node.attr)[0])
+        found = vars(known.env).get(node.attr, known.find(node.attr)[0])
+        return MISSING if node.attr in known.assigned or isinstance(found, property) else found
     owner = constant_of(scope, node.value, function, own)
     return MISSING if owner is MISSING or runs_code(owner, node.attr) else getattr(owner, node.attr, MISSING)
 
