@@ -51,6 +51,23 @@ class Info(gym.Env):
         return self.cell, 0.0, self.cell == 19, False, {"action_mask": np.array([1, 1 + self.cell // 12])}
 
 
+class Raises(Method):
+    """Raises an error instead of giving a mask from cell 12 on."""
+
+    last = 11
+
+    def action_masks(self):
+        if self.cell > self.last:
+            raise IndexError("no mask")
+        return np.array([True, True])
+
+
+class RaisesAtTheEnd(Raises):
+    """Raises the error in its terminal state only."""
+
+    last = 18
+
+
 class Counts(Method):
     """Its mask has an effect, so that it is not compiled."""
 
@@ -80,8 +97,9 @@ def test_the_error_is_that_of_python(cls: Any, message: str) -> None:
     assert errors[0] == errors[1]
 
 
-def test_a_run_without_masks_does_not_read_them() -> None:
-    runs = [qtab.train(Method(), action_mask=False, backend=backend, **SETTINGS) for backend in ("numba", "python")]
+@pytest.mark.parametrize(("cls", "action_mask"), [(Method, False), (Raises, False), (RaisesAtTheEnd, True)])
+def test_masks_that_python_does_not_read_are_not_read(cls: Any, action_mask: bool) -> None:
+    runs = [qtab.train(cls(), action_mask=action_mask, backend=one, **SETTINGS) for one in ("numba", "python")]
     assert runs[0].config.backend == "numba"
     assert runs[0].tables.tobytes() == runs[1].tables.tobytes()
     assert runs[0].episode_returns.tobytes() == runs[1].episode_returns.tobytes()

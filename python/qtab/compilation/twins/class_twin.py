@@ -108,7 +108,7 @@ class ClassTwin:
         self.info: Any = None
         """The last info dict."""
         self.mask: Any = None
-        """The last action mask that was observed, as it was given; None without masks."""
+        """The action mask of the last observation, as it was given; None without one."""
 
     def reset_class(self, rng: np.random.Generator) -> Any:
         """Resets the copy with a generator, and returns the observation."""
@@ -133,10 +133,11 @@ class ClassTwin:
         flags = {"terminated": bool(terminated), "truncated": bool(truncated)}
         return {"reward": float(reward), **flags, **self._numbers(observation, any(flags.values()))}
 
-    def observed(self, given: Any) -> dict[str, Any]:
-        """Returns the numbers of an observation, and the action mask if there is one, by their names."""
+    def observed(self, given: Any, with_mask: bool = True) -> dict[str, Any]:
+        """Returns the numbers of an observation by their names, and those of the action mask if there is one."""
         numbers = {"observation": self.observation.numbers(_in_order(self.env.observation_space, given))}
-        if self._has_masks:
+        self.mask = None
+        if with_mask and self._has_masks:
             self.mask = self.env.action_masks() if hasattr(self.env, "action_masks") else self.info.get("action_mask")
         if self.mask is not None:
             numbers["action_mask"] = np.asarray(self.mask).astype(np.uint8)
