@@ -43,6 +43,26 @@ class OfHelper(ExtraEnv):
         return cell, reward, terminated, truncated, info
 
 
+class ByOtherName(ExtraEnv):
+    def step(self, action):
+        info = TOTALS  # here
+        other = info
+        if self.cell > 5:
+            other["steps"] = 1
+        return self.cell, float(TOTALS["steps"]), False, False, info
+
+
+class InHelper(ExtraEnv):
+    def fill(self, info):
+        if self.cell > 5:
+            info["steps"] = 1
+
+    def step(self, action):
+        info = TOTALS  # here
+        self.fill(info)
+        return self.cell, float(TOTALS["steps"]), False, False, info
+
+
 class OfBaseByIndex(ExtraEnv):
     def step(self, action):
         given = super().step(action)[4]  # here
@@ -85,7 +105,10 @@ def refusal(cls: Any) -> NotCompilable:
     return caught.value
 
 
-@pytest.mark.parametrize("cls", [OfModule, OfObject, OfHelper, OfBaseByIndex], ids=lambda cls: cls.__name__)
+CHANGED = [OfModule, OfObject, OfHelper, ByOtherName, InHelper, OfBaseByIndex]
+
+
+@pytest.mark.parametrize("cls", CHANGED, ids=lambda cls: cls.__name__)
 def test_dicts_of_others_are_not_changed(cls: Any) -> None:
     lines, first = inspect.getsourcelines(cls)
     (marked,) = [number for number, line in enumerate(lines, first) if "# here" in line]

@@ -103,6 +103,8 @@ class Program:
         """Compiles a user's function and returns the value of a call."""
         self.infos: dict[str, list[Any]] = {}
         """The info dicts that ``reset`` and ``step`` return, with their functions."""
+        self.changes_infos = False
+        """Whether a statement changes an info dict."""
         self.left_out: list[NotCompilable] = []
         """The errors, for vector environments, for code that is left out and that may fail or log messages."""
         self.stale_kinds: dict[str, set[Kind | None]] = {}

@@ -152,7 +152,7 @@ def _rewritten(env: gym.Env, attributes: Attributes, program: Program) -> Rewrit
         file, line = reset.file, reset.lines[0][1]
         reason = "the environment draws random numbers, but reset does not seed the generator"
         raise NotCompilable(reason, file, line, "call super().reset(seed=seed) first in reset")
-    check_changed_infos(attributes)
+    check_changed_infos(program)
     mask_refusal, tops = None, ["reset", "step"]
     try:
         if add_action_mask(program):

@@ -10,24 +10,25 @@ from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting.attributes import Attributes
 from qtab.compilation.rewriting.infos.dicts import LENGTHS
 from qtab.compilation.rewriting.infos.made import is_made, is_step, returned, values_of
+from qtab.compilation.rewriting.program import Program
 from qtab.compilation.rewriting.source.sources import Source, source_of
 from qtab.compilation.rewriting.source.syntax import info_names
 
 ADVICE = "make it here, as in {'cell': self.cell}"
 
 
-def check_changed_infos(attributes: Attributes) -> None:
-    """Refuses a class that changes an info dict after it has returned or taken one that it has not made.
+def check_changed_infos(program: Program) -> None:
+    """Refuses a class that changes info dicts, if it returns or takes one that it has not made.
 
     Other code may read such a dict, as one of the module, and compiled code would neither change it nor see the change.
 
     Raises:
         NotCompilable: with the line where it is taken or returned.
     """
-    sources = list(_methods(attributes))
-    if not any(_changed(source) for source in sources):
+    if not program.changes_infos:
         return
-    for source in sources:
+    attributes = program.attributes
+    for source in _methods(attributes):
         assigned = [value for name in sorted(_names(source)) for value in values_of(source, name)]
         for node in [*assigned, *returned(source.node)]:
             if not is_made(attributes, source, node):
@@ -57,19 +58,3 @@ def _names(source: Source) -> set[str]:
                 if isinstance(last, ast.Name):
                     found.add(last.id)
     return found
-
-
-def _changed(source: Source) -> bool:
-    """Returns whether a method changes an info dict."""
-    names = _names(source)
-    for one in ast.walk(source.node):
-        base: ast.AST | None = None
-        if isinstance(one, ast.Subscript) and not isinstance(one.ctx, ast.Load):
-            base = one.value
-        elif isinstance(one, ast.Call) and isinstance(one.func, ast.Attribute):
-            base = one.func.value
-        elif isinstance(one, ast.AugAssign):
-            base = one.target
-        if isinstance(base, ast.Name) and base.id in names:
-            return True
-    return False

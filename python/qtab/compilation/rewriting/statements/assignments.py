@@ -37,7 +37,9 @@ def assign(scope: "Statements", node: ast.stmt, targets: list[ast.expr], value_n
                 note_value(scope, node, value_node)
                 note_kind(scope, target.attr, number(scope, value_node))
                 note_attribute(scope, node, target.attr)
-            if isinstance(target, ast.Name):
+            elif isinstance(target, ast.Subscript):
+                scope.program.changes_infos = True
+            elif isinstance(target, ast.Name):
                 scope.kinds[scope.version(target.id)] = INFO
                 scope.note_set(target.id)
         return
@@ -180,6 +182,7 @@ def augmented(scope: "Statements", node: ast.AugAssign) -> None:
         return
     if isinstance(target.value, ast.Name) and target.value.id in scope.infos:
         check_pure(scope, node.value)
+        scope.program.changes_infos = True
         return
     base = changeable(scope, node, target)
     if any(isinstance(one, ast.Call) for one in ast.walk(target.slice)):

@@ -71,6 +71,7 @@ def is_info_update(scope: "Statements", node: ast.expr) -> bool:
         case ast.Call(func=ast.Attribute(value=ast.Name(id=name), attr="update")) if name in scope.infos:
             for value in (*node.args, *[keyword.value for keyword in node.keywords]):
                 check_pure(scope, value)
+            scope.program.changes_infos = True
             return True
     return False
 
