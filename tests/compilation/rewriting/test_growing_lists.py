@@ -1,7 +1,9 @@
-"""Lists that steps append to and nothing reads are left out, if ``reset`` makes them."""
+"""Values that steps add to and nothing reads are left out, lists only if ``reset`` makes them."""
 
 from typing import Any
 
+import gymnasium as gym
+import numpy as np
 import pytest
 
 from qtab.compilation.not_compilable import NotCompilable
@@ -65,11 +67,84 @@ class Draws(Records):
         return 0.0
 
 
+class AddsToOwn(ExtraEnv):
+    def reset(self, *, seed=None, options=None):
+        gym.Env.reset(self, seed=seed)
+        self.cell, self.board = 0, np.zeros(4)
+        self.total, self.text, self.pair = 0.0, "a", (1,)
+        self.path = [0]
+        self.sums = self.board.copy()
+        return self.cell, {}
+
+    def extra(self):
+        self.path += [self.cell]
+        self.total += 0.5
+        self.text += "b"
+        self.pair += (self.cell,)
+        self.sums += 1.0
+        return float(self.board[0])
+
+
+class AddsToOutside(MadeOnce):
+    def __init__(self):
+        super().__init__()
+        self.path = OUTSIDE
+
+    def extra(self):
+        if self.cell == 9 and self.np_random.random() < 1e-9:
+            self.path += [self.cell]
+        return float(len(OUTSIDE))
+
+
+class AddsToOutsideOfReset(OfOthers):
+    extra = AddsToOutside.extra
+
+
+class AddsToTwoNames(MadeOnce):
+    def extra(self):
+        self.path = cells = []  # type: ignore[var-annotated]
+        if self.cell == 9 and self.np_random.random() < 1e-9:
+            self.path += [self.cell]
+        return float(len(cells))
+
+
+class AddsToBoard(AddsToOwn):
+    def extra(self):
+        if self.cell == 9 and self.np_random.random() < 1e-9:
+            self.sums = self.board
+            self.sums += 1.0
+        return float(self.board[0])
+
+
+class AddsToBoardOfTuple(AddsToOwn):
+    def extra(self):
+        if self.cell == 9 and self.np_random.random() < 1e-9:
+            self.sums, more = self.board, 1.0
+            self.sums += more
+        return float(self.board[0])
+
+
 def test_they_are_left_out() -> None:
     rewritten = rewrite(Records())
     assert "path" not in str(rewritten.dtype)
     assert rewritten.shown.refusal is None
     assert_equal_steps(Records(), rewritten, 60, 3)
+
+
+def test_additions_to_own_values_are_left_out() -> None:
+    rewritten = rewrite(AddsToOwn())
+    assert set(rewritten.dtype.names or ()) == {"cell", "board"}
+    assert_equal_steps(AddsToOwn(), rewritten, 60, 3)
+
+
+ADD_TO_OTHERS = [AddsToOutside, AddsToOutsideOfReset, AddsToTwoNames, AddsToBoard, AddsToBoardOfTuple]
+
+
+@pytest.mark.parametrize("cls", ADD_TO_OTHERS, ids=lambda cls: cls.__name__)
+def test_additions_to_values_with_other_names_are_refused(cls: Any) -> None:
+    with pytest.raises(NotCompilable, match=r"self\.(path|sums)") as caught:
+        rewrite(cls())
+    assert caught.value.advice
 
 
 @pytest.mark.parametrize("cls", [MadeOnce, MadeSometimes, OfOthers, IsRead, Draws], ids=lambda cls: cls.__name__)

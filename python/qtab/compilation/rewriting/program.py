@@ -22,6 +22,7 @@ from qtab.compilation.rewriting.values import (
     Scalar,
     TupleKind,
     Value,
+    is_immutable,
     kind_of,
 )
 
@@ -111,6 +112,8 @@ class Program:
         """The kinds of what is assigned to attributes that are never read; None for other values than numbers."""
         self.changed_stale: list[tuple[str, Scalar | None, NotCompilable]] = []
         """Augmented assignments to such attributes: the name, the kind of the number, and the error for others."""
+        self.stale_objects: set[str] = set()
+        """Those of which a value may be a list, an array or another object with another name."""
         self.stale: dict[str, NotCompilable] = {}
         """The attributes that are assigned and never read, and the errors for those that reset does not assign."""
         self.stale_in_reset: set[str] | None = None
@@ -133,6 +136,14 @@ class Program:
         ]
         kept = [error for name, error in self.stale.items() if name not in (self.stale_in_reset or ())]
         return next(iter([*self.left_out, *changed, *kept]), None)
+
+    def changed_objects(self) -> list[str]:
+        """Returns the attributes that are never read, but whose augmented assignments may change another object."""
+        names = {name for name, _, _ in self.changed_stale}
+        kept = names - (self.stale_in_reset or set())
+        known = self.attributes
+        before = {name: vars(known.env).get(name, known.find(name)[0]) for name in kept}
+        return sorted(names & self.stale_objects | {name for name, value in before.items() if not is_immutable(value)})
 
     def key(self, function: FunctionType, owner: type | None, values: dict[str, Value]) -> Any:
         """Returns the key of a function that is called with given constants and kinds."""

@@ -145,6 +145,8 @@ def _rewritten(env: gym.Env, attributes: Attributes, program: Program) -> Rewrit
         raise
     program.stale_in_reset = {name.removeprefix(STALE) for name in reset.flow.assigned if name.startswith(STALE)}
     step = _method(program, "step")
+    for name in program.changed_objects():
+        attributes.note_read(name)
     _add_top(program, "reset", reset)
     _add_top(program, "step", step)
     draws = reset.draws or step.draws

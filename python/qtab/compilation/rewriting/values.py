@@ -109,6 +109,11 @@ def numpy_type(dtype: str) -> str:
     return "np.bool_" if dtype == "bool" else f"np.{dtype}"
 
 
+def is_immutable(value: Any) -> bool:
+    """Returns whether an augmented assignment to a value makes a new one, instead of changing it."""
+    return type(value) in (bool, int, float, str, tuple, type(None)) or isinstance(value, np.generic)
+
+
 def own_operator(value: Any) -> str | None:
     """Returns the name of an operator that a class derived from a number or an enum defines, such as ``__add__``.
 

@@ -35,7 +35,7 @@ def assign(scope: "Statements", node: ast.stmt, targets: list[ast.expr], value_n
         for target in targets:
             if isinstance(target, ast.Attribute):
                 note_value(scope, node, value_node)
-                note_kind(scope, target.attr, number(scope, value_node))
+                note_kind(scope, target.attr, number(scope, value_node), len(targets) == 1 and _is_new(value_node))
                 note_attribute(scope, node, target.attr)
             elif isinstance(target, ast.Subscript):
                 scope.program.changes_infos = True
@@ -54,6 +54,13 @@ def assign(scope: "Statements", node: ast.stmt, targets: list[ast.expr], value_n
     if specials.is_special(value.fixed) and not all(isinstance(target, ast.Name) for target in targets):
         raise specials.refused_special(scope, value_node, value)
     assign_value(scope, node, targets, value)
+
+
+def _is_new(node: ast.expr) -> bool:
+    """Returns whether an expression makes a value, or is a constant."""
+    made = (ast.Constant, ast.JoinedStr, ast.Tuple, ast.List, ast.ListComp, ast.Dict, ast.Set, ast.BinOp, ast.Compare)
+    is_copy = isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr == "copy"
+    return isinstance(node, made) or is_copy
 
 
 def assign_value(scope: "Statements", node: ast.stmt, targets: "ast.expr | list[ast.expr]", value: Value) -> None:

@@ -38,9 +38,18 @@ def note_value(scope: "Expressions", node: ast.AST, *parts: ast.expr) -> None:
         scope.program.left_out.append(scope.refuse(node, RAISES, LEAVE_OUT))
 
 
-def note_kind(scope: "Expressions", name: str, kind: Kind | None) -> None:
-    """Notes the kind of a value that is assigned to an attribute that is never read; None if it has none."""
+def note_kind(scope: "Expressions", name: str, kind: Kind | None, is_own: bool) -> None:
+    """Notes the kind of a value that is assigned to an attribute that is never read.
+
+    Args:
+        scope: The function.
+        name: The attribute.
+        kind: The kind; None if it has none.
+        is_own: Whether no other name refers to the value, or it cannot be changed.
+    """
     scope.program.stale_kinds.setdefault(name, set()).add(kind)
+    if not is_own and not isinstance(kind, Scalar):
+        scope.program.stale_objects.add(name)
 
 
 def note_change(scope: "Expressions", node: ast.AugAssign, target: ast.Attribute) -> None:

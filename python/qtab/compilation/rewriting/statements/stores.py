@@ -17,6 +17,7 @@ from qtab.compilation.rewriting.values import (
     TupleKind,
     Value,
     in_words,
+    is_immutable,
     kind_of,
     scalar_of,
 )
@@ -36,7 +37,8 @@ def store(scope: "Statements", node: ast.stmt, name: str, value: Value) -> None:
     known.note_assigned(name)
     if name not in known.read:
         note_attribute(scope, node, name)
-        note_kind(scope, name, kind_of(value.fixed) if value.is_fixed else value.kind)
+        kind = kind_of(value.fixed) if value.is_fixed else value.kind
+        note_kind(scope, name, kind, value.is_fixed and is_immutable(value.fixed))
         if scope.has_effects(value):
             scope.emit(value.code, node)
         return
