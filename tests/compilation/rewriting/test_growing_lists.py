@@ -55,6 +55,12 @@ class OfOthers(MadeOnce):
         return super().reset(seed=seed)
 
 
+class OfOthersByPosition(MadeOnce):
+    def reset(self, /, *, seed=None, options=None):
+        self.path = OUTSIDE
+        return super().reset(seed=seed)
+
+
 class IsRead(Records):
     def extra(self):
         self.path.append(self.cell)
@@ -147,7 +153,10 @@ def test_additions_to_values_with_other_names_are_refused(cls: Any) -> None:
     assert caught.value.advice
 
 
-@pytest.mark.parametrize("cls", [MadeOnce, MadeSometimes, OfOthers, IsRead, Draws], ids=lambda cls: cls.__name__)
+OTHERS = [MadeOnce, MadeSometimes, OfOthers, OfOthersByPosition, IsRead, Draws]
+
+
+@pytest.mark.parametrize("cls", OTHERS, ids=lambda cls: cls.__name__)
 def test_others_are_refused(cls: Any) -> None:
     with pytest.raises(NotCompilable, match=r"self\.path|left out in compiled code") as caught:
         rewrite(cls())

@@ -98,6 +98,27 @@ class ChangesInLoop(Shows):
         return {}
 
 
+class ChangesPositional(Shows):
+    def changed(self, cells, /):
+        if self.cell > 20:
+            cells = []
+        cells.append(self.cell)
+        return {}
+
+    def shown(self):
+        return self.changed(TOTALS["cells"])
+
+
+class ReadsProperty(Shows):
+    @property
+    def count(self):
+        TOTALS["cells"].append(self.cell)
+        return 1
+
+    def shown(self, /):
+        return {"count": self.count}
+
+
 class Finds(Shows):
     def shown(self):
         return {"kind": Kind(self.cell)}
@@ -110,7 +131,10 @@ class PopsInStep(ExtraEnv):
         return self.cell, float(len(values)), False, False, info
 
 
-CHANGES = [ChangesElement, ChangesArray, ChangesDict, Appends, ChangesInner, ChangesInLoop, Finds, PopsInStep]
+CHANGES = [
+    *(ChangesElement, ChangesArray, ChangesDict, Appends, ChangesInner, ChangesInLoop),
+    *(ChangesPositional, ReadsProperty, Finds, PopsInStep),
+]
 
 
 @pytest.mark.parametrize("cls", CHANGES, ids=lambda cls: cls.__name__)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting.source.sources import source_of
-from qtab.compilation.rewriting.source.syntax import CHANGING, growing_lists, new_lists
+from qtab.compilation.rewriting.source.syntax import CHANGING, growing_lists, new_lists, own_name
 from qtab.compilation.rewriting.values import Array, Kind, Scalar, TupleKind, in_words, join, kind_of
 
 Refuse = Callable[[str, str], NotCompilable]
@@ -65,7 +65,7 @@ class Attributes:
         self.growing -= self._not_lists
 
     def _scan_function(self, node: ast.FunctionDef, known: set[str]) -> list[str]:
-        own = node.args.args[0].arg if node.args.args else ""
+        own = own_name(node) or ""
         more = set()
         grown = growing_lists(node, own)
         self.growing |= {one.attr for one in grown}

@@ -20,6 +20,7 @@ from qtab.compilation.rewriting.infos.shown import Shown, shown_of
 from qtab.compilation.rewriting.observations import observation_code
 from qtab.compilation.rewriting.program import STALE, Compiled, Program, as_float
 from qtab.compilation.rewriting.source.sources import Source, source_of
+from qtab.compilation.rewriting.source.syntax import parameters_of
 from qtab.compilation.rewriting.user_functions import called, compiled_function
 from qtab.compilation.rewriting.values import BOOL, INT, Scalar, TupleKind, Value, constant, in_words
 from qtab.compilation.twins.class_twin import reset_twin
@@ -201,7 +202,7 @@ def _method(program: Program, name: str) -> Compiled:
         raise NotCompilable(f"{name} is not an ordinary function", file, line, "remove its decorators")
     source = source_of(member)
     arguments = source.node.args
-    names = [one.arg for one in (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs)]
+    names = parameters_of(source.node)
     values: dict[str, Value] = {names[0]: constant(specials.SELF)}
     for one in names[1:]:
         if name == "step" and one == names[1]:

@@ -12,7 +12,7 @@ import gymnasium as gym
 
 from qtab.compilation.rewriting.attributes import MISSING, Attributes, own_attribute
 from qtab.compilation.rewriting.source.sources import Source
-from qtab.compilation.rewriting.source.syntax import Names
+from qtab.compilation.rewriting.source.syntax import Names, own_name
 from qtab.compilation.rewriting.values import own_operator
 from qtab.compilation.twins.own_code import runs_code
 from qtab.compilation.twins.plain_data import is_plain
@@ -47,10 +47,9 @@ class KnownValues:
         """The local names."""
         self.imported: dict[str, Any] = {}
         """What the function has imported."""
-        arguments = source.node.args
-        first = [one.arg for one in (*arguments.posonlyargs, *arguments.args)][:1]
-        self._own = first[0] if first and receiver == "self" else ""
-        self._class = first[0] if first and receiver == "class" else ""
+        first = own_name(source.node) or ""
+        self._own = first if receiver == "self" else ""
+        self._class = first if receiver == "class" else ""
         closure = inspect.getclosurevars(source.function)
         self._globals = {**vars(builtins), **source.function.__globals__, **closure.nonlocals}
 

@@ -10,6 +10,7 @@ import gymnasium as gym
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting.attributes import Attributes
 from qtab.compilation.rewriting.source.sources import Source, source_of
+from qtab.compilation.rewriting.source.syntax import own_name
 
 KEY = "action_mask"
 LENGTHS = {"reset": 2, "step": 5}
@@ -78,7 +79,7 @@ def _info(
     if isinstance(node, ast.Call) and depth < MOST_NESTED and not node.args and not node.keywords:
         function = node.func
         owner = function.value if isinstance(function, ast.Attribute) else None
-        if isinstance(function, ast.Attribute) and isinstance(owner, ast.Name) and owner.id == own_name(source):
+        if isinstance(function, ast.Attribute) and isinstance(owner, ast.Name) and owner.id == own_name(source.node):
             return _of_helper(attributes, source, node, function.attr, alone, depth)
     raise _refused(source, node, "the info dict is not written out here", ADVICE)
 
@@ -151,12 +152,6 @@ def _is_super_call(node: ast.expr | None, role: str) -> bool:
     function = node.func if isinstance(node, ast.Call) else None
     is_method = isinstance(function, ast.Attribute) and function.attr == role
     return is_method and ast.unparse(function.value) == "super()"  # type: ignore[union-attr]
-
-
-def own_name(source: Source) -> str | None:
-    """Returns the name of a method's first parameter; None without any."""
-    arguments = source.node.args
-    return next((one.arg for one in (*arguments.posonlyargs, *arguments.args)), None)
 
 
 def _text(info: Info) -> str:

@@ -5,8 +5,9 @@ from collections.abc import Iterator
 from types import FunctionType
 
 from qtab.compilation.rewriting.attributes import Attributes
-from qtab.compilation.rewriting.infos.dicts import LENGTHS, own_name, returns_of
+from qtab.compilation.rewriting.infos.dicts import LENGTHS, returns_of
 from qtab.compilation.rewriting.source.sources import Source, source_of
+from qtab.compilation.rewriting.source.syntax import own_name
 
 MOST_NESTED = 4
 _DISPLAYS = (ast.Dict, ast.DictComp, ast.List, ast.ListComp, ast.Set, ast.SetComp, ast.BinOp)
@@ -45,7 +46,7 @@ def is_made(attributes: Attributes, source: Source, node: ast.expr, depth: int =
     if function.value.id in ("np", "numpy"):
         return function.attr in _MAKE_ARRAYS and not any(keyword.arg == "copy" for keyword in node.keywords)
     member, _ = attributes.find(function.attr)
-    if function.value.id != own_name(source) or not isinstance(member, FunctionType):
+    if function.value.id != own_name(source.node) or not isinstance(member, FunctionType):
         return False
     inner = source_of(member)
     return all(is_made(attributes, inner, one, depth + 1) for one in returned(inner.node))

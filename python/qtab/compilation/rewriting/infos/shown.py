@@ -8,8 +8,9 @@ import numpy as np
 from gymnasium import spaces
 
 from qtab.compilation.not_compilable import NotCompilable
-from qtab.compilation.rewriting.infos.dicts import KEY, info_of, own_name
+from qtab.compilation.rewriting.infos.dicts import KEY, info_of
 from qtab.compilation.rewriting.program import Compiled, Program
+from qtab.compilation.rewriting.source.syntax import own_name
 from qtab.compilation.rewriting.values import Array, DictKind, Scalar, TupleKind, in_words
 
 
@@ -69,7 +70,7 @@ def _mask_dtype(program: Program, mask_refusal: NotCompilable | None) -> str | N
     is_method = (
         isinstance(mask, ast.Call)
         and not (mask.args or mask.keywords)
-        and ast.unparse(mask.func) == f"{own_name(source)}.action_masks"
+        and ast.unparse(mask.func) == f"{own_name(source.node)}.action_masks"
     )
     if not (is_method if compiled is None else ast.dump(mask) == ast.dump(compiled)):
         advice = "write {'action_mask': self.action_masks()}"

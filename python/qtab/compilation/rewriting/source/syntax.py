@@ -18,13 +18,22 @@ GROWING = ("append", "extend", "clear")
 """Those that lists have to collect values."""
 
 
+def parameters_of(node: ast.FunctionDef) -> list[str]:
+    """Returns the names of a function's parameters, without those of ``*args`` and ``**kwargs``."""
+    return [one.arg for one in (*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs)]
+
+
+def own_name(node: ast.FunctionDef) -> str | None:
+    """Returns the name of a method's first parameter; None without any."""
+    return next((one.arg for one in (*node.args.posonlyargs, *node.args.args)), None)
+
+
 class Names:
     """The local names of a function."""
 
     def __init__(self, source: Source) -> None:
         self.node = source.node
-        arguments = source.node.args
-        self.parameters = [one.arg for one in (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs)]
+        self.parameters = parameters_of(source.node)
         stored = [one for one in self._walk() if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)]
         imported = [
             alias for one in self._walk() if isinstance(one, ast.Import | ast.ImportFrom) for alias in one.names

@@ -13,6 +13,7 @@ from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting.attributes import MISSING
 from qtab.compilation.rewriting.infos.made import bindings, is_made, values_of
 from qtab.compilation.rewriting.source.sources import source_of
+from qtab.compilation.rewriting.source.syntax import own_name, parameters_of
 from qtab.compilation.twins.own_code import own_methods, runs_code
 
 if TYPE_CHECKING:
@@ -50,8 +51,7 @@ def _effect(
     scope: "Expressions", node: ast.AST, function: FunctionType, definition: ast.FunctionDef, seen: set[Any]
 ) -> str | None:
     """Returns the effect of an expression or statement; None if there is none."""
-    own = definition.args.args[0].arg if definition.args.args else None
-    parameters = {one.arg for one in (*definition.args.args, *definition.args.kwonlyargs)}
+    own, parameters = own_name(definition), set(parameters_of(definition))
     for one in ast.walk(node):
         if isinstance(
             one, ast.NamedExpr | ast.Yield | ast.YieldFrom | ast.Await | ast.Global | ast.Nonlocal | ast.Delete
