@@ -43,6 +43,7 @@ REFUSED = {
     "np.array([x]).view(np.int64)[0]": r"array.view\(\) shows the sign of a NaN",
     "np.sin(np.float32(x))": "write math.sin",
     "math.exp(np.float32(x))": "math.exp of a float32",
+    "math.trunc(np.float32(x))": "math.trunc of a float32",
     "np.float32(x).item()": r"item\(\) of float32 keeps its dtype",
     "float(*(np.float32(x),))": r"a call with \*arguments",
     "(float if p else float)(np.float32(x))": "float of a float32 through a variable",

@@ -248,7 +248,7 @@ class Checks(TypedCode):
             advice = MATH_ADVICE.get(name, OTHER_MATH)
             return self.refuse(expression, f"math.{name} may round differently in compiled code", advice)
         kinds = [types.unliteral(self.type_of(one)) for one in expression.args]
-        if types.float32 in kinds and name not in (*MATH_ROUNDED, *MATH_TESTS):
+        if types.float32 in kinds and name not in ("floor", "ceil", *MATH_TESTS):  # Python's trunc takes no float32
             return self.refuse(expression, f"math.{name} of a float32", "convert it: float(...)")
         integer = name in MATH_ROUNDED and isinstance(types.unliteral(self.type_of(expression.args[0])), types.Integer)
         check = self.check(exact_integer, scope, expression.args, expression.loc) if integer else []
