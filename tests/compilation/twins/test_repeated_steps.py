@@ -2,6 +2,7 @@
 
 import linecache
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import gymnasium as gym
@@ -9,6 +10,7 @@ import numpy as np
 import pytest
 
 import qtab
+from qtab.compilation.twins.repetition import Repetition
 
 pytest.importorskip("numba")
 
@@ -153,3 +155,15 @@ def test_a_class_that_is_edited_in_a_notebook_is_compiled_again() -> None:
         assert_equal(run, qtab.train(made(), **{**SHORT, "backend": "python"}))
         returns.append(run.episode_returns.tobytes())
     assert returns[0] != returns[1]
+
+
+def test_python_stepping_of_a_vector_environment_is_logged_after_a_run_of_its_class(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setattr("qtab.compilation.twins.repetition._logged", set())
+    twin: Any = SimpleNamespace(env=Large())
+    repetition = Repetition(twin, 0, "Large")
+    for _ in range(2):
+        repetition.log()
+        repetition.log("a vector environment of %s is stepped in Python from now on")
+    assert ["vector" in record.message for record in caplog.records] == [False, True]

@@ -19,7 +19,7 @@ SHOWN = 80
 ADVICE = "train with backend='gymnasium'"
 
 _logger = logging.getLogger("qtab")
-_logged: set[type] = set()
+_logged: set[tuple[type, str]] = set()
 
 
 class Repetition:
@@ -103,10 +103,10 @@ class Repetition:
         return self._result("step", observation, float(reward), code)
 
     def log(self, what: str = "an episode of %s goes on in Python") -> None:
-        """Logs once for each class that a call failed in compiled code only, and what follows."""
+        """Logs that a call failed in compiled code only, and what follows: once for each class and consequence."""
         cls = type(self._twin.env)
-        if cls not in _logged:
-            _logged.add(cls)
+        if (cls, what) not in _logged:
+            _logged.add((cls, what))
             code = cls.step.__code__
             _logger.warning(
                 f"%s:%s: {what}, which does not fail where compiled code does: with "
