@@ -74,6 +74,8 @@ class Draws(Records):
 
 
 class AddsToOwn(ExtraEnv):
+    pair: Any
+
     def reset(self, *, seed=None, options=None):
         gym.Env.reset(self, seed=seed)
         self.cell, self.board = 0, np.zeros(4)
@@ -108,7 +110,8 @@ class AddsToOutsideOfReset(OfOthers):
 
 class AddsToTwoNames(MadeOnce):
     def extra(self):
-        self.path = cells = []  # type: ignore[var-annotated]
+        cells: list[int]
+        self.path = cells = []
         if self.cell == 9 and self.np_random.random() < 1e-9:
             self.path += [self.cell]
         return float(len(cells))
