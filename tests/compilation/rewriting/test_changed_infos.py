@@ -63,6 +63,16 @@ class InHelper(ExtraEnv):
         return self.cell, float(TOTALS["steps"]), False, False, info
 
 
+class OfMethodNamedCopy(ExtraEnv):
+    def copy(self):
+        return TOTALS
+
+    def step(self, action):
+        info = self.copy()  # here
+        info["steps"] = 1
+        return self.cell, float(TOTALS["steps"]), False, False, info
+
+
 class OfBaseByIndex(ExtraEnv):
     def step(self, action):
         given = super().step(action)[4]  # here
@@ -105,7 +115,7 @@ def refusal(cls: Any) -> NotCompilable:
     return caught.value
 
 
-CHANGED = [OfModule, OfObject, OfHelper, ByOtherName, InHelper, OfBaseByIndex]
+CHANGED = [OfModule, OfObject, OfHelper, ByOtherName, InHelper, OfMethodNamedCopy, OfBaseByIndex]
 
 
 @pytest.mark.parametrize("cls", CHANGED, ids=lambda cls: cls.__name__)

@@ -39,14 +39,16 @@ def is_made(attributes: Attributes, source: Source, node: ast.expr, depth: int =
         return function.id in _MAKE
     if not isinstance(function, ast.Attribute):
         return False
-    if function.attr == "copy" or is_step(node):  # of a base class, which is checked as well
+    owner = function.value.id if isinstance(function.value, ast.Name) else None
+    is_copy = function.attr == "copy" and owner != own_name(source.node)
+    if is_copy or is_step(node):  # of a base class, which is checked as well
         return True
-    if not isinstance(function.value, ast.Name):
+    if owner is None:
         return False
-    if function.value.id in ("np", "numpy"):
+    if owner in ("np", "numpy"):
         return function.attr in _MAKE_ARRAYS and not any(keyword.arg == "copy" for keyword in node.keywords)
     member, _ = attributes.find(function.attr)
-    if function.value.id != own_name(source.node) or not isinstance(member, FunctionType):
+    if owner != own_name(source.node) or not isinstance(member, FunctionType):
         return False
     inner = source_of(member)
     return all(is_made(attributes, inner, one, depth + 1) for one in returned(inner.node))
