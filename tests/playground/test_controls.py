@@ -99,6 +99,10 @@ def test_a_fourier_basis_has_its_own_learning_rate_and_says_what_it_cannot_be_us
     assert playground.settled().state()["settings"].items() >= {"learning_rate": 0.001, "initial_q": 0}.items()
     # A quarter of the way from 0.0001 to 1, by orders of magnitude.
     assert playground.page.locator("#slide-learning_rate").input_value() == "250"
+    for typed, key, expected in (("0.0001", "ArrowLeft", 0.00009), ("0", "ArrowRight", 0.00001)):
+        playground.type_number("learning_rate", typed)
+        playground.page.locator("#slide-learning_rate").press(key)
+        assert playground.state()["settings"]["learning_rate"] == expected
     refused = playground.page.locator("#set-algorithm option:disabled").all_inner_texts()
     assert len(refused) == len({*OFFERED["algorithm"]} - {*LEARNS_WEIGHTED})
     assert all(text.endswith(" (not with Fourier basis)") for text in refused), refused

@@ -140,7 +140,7 @@ function numberControl(store, name, definition) {
 
 /** The next value for keyboard steps: hundredths of the range, at least 1 for integers; tenths of a large value. */
 function stepped({ low, high, integer, log }, value, steps) {
-  const size = log ? 10 ** Math.floor(Math.log10(Math.max(Math.abs(value), 1e-9)) - 0.3) : (high - low) / 100;
+  const size = log ? 10 ** Math.floor(Math.log10(Math.max(Math.abs(value), low, 1e-9)) - 0.3) : (high - low) / 100;
   const unit = integer ? Math.max(Math.round(size), 1) : Number(size.toPrecision(1));
   const next = value + steps * unit;
   return integer ? Math.round(next) : Number(next.toPrecision(10));
