@@ -86,6 +86,12 @@ def test_an_address_without_an_environment_has_the_first_one(playground: Playgro
         ),
         ("#env=MountainCar-v0&discretizer=fourier&order=16", {"order": 15}, "order"),
         (
+            "#env=MountainCar-v0&example=3&discretizer=fourier&order=2",
+            {"order": 2, "learning_rate": 0.003, "algorithm": "n_step_sarsa"},
+            "",
+        ),
+        ("#env=MountainCar-v0&example=3&discretizer=bins", {"learning_rate": 0.2, "initial_q": [-1.0, 1.0]}, ""),
+        (
             "#env=MountainCar-v0&discretizer=fourier&algorithm=sarsa_lambda&traces=replacing",
             {"algorithm": "sarsa_lambda", "traces": "accumulating", "trace_decay": 0.9},
             "traces",

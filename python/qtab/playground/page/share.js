@@ -3,7 +3,7 @@
 import { EXAMPLES, exampleOf, exampleState } from "./controls/examples.js";
 import { METHODS } from "./counterexample/updates.js";
 import { HIGHEST_RATE, readNumber } from "./format.js";
-import { MANY_SEEDS, MAX_SIDE, PAINTED, REWARD_LIMITS, SEED_LIMITS } from "./store.js";
+import { impliedBy, MANY_SEEDS, MAX_SIDE, PAINTED, REWARD_LIMITS, SEED_LIMITS } from "./store.js";
 
 const MAX_LENGTH = 8000;
 /** The parts of an address besides settings. */
@@ -94,7 +94,7 @@ function readSeeds(given, left) {
 
 /** Puts the settings of an address into a state; returns their names and values. */
 function readSettings(store, given, state, left) {
-  const { settings: known, environments, implied } = store.definitions;
+  const { settings: known, environments } = store.definitions;
   const { discretizers, observations } = environments[state.environment];
   const asks = new Map();
   for (const [name, text] of given) {
@@ -104,7 +104,10 @@ function readSettings(store, given, state, left) {
     if (impossible) left.push(name);
     else asks.set(name, value);
   }
-  state.settings = { ...state.settings, ...implied[asks.get("discretizer")], ...Object.fromEntries(asks) };
+  const { environment, settings } = state;
+  const discretizer = asks.get("discretizer") ?? settings.discretizer;
+  const implied = impliedBy(store.definitions, discretizer, settings, store.initial(environment).settings);
+  state.settings = { ...settings, ...implied, ...Object.fromEntries(asks) };
   return asks;
 }
 

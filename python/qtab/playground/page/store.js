@@ -2,7 +2,7 @@
 // The values of a control, a link or an example are limited to those that the engine accepts together.
 
 import { complete } from "./engine.js";
-import { highest } from "./format.js";
+import { highest, isWeighted } from "./format.js";
 
 // The limits of other settings depend on these.
 const FIRST = ["episodes", "learning_rate", "epsilon"];
@@ -93,18 +93,12 @@ export class Store {
     this.update({ settings: { ...this.state.settings, [name]: value, ...implied } });
   }
 
-  /**
-   * The settings that come with another discretizer: a step size of Fourier features means something else than one of
-   * cells. The settings that they replace come back with cells.
-   */
+  /** The settings that come with another discretizer. Those that Fourier features replace are set aside. */
   impliedBy(discretizer) {
-    const { implied } = this.definitions;
     const { environment, settings } = this.state;
-    const [before, after] = [implied[settings.discretizer], implied[discretizer]];
-    if (Boolean(before) === Boolean(after)) return {};
-    if (before) return this.setAside?.environment === environment ? this.setAside.settings : pick(this.initial(environment).settings, before);
-    this.setAside = { environment, settings: pick(settings, after) };
-    return after;
+    const cells = this.setAside?.environment === environment ? this.setAside.settings : this.initial(environment).settings;
+    if (!isWeighted(settings) && isWeighted({ discretizer })) this.setAside = { environment, settings };
+    return impliedBy(this.definitions, discretizer, settings, cells);
   }
 
   /** The reason why a choice is impossible with the others; null if it is possible. */
@@ -148,9 +142,14 @@ export class Store {
   }
 }
 
-/** The members of an object that another one has, too. */
-function pick(object, other) {
-  return Object.fromEntries(Object.entries(object).filter(([name]) => name in other));
+/**
+ * The settings that come with a discretizer that replaces that of other settings: a step size of Fourier features means
+ * something else than one of cells. What they replace comes back with cells, from the settings `cells`.
+ */
+export function impliedBy({ implied }, discretizer, settings, cells) {
+  const [before, after] = [implied[settings.discretizer], implied[discretizer]];
+  if (before && !after) return Object.fromEntries(Object.entries(cells).filter(([name]) => name in before));
+  return before ? {} : { ...after };
 }
 
 /** A copy of a grid world that can be changed. */
