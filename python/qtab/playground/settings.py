@@ -92,7 +92,7 @@ _TITLES = {
 # Sentences that replace those of the config, which mention options that the page omits, or Python's names of them.
 _SENTENCES = {
     "learning_rate": "α: the fraction of the error that an update corrects, in [0, 1]. With tile coding it is divided "
-    "among the tilings, and may be up to 2. With a Fourier basis it is not divided, so that it must be small.",
+    "among the tilings, and may be up to 2. With a Fourier basis it is not divided, so it must be small.",
     "exploration": "The policy: a random action with probability ε, or the softmax of the values.",
     "max_episode_steps": "The time limit of an episode, in steps.",
     "initial_q": "The initial Q table: drawn uniformly from a range (low, high), or one number everywhere. With a "

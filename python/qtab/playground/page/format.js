@@ -84,7 +84,7 @@ export function readNumber(name, text, { low, high, integer }) {
   return { value };
 }
 
-/** The range of a slider: without cells a learning rate is so small that only its order of magnitude matters. */
+/** The range of a slider. Learning rates of weighted features are small, and only their order of magnitude matters. */
 export function sliderRange(name, limits, settings) {
   return name === "learning_rate" && isWeighted(settings) ? { low: 1e-4, high: 1, integer: false, log: true } : limits;
 }

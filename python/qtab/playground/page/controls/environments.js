@@ -14,7 +14,7 @@ const hole = (x, y, size) => `<circle cx="${5.5 + (x + 0.5) * size}" cy="${(y + 
 const holes = (places, size) => places.map(([x, y]) => hole(x, y, size)).join("");
 const SMALL_LAKE = BOARD + holes([[1, 1], [3, 1], [3, 2], [0, 3]], 8);
 const LARGE_LAKE = board(8) + holes([[3, 2], [5, 3], [3, 4], [1, 5], [2, 5], [6, 5], [1, 6], [4, 6], [6, 6], [3, 7]], 4);
-// The agent slides off the ice that is slippery.
+// Curved lines on both sides of slippery ice.
 const SLIPPERY = `<path d="M1 9q2-3 0-6t0-3M42 31q-2-3 0-6t0-6" ${STROKE}/>`;
 const DRAWINGS = {
   mountain_car: `<path d="M2 6 C8 12 12 29 20 29 C28 29 32 8 41 5" ${STROKE}/><path d="M41 5v-5l-6 2.5 6 2.5" fill="currentColor"/><circle cx="20" cy="25" r="3.4" fill="currentColor"/>`,

@@ -27,6 +27,7 @@ const SHOWN = {
     text: "One-step emphatic TD, in expectation: an update counts as often as the target policy, started anywhere, would visit its state, which is mostly the lower one. After oscillations √VE falls to 0. Sampled updates vary so much that one rarely sees this.",
   },
 };
+/** Step sizes with which no weight overflows in these sweeps. */
 const ALPHAS = { low: 1e-4, high: 0.2, integer: false, log: true };
 const STORY =
   "Seven states, and a reward of 0 everywhere. The value of a state is a sum of its own weight and of w₈, which all states share; with weights of 0 all values are right. From every state, the solid action leads to the lower state and the dashed one to one of the six upper ones. The behavior takes the dashed action six times in seven, so that it is in each state equally often; the target policy always takes the solid one (γ = 0.99).";
@@ -47,8 +48,9 @@ function slider(id, text, properties) {
 }
 
 /**
- * Builds the panel when it is opened for the first time, by the reader or by an address, which also closes it. `onChoice()` is called when the
- * state of a store, whose `counterexample` is the method of the open panel, has changed without another training.
+ * Builds the panel when the reader or an address first opens it; another address can close it. The state of the store has
+ * the method of the open panel as its `counterexample`. `onChoice()` is called after each change of it, which starts no
+ * training.
  */
 export function setUpCounterexample(store, details, onChoice) {
   let panel = null;
@@ -106,7 +108,7 @@ function build(place, method, note) {
 
   let weights = [];
   const draw = () => {
-    drawStates(states, weights[Math.min(state.sweeps, weights.length - 1)]);
+    drawStates(states, weights[state.sweeps]);
     drawWeights(chart, weights, state.sweeps);
   };
   const show = () => {
@@ -118,10 +120,8 @@ function build(place, method, note) {
     beta.element.hidden = state.method !== "tdc";
     sweeps.show(state.sweeps, count(state.sweeps));
     text.textContent = about;
-    const reached = Math.min(state.sweeps, weights.length - 1);
-    const w = weights[reached];
-    const overflow = reached < state.sweeps ? " In the next sweep a number overflows." : "";
-    summary.textContent = `After ${counted(reached, "sweep")}: w₁ to w₆ = ${number(w[0])}, w₇ = ${number(w[6])}, w₈ = ${number(w[7])}, √VE = ${number(valueError(w))}.${overflow}`;
+    const w = weights[state.sweeps];
+    summary.textContent = `After ${counted(state.sweeps, "sweep")}: w₁ to w₆ = ${number(w[0])}, w₇ = ${number(w[6])}, w₈ = ${number(w[7])}, √VE = ${number(valueError(w))}.`;
     chart.setAttribute("aria-label", `The weights of ${title} over the sweeps. ${summary.textContent}`);
     const values = valuesOf(w);
     states.setAttribute("aria-label", `Seven states. The values of the upper six: ${number(values[0])}; of the lower one: ${number(values[6])}.`);

@@ -71,14 +71,10 @@ export const METHODS = {
   },
 };
 
-/** The weights before the first sweep over the states and after each one. They end early if a number overflows. */
+/** The weights before the first sweep over the states and after each one. */
 export function expectedUpdates(method, sweeps, alpha, beta) {
   const update = METHODS[method](alpha, beta);
   const weights = [INITIAL];
-  while (weights.length <= sweeps) {
-    const next = update(weights.at(-1));
-    if (!next.every(Number.isFinite)) break;
-    weights.push(next);
-  }
+  while (weights.length <= sweeps) weights.push(update(weights.at(-1)));
   return weights;
 }
