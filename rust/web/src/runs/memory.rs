@@ -45,7 +45,7 @@ fn bytes_of_algorithm(settings: &Settings, values: u64) -> u64 {
         AnyAlgorithm::DynaQ { .. } => 36 * values,
         AnyAlgorithm::DynaQPlus { .. } => 44 * values,
         AnyAlgorithm::NStepSarsa { n_steps } => {
-            let bytes_per_step = if settings.discretizer.step_size_divisors().is_some() {
+            let bytes_per_step = if settings.discretizer.is_weighted() {
                 32 + 8 * MAX_FEATURES as u64
             } else {
                 32 + 4 * settings.discretizer.n_active() as u64

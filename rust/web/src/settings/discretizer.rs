@@ -60,6 +60,11 @@ impl Discretizer {
         }
     }
 
+    /// Whether the features are weighted.
+    pub(crate) fn is_weighted(&self) -> bool {
+        matches!(self, Self::Fourier { .. })
+    }
+
     /// The numbers that divide the learning rate of each row of weighted features, which may be none; `None` for other
     /// features.
     pub(crate) fn step_size_divisors(&self) -> Option<Vec<f64>> {

@@ -50,7 +50,7 @@ impl Settings {
         let episodes = fields.integer("episodes", 1, MAX_EPISODES)?;
         let max_episode_steps = fields.integer("max_episode_steps", 1, MAX_STEPS)?;
         let discretizer = Discretizer::parse(&fields, bounds)?;
-        let weighted = discretizer.step_size_divisors().is_some();
+        let weighted = discretizer.is_weighted();
         let has_cells = discretizer.limits().is_none();
         let largest_rate = if has_cells { 1.0 } else { 2.0 };
         fields.word("algorithm", ALGORITHMS)?;

@@ -7,13 +7,13 @@ use qtab_core::features::{ActiveFeatures, FeatureVector, Features, FourierBasis}
 use qtab_core::learners::{
     Agent, DoubleQLearning, NStepSarsa, Sarsa, TdLearner, Traces, TrueOnlineSarsaLambda, UpdateRule,
 };
-use qtab_core::policies::{AnyPolicy, TieBreaking};
-use qtab_core::q_table::TerminalUpdate;
+use qtab_core::policies::TieBreaking;
 use qtab_core::random::{AgentRng, Pcg64, SeedSequence};
 use qtab_core::schedules::{LearningRate, Schedule};
 use qtab_core::tasks::NativeTask;
 use qtab_core::{Budget, Env, Learner, QTable, StopFlag, Trainer};
 
+use super::parity::{agent, check_parts};
 use super::updates::check_equation;
 use super::{MOUNTAIN_CAR, call, finish, inspect, start, start_inspecting, table};
 use crate::Playground;
@@ -59,18 +59,12 @@ where
     let (rows, num_actions) = (basis.n_features(), env.num_actions());
     let schedule = Schedule::linear(0.01, 0.001, 12, 2);
     let divisors = basis.divisors();
-    let agent = Agent {
-        table: QTable::new(vec![0.0; rows * num_actions], num_actions),
-        policy: AnyPolicy::EpsilonGreedy { epsilon: Schedule::constant(0.2), ties: TieBreaking::First },
-        learning_rate: if divisors.is_empty() {
-            LearningRate::scheduled(schedule, 1)
-        } else {
-            LearningRate::scaled_by_row(schedule, divisors)
-        },
-        discount: 0.9,
-        terminal_update: TerminalUpdate::Target,
-        masks: None,
+    let rate = if divisors.is_empty() {
+        LearningRate::scheduled(schedule, 1)
+    } else {
+        LearningRate::scaled_by_row(schedule, divisors)
     };
+    let agent = agent(rows * num_actions, num_actions, rate, 0.9, (0.2, TieBreaking::First));
     let seed = SeedSequence::new(&[4]);
     let task = NativeTask::new(env, basis, Some(limit), Pcg64::new(&seed));
     let rule = rule(&agent);
@@ -124,22 +118,7 @@ fn the_weights_are_those_of_the_core() {
 #[test]
 fn steps_slices_and_inspections_change_nothing() {
     for algorithm in ALGORITHMS {
-        let settings = settings(algorithm, SCALED);
-        let mut whole = Playground::default();
-        start(&mut whole, MOUNTAIN_CAR, &settings, "[5, 6]");
-        finish(&mut whole, 10_000_000);
-        let mut in_parts = Playground::default();
-        start(&mut in_parts, MOUNTAIN_CAR, &settings, "[5, 6]");
-        for round in 0..4 {
-            call(&mut in_parts, r#"{"call": "step"}"#);
-            inspect(&mut in_parts, 1128 + round % 2);
-            call(&mut in_parts, r#"{"call": "advance", "work": 137}"#);
-            call(&mut in_parts, r#"{"call": "report", "returns": true, "map": true, "episode": true, "best": true}"#);
-        }
-        finish(&mut in_parts, 1001);
-        for index in 0..2 {
-            assert_eq!(table(&mut in_parts, index), table(&mut whole, index), "{algorithm}, seed {index}");
-        }
+        check_parts(MOUNTAIN_CAR, &settings(algorithm, SCALED), 1128);
     }
 }
 

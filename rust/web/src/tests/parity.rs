@@ -17,6 +17,24 @@ use crate::Playground;
 
 const WHOLE: u64 = u64::MAX;
 
+/// An ε-greedy agent with weights of 0, made of the core's parts.
+pub(super) fn agent(
+    weights: usize,
+    num_actions: usize,
+    learning_rate: LearningRate,
+    discount: f64,
+    (epsilon, ties): (f64, TieBreaking),
+) -> Agent {
+    Agent {
+        table: QTable::new(vec![0.0; weights], num_actions),
+        policy: AnyPolicy::EpsilonGreedy { epsilon: Schedule::constant(epsilon), ties },
+        learning_rate,
+        discount,
+        terminal_update: TerminalUpdate::Target,
+        masks: None,
+    }
+}
+
 #[test]
 fn the_article_learns_what_the_core_learns() {
     let mut playground = Playground::default();
@@ -56,14 +74,8 @@ fn traces_on_tile_coding_learn_what_the_core_learns() {
     let tiles: TileCoding<f32, 8> = TileCoding::new(&limits.map(|limit| -limit), &limits, &[4; 4], 8);
     let task = NativeTask::new(CartPole::default(), tiles, Some(500), Pcg64::new(&SeedSequence::new(&[7])));
     let weights = 8 * 5 * 5 * 5 * 5 * 2;
-    let agent = Agent {
-        table: QTable::<0>::new(vec![0.0; weights], 2),
-        policy: AnyPolicy::EpsilonGreedy { epsilon: Schedule::constant(0.1), ties: TieBreaking::First },
-        learning_rate: LearningRate::scheduled(Schedule::constant(0.5), 8),
-        discount: 0.99,
-        terminal_update: TerminalUpdate::Target,
-        masks: None,
-    };
+    let rate = LearningRate::scheduled(Schedule::constant(0.5), 8);
+    let agent = agent(weights, 2, rate, 0.99, (0.1, TieBreaking::First));
     let traces = Traces::new(weights, 0.0, &StopFlag::new()).expect("a small table");
     let rule = SarsaLambda { traces, kind: TraceKind::Replacing, trace_decay: 0.9 };
     let mut trainer = Trainer::new(task, TdLearner { agent, rule }, AgentRng::mt19937(7));
@@ -88,40 +100,38 @@ fn a_painted_grid_is_the_mdp_that_it_shows() {
     let mdp = TabularMdp::new(4, &[1.0, 0.0, 0.0, 0.0], &pairs).expect("a valid table");
     let seed = SeedSequence::new(&[3]);
     let task = NativeTask::new(mdp, Identity(4), Some(60), Pcg64::new(&seed));
-    let agent = Agent {
-        table: QTable::<0>::new(vec![0.0; 16], 4),
-        policy: AnyPolicy::EpsilonGreedy { epsilon: Schedule::constant(0.3), ties: TieBreaking::Random },
-        learning_rate: LearningRate::scheduled(Schedule::constant(0.5), 1),
-        discount: 0.9,
-        terminal_update: TerminalUpdate::Target,
-        masks: None,
-    };
+    let rate = LearningRate::scheduled(Schedule::constant(0.5), 1);
+    let agent = agent(16, 4, rate, 0.9, (0.3, TieBreaking::Random));
     let mut trainer = Trainer::new(task, TdLearner { agent, rule: Sarsa }, AgentRng::pcg64(&seed));
     trainer.advance(Budget { episodes: 30, work: WHOLE }).expect("every state has a row");
     assert_eq!(table(&mut playground, 0), trainer.learner().agent.table.values());
 }
 
+/// Checks that a run learns the same in steps and slices, between inspections of two cells and reports.
+pub(super) fn check_parts(environment: &str, settings: &str, cell: usize) {
+    let mut whole = Playground::default();
+    start(&mut whole, environment, settings, "[5, 6]");
+    finish(&mut whole, 10_000_000);
+    let mut in_parts = Playground::default();
+    start(&mut in_parts, environment, settings, "[5, 6]");
+    for round in 0..10 {
+        call(&mut in_parts, r#"{"call": "step"}"#);
+        inspect(&mut in_parts, cell + round % 2);
+        call(&mut in_parts, r#"{"call": "advance", "work": 37}"#);
+        call(&mut in_parts, r#"{"call": "report", "returns": true, "map": true, "episode": true, "best": true}"#);
+    }
+    finish(&mut in_parts, 101);
+    for index in 0..2 {
+        let learned = table(&mut whole, index);
+        assert!(learned.iter().any(|&value| value != 0.0));
+        assert_eq!(table(&mut in_parts, index), learned, "{settings}, seed {index}");
+    }
+}
+
 #[test]
 fn steps_slices_and_inspections_change_nothing() {
     for algorithm in ALGORITHMS {
-        let settings = of_table(algorithm);
-        let mut whole = Playground::default();
-        start(&mut whole, GRID, &settings, "[5, 6]");
-        finish(&mut whole, 10_000_000);
-        let mut in_parts = Playground::default();
-        start(&mut in_parts, GRID, &settings, "[5, 6]");
-        for round in 0..10 {
-            call(&mut in_parts, r#"{"call": "step"}"#);
-            inspect(&mut in_parts, 5 + round % 2);
-            call(&mut in_parts, r#"{"call": "advance", "work": 37}"#);
-            call(&mut in_parts, r#"{"call": "report", "returns": true, "map": true, "episode": true, "best": true}"#);
-        }
-        finish(&mut in_parts, 101);
-        for index in 0..2 {
-            let learned = table(&mut whole, index);
-            assert!(learned.iter().any(|&value| value != 0.0));
-            assert_eq!(table(&mut in_parts, index), learned, "{algorithm}, seed {index}");
-        }
+        check_parts(GRID, &of_table(algorithm), 5);
     }
 }
 
@@ -141,14 +151,8 @@ fn acrobot_learns_what_the_core_learns() {
     let env = Acrobot { f32_cos_sin: numpy_f32_cos_sin, ..Acrobot::default() };
     let seed = SeedSequence::new(&[7]);
     let task = NativeTask::new(env, tiles, Some(200), Pcg64::new(&seed));
-    let agent = Agent {
-        table: QTable::<0>::new(vec![0.0; 8 * 4096 * 3], 3),
-        policy: AnyPolicy::EpsilonGreedy { epsilon: Schedule::constant(0.1), ties: TieBreaking::First },
-        learning_rate: LearningRate::scheduled(Schedule::constant(0.5), 8),
-        discount: 1.0,
-        terminal_update: TerminalUpdate::Target,
-        masks: None,
-    };
+    let rate = LearningRate::scheduled(Schedule::constant(0.5), 8);
+    let agent = agent(8 * 4096 * 3, 3, rate, 1.0, (0.1, TieBreaking::First));
     let mut trainer = Trainer::new(task, TdLearner { agent, rule: Sarsa }, AgentRng::pcg64(&seed));
     trainer.advance(Budget { episodes: 10, work: WHOLE }).expect("tiles have no bounds");
     assert_eq!(table(&mut playground, 0), trainer.learner().agent.table.values());
