@@ -16,7 +16,8 @@ pub use float::Float;
 pub use numpy_f32_cos_sin::numpy_f32_cos_sin;
 pub(crate) use python_float::{clip, modulo, squared};
 pub use scalar::Scalar;
-pub(crate) use sum::{sum, sum_products, sum_row_products};
+pub use sum::sum_products;
+pub(crate) use sum::{sum, sum_row_products};
 
 /// Marks the branch that calls it as rare, so that the compiler keeps it a branch. The processor then predicts it,
 /// whereas a conditional move would make every step wait for the comparison. To be replaced by `std::hint::cold_path`

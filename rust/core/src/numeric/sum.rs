@@ -10,11 +10,11 @@ pub(crate) fn sum(mut numbers: impl Iterator<Item = f64>) -> f64 {
 /// The number of partial sums of [`sum_products`].
 const PARTS: usize = 4;
 
-/// Σᵢ wᵢ xᵢ for `A` columns of weights at once. There are four partial sums that begin at 0, of the products 0, 4, 8, … and
-/// 1, 5, 9, … and so on, each from left to right; the result is (p₀ + p₁) + (p₂ + p₃). A single sum would be a chain of
-/// additions that wait for each other.
+/// Σᵢ wᵢ xᵢ for `A` columns of weights at once: `weights` returns those of row i. There are four partial sums that begin at
+/// 0, of the products 0, 4, 8, … and 1, 5, 9, … and so on, each from left to right; the result is (p₀ + p₁) + (p₂ + p₃). A
+/// single sum would be a chain of additions that wait for each other.
 #[inline(always)]
-pub(crate) fn sum_products<const A: usize>(x: &[f64], weights: impl Fn(usize) -> [f64; A]) -> [f64; A] {
+pub fn sum_products<const A: usize>(x: &[f64], weights: impl Fn(usize) -> [f64; A]) -> [f64; A] {
     let mut parts = [[0.0; A]; PARTS];
     let add = |part: &mut [f64; A], weights: [f64; A], x: f64| {
         for (sum, weight) in part.iter_mut().zip(weights) {

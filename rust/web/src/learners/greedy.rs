@@ -1,6 +1,7 @@
 //! The greedy policy of a table: action values, and an episode.
 
 use qtab_core::features::ActiveFeatures;
+use qtab_core::numeric::sum_products;
 
 /// The steps of an episode.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -61,7 +62,8 @@ pub(crate) fn action_value(
     let mut sum = 0.0;
     for table in tables {
         if let Some(x) = features.weighted() {
-            sum += sum_of_products(table.get(action..)?.iter().step_by(num_actions), x);
+            let weights = table.get(..x.len() * num_actions)?;
+            sum += sum_products(x, |row| [weights[row * num_actions + action]])[0];
             continue;
         }
         for &row in &features.rows {
@@ -69,15 +71,6 @@ pub(crate) fn action_value(
         }
     }
     Some(sum)
-}
-
-/// The products of weights and features, added as the core does: four partial sums, which are added in pairs.
-fn sum_of_products<'a>(weights: impl Iterator<Item = &'a f64>, x: &[f64]) -> f64 {
-    let mut parts = [0.0; 4];
-    for (index, (weight, x)) in weights.zip(x).enumerate() {
-        parts[index % 4] += weight * x;
-    }
-    (parts[0] + parts[1]) + (parts[2] + parts[3])
 }
 
 /// The mean of the value over the tables, which unlike the sum has the scale of a return.
