@@ -97,6 +97,10 @@ macro_rules! match_capacity {
                 const $m: usize = 64;
                 $compiled
             }
+            65..=256 => {
+                const $m: usize = 256;
+                $compiled
+            }
             _ => {
                 const $m: usize = qtab_core::features::MAX_FEATURES;
                 $compiled
