@@ -262,7 +262,29 @@ def test_a_fourier_basis_has_no_array_of_values() -> None:
         found.values  # noqa: B018
 
 
-def test_a_step_size_that_diverges_is_an_error_with_the_seed() -> None:
-    given = {**FOURIER, "learning_rate": 2.0, "episodes": 50, "max_episode_steps": 200}
-    with pytest.raises(OverflowError, match="the values diverged in episode"):
-        qtab.estimate_values(CAR, "random", order=9, scale_step_sizes=False, **given)
+@pytest.mark.parametrize(
+    ("method", "options", "remedy"),
+    [
+        ("td", {}, "a smaller learning_rate helps"),
+        ("monte_carlo", {}, "a smaller learning_rate helps"),
+        ("td_lambda", {"trace_decay": 0.9}, "a smaller learning_rate, trace_decay or discount helps"),
+        (
+            "off_policy_td",
+            {"behavior": "random"},
+            "may help, but off policy this method can diverge with any: 'tdc' does",
+        ),
+        (
+            "tdc",
+            {"behavior": "random", "second_learning_rate": 2.0},
+            "a smaller learning_rate helps, and a smaller second_learning_rate if that is above it",
+        ),
+        ("emphatic_td", {"behavior": "random"}, "a smaller learning_rate or discount helps"),
+    ],
+)
+def test_values_that_diverge_are_an_error_that_says_what_helps(
+    method: Any, options: dict[str, Any], remedy: str
+) -> None:
+    given: dict[str, Any] = {**FOURIER, "learning_rate": 2.0, "episodes": 50, "max_episode_steps": 200, **options}
+    message = rf"the values diverged in episode \d+ \(counted from 0\): .*{remedy}"
+    with pytest.raises(OverflowError, match=message):
+        qtab.estimate_values(CAR, "random", method=method, order=9, scale_step_sizes=False, **given)

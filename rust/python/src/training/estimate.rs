@@ -54,9 +54,9 @@ pub(crate) fn estimate_values(
         let got = format!("{:?}", weights.shape());
         return Err(invalid("weights", format!("an array of shape {expected:?}, none of them 0"), got));
     }
-    let calls_python = prediction.calls_python();
+    let (calls_python, divergence) = (prediction.calls_python(), prediction.divergence());
     let run_spec = Arc::new(run_spec.predicting(prediction)?);
-    let estimates = Estimates { episodes, finished: &finished, room: room_of(memory) };
+    let estimates = Estimates { episodes, finished: &finished, room: room_of(memory), divergence };
     let mut rows = weights.as_slice_mut()?.chunks_mut((expected[1] * expected[2]).max(1)).enumerate();
     let check = || Ok(py.check_signals().and_then(|()| report())?);
     let env = match EnvironmentSpec::parse(&fields.nested("env")?)? {
@@ -107,6 +107,8 @@ struct Estimates<'a> {
     episodes: &'a [u64],
     finished: &'a AtomicU64,
     room: MemoryRoom,
+    /// Why the values can diverge, and what helps.
+    divergence: &'static str,
 }
 
 impl Estimates<'_> {
@@ -122,7 +124,7 @@ impl Estimates<'_> {
                 let mut counted = 0;
                 while counted < goal {
                     let budget = Budget { episodes: goal as usize, work: WORK_BETWEEN_CHECKS };
-                    run.advance(budget).map_err(|error| as_python(error, finished))?;
+                    run.advance(budget).map_err(|error| self.as_python(error, finished))?;
                     let count = run.episodes().returns.len() as u64;
                     self.finished.fetch_add(count - counted, Ordering::Relaxed);
                     counted = count;
@@ -135,16 +137,16 @@ impl Estimates<'_> {
         }
         Ok(())
     }
-}
 
-/// Converts the error of a run to a Python exception; `finished` episodes were finished before.
-fn as_python(error: RunError, finished: u64) -> PyErr {
-    match error {
-        RunError::Diverged { episode, .. } => PyOverflowError::new_err(format!(
-            "the values diverged in episode {} (counted from 0): the updates grow instead of settling; a smaller \
-             learning_rate, trace_decay or discount helps",
-            episode as u64 + finished
-        )),
-        error => error.into(),
+    /// Converts the error of a run to a Python exception; `finished` episodes were finished before.
+    fn as_python(&self, error: RunError, finished: u64) -> PyErr {
+        match error {
+            RunError::Diverged { episode, .. } => PyOverflowError::new_err(format!(
+                "the values diverged in episode {} (counted from 0): {}",
+                episode as u64 + finished,
+                self.divergence
+            )),
+            error => error.into(),
+        }
     }
 }

@@ -83,6 +83,38 @@ impl MethodSpec {
         )
     }
 
+    /// Why values of the method diverge, and what helps.
+    pub(super) fn divergence(self) -> &'static str {
+        match self {
+            Self::TdZero | Self::NStepTd { .. } | Self::MonteCarlo { .. } => {
+                "the updates grow instead of settling; a smaller learning_rate helps"
+            }
+            Self::TdLambda { .. } | Self::TrueOnlineTdLambda { .. } | Self::OfflineLambdaReturn { .. } => {
+                "the updates grow instead of settling; a smaller learning_rate, trace_decay or discount helps"
+            }
+            Self::ImportanceSampling { .. } => {
+                "the importance sampling ratios of long episodes overflow; a smaller max_episode_steps helps, or a \
+                 behavior that is more like policy"
+            }
+            Self::BatchTd => {
+                "the values of states from which no episode ends have no limit; a discount below 1 helps, or episodes \
+                 that end"
+            }
+            Self::OffPolicyTd | Self::OffPolicyTdLambda { .. } => {
+                "the updates grow instead of settling; a smaller learning_rate may help, but off policy this method can \
+                 diverge with any: 'tdc' does not if both of its learning rates are small"
+            }
+            Self::GradientTd { .. } => {
+                "the updates grow instead of settling; a smaller learning_rate helps, and a smaller \
+                 second_learning_rate if that is above it"
+            }
+            Self::EmphaticTd => {
+                "the updates or the emphasis grow instead of settling; a smaller learning_rate or discount helps"
+            }
+            Self::Lstd { .. } => "the equations have no finite solution; a larger epsilon helps",
+        }
+    }
+
     /// The method before its first episode, for so many numbered states, 0 if they are not numbered, and so many weights.
     /// `constant` makes a constant learning rate of these features.
     pub(super) fn rule(

@@ -77,6 +77,11 @@ impl PredictionSpec {
         self.method.takes_weighted()
     }
 
+    /// Why the values can diverge, and what helps.
+    pub(crate) fn divergence(&self) -> &'static str {
+        self.method.divergence()
+    }
+
     /// Whether the policies read observations instead of state numbers.
     pub(crate) fn reads_observations(&self) -> bool {
         matches!(self.policies, PoliciesSpec::OfObservations { .. })
