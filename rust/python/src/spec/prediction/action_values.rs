@@ -3,9 +3,7 @@
 use std::sync::Arc;
 
 use qtab_core::features::{ActiveFeatures, FeatureVector};
-
-/// The number of partial sums of products, which are added in the order of [`ActiveFeatures`].
-const PARTS: usize = 4;
+use qtab_core::numeric::sum_products;
 
 /// The values of an observation, added over one or several tables.
 pub(crate) struct ActionValues {
@@ -15,8 +13,6 @@ pub(crate) struct ActionValues {
     values: Vec<f64>,
     /// The values of a single table.
     of_table: Vec<f64>,
-    /// The partial sums of the products of each action.
-    parts: Vec<[f64; PARTS]>,
     /// The weighted features of the last observation; none for binary features.
     pub(super) features: Box<FeatureVector>,
 }
@@ -27,13 +23,12 @@ impl ActionValues {
     pub(super) fn new(tables: Arc<[f64]>, n_rows: usize, n_actions: usize, is_weighted: bool) -> Option<Self> {
         let features = Box::new(FeatureVector::zeros(if is_weighted { n_rows } else { 0 })?);
         let numbers = || vec![0.0; n_actions];
-        let (values, of_table, parts) = (numbers(), numbers(), vec![[0.0; PARTS]; n_actions]);
-        Some(Self { tables, n_rows, values, of_table, parts, features })
+        Some(Self { tables, n_rows, values: numbers(), of_table: numbers(), features })
     }
 
     /// Adds up some rows of each table, from left to right.
     pub(super) fn add_rows(&mut self, active: &[u32]) {
-        self.add_tables(|table, _, _, sums| {
+        self.add_tables(|table, _, sums| {
             for (index, &row) in active.iter().enumerate() {
                 let values = &table[row as usize * sums.len()..][..sums.len()];
                 if index == 0 {
@@ -47,27 +42,22 @@ impl ActionValues {
 
     /// Adds up the products of the rows of each table and the features.
     pub(super) fn add_products(&mut self) {
-        self.add_tables(|table, x, parts, sums| {
-            parts.fill([0.0; PARTS]);
-            for (index, (row, x)) in table.chunks_exact(sums.len()).zip(x).enumerate() {
-                for (parts, weight) in parts.iter_mut().zip(row) {
-                    parts[index % PARTS] += weight * x;
-                }
-            }
-            for (sum, parts) in sums.iter_mut().zip(&*parts) {
-                *sum = (parts[0] + parts[1]) + (parts[2] + parts[3]);
+        self.add_tables(|table, x, sums| {
+            let n_actions = sums.len();
+            for (action, sum) in sums.iter_mut().enumerate() {
+                [*sum] = sum_products(x, |row| [table[row * n_actions + action]]);
             }
         });
     }
 
     /// Adds the values of the tables, each of which a function writes.
-    fn add_tables(&mut self, write: impl Fn(&[f64], &[f64], &mut [[f64; PARTS]], &mut [f64])) {
-        let Self { tables, n_rows, values, of_table, parts, features } = self;
+    fn add_tables(&mut self, write: impl Fn(&[f64], &[f64], &mut [f64])) {
+        let Self { tables, n_rows, values, of_table, features } = self;
         for (index, table) in tables.chunks(*n_rows * values.len()).enumerate() {
             if index == 0 {
-                write(table, features.values(), parts, values);
+                write(table, features.values(), values);
             } else {
-                write(table, features.values(), parts, of_table);
+                write(table, features.values(), of_table);
                 values.iter_mut().zip(&*of_table).for_each(|(value, part)| *value += part);
             }
         }
