@@ -198,12 +198,10 @@ fn build_learner<R>(
 where
     R: ActiveRows + Send + 'static,
 {
-    if R::WEIGHTED && spec.prediction.is_some() {
-        return Err(invalid("policies", "those of observations for weighted features", "those of states"));
-    }
-    if let Some(prediction) = &spec.prediction
-        && !R::WEIGHTED
-    {
+    if let Some(prediction) = &spec.prediction {
+        if R::WEIGHTED {
+            return Err(invalid("policies", "those of observations for weighted features", "those of states"));
+        }
         if n_active != 1 {
             return Err(invalid("discretizer", "one with a cell for each observation", "tile coding"));
         }

@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 use pyo3::prelude::*;
 use qtab_core::StopFlag;
-use qtab_core::learners::{AnyAlgorithm, FeatureKinds, TraceKind};
+use qtab_core::learners::{AnyAlgorithm, FeatureKinds};
 use qtab_core::memory::MemoryRoom;
 use qtab_core::q_table::TerminalUpdate;
 use qtab_core::schedules::LearningRate;
@@ -188,15 +188,9 @@ impl RunSpec {
         if discretizer.weighted().is_none() {
             return Ok(());
         }
-        let replaces_traces = match algorithm {
-            AnyAlgorithm::SarsaLambda(options) | AnyAlgorithm::WatkinsQLambda(options) => {
-                options.kind != TraceKind::Accumulating
-            }
-            _ => false,
-        };
         let refused = [
-            ("traces", replaces_traces),
-            ("algorithm", algorithm.feature_kinds() != FeatureKinds::All),
+            ("traces", algorithm.feature_kinds() == FeatureKinds::Binary),
+            ("algorithm", algorithm.feature_kinds() == FeatureKinds::SingleRows),
             ("policy", matches!(policy, PolicySpec::Ucb { .. })),
             ("learning_rate", matches!(learning_rate, LearningRateSpec::Visits { .. })),
             ("initial_q", initial_q.has_masked_actions()),
