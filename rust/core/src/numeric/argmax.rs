@@ -1,7 +1,7 @@
 //! The maximum of some values, and its index.
 
 /// The index of the maximum, and of the first one if several are equal: `np.argmax` of values without NaN. With NaN the
-/// index is unspecified: a table with NaN has diverged, and its run ends.
+/// index is unspecified: a table with NaN has diverged, and its run ends. [`argmax_with_nan`] is for other values.
 ///
 /// # Panics
 /// If there are no values.
@@ -25,6 +25,14 @@ pub fn argmax(values: &[f64]) -> usize {
     best.0
 }
 
+/// `np.argmax`, with NaN too: the index of the first NaN, and without one that of the first maximum.
+///
+/// # Panics
+/// If there are no values.
+pub fn argmax_with_nan(values: &[f64]) -> usize {
+    values.iter().position(|value| value.is_nan()).unwrap_or_else(|| argmax(values))
+}
+
 /// The maximum: `np.max` of values without NaN. With NaN it is unspecified.
 #[inline]
 pub(crate) fn maximum(values: &[f64]) -> f64 {
@@ -40,5 +48,11 @@ mod tests {
         assert_eq!(argmax(&[1.0, 3.0, 3.0]), 1);
         assert_eq!(argmax(&[0.0, -0.0]), 0);
         assert_eq!(maximum(&[-2.0, -1.0, -3.0]), -1.0);
+    }
+
+    #[test]
+    fn the_first_nan_wins_where_it_counts() {
+        assert_eq!(argmax_with_nan(&[1.0, f64::NAN, f64::INFINITY, f64::NAN]), 1);
+        assert_eq!(argmax_with_nan(&[f64::NEG_INFINITY, 3.0, 3.0]), 1);
     }
 }

@@ -9,8 +9,8 @@ mod python_float;
 mod scalar;
 mod sum;
 
-pub use argmax::argmax;
 pub(crate) use argmax::maximum;
+pub use argmax::{argmax, argmax_with_nan};
 pub(crate) use cos_sin::cos_sin;
 pub use float::Float;
 pub use numpy_f32_cos_sin::numpy_f32_cos_sin;

@@ -1,10 +1,10 @@
 //! The greedy policy of learned tables.
 
 use crate::features::ActiveFeatures;
-use crate::numeric::{argmax, sum_products};
+use crate::numeric::{argmax_with_nan, sum_products};
 
-/// The greedy policy: the action with the largest value, and the first one of several. It is a copy of the learned
-/// values, so training can continue beside it.
+/// The greedy policy: the action with the largest value, and the first one of several, as by `np.argmax`, which takes the first
+/// NaN. It is a copy of the learned values, so training can continue beside it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GreedyPolicy {
     values: Vec<f64>,
@@ -43,7 +43,7 @@ impl GreedyPolicy {
     /// # Panics
     /// If a row is not in the table.
     pub fn action(&self, rows: impl ActiveFeatures) -> usize {
-        argmax(&self.action_values(rows))
+        argmax_with_nan(&self.action_values(rows))
     }
 
     /// The greedy action among the available ones, given whether each action is available.
@@ -53,7 +53,7 @@ impl GreedyPolicy {
     pub fn action_among(&self, rows: impl ActiveFeatures, available: &[bool]) -> usize {
         let mut values = self.action_values(rows);
         mask(&mut values, available);
-        argmax(&values)
+        argmax_with_nan(&values)
     }
 
     /// The action values of the state with these active rows, each the sum over the rows; with weighted features, each
@@ -93,6 +93,7 @@ fn panic_without_tables() -> ! {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::features::FeatureVector;
 
     #[test]
     fn the_first_of_the_largest_sums_is_greedy() {
@@ -100,6 +101,17 @@ mod tests {
         assert_eq!(policy.shape(), (2, 2));
         assert_eq!([policy.action([0]), policy.action([1]), policy.action([0, 1])], [0, 1, 1]);
         assert_eq!(policy.action_values([0, 1]), [2.5, 3.0]);
+    }
+
+    #[test]
+    fn a_value_that_is_not_a_number_is_followed() {
+        // ∞ - ∞ in the second column.
+        let policy = GreedyPolicy::new(&[&[1.0, f64::MAX, 1.0, f64::MAX]], 2, None);
+        let features = FeatureVector::<2>::new(&[2.0, -2.0]).expect("there is room");
+        assert!(policy.action_values(features)[1].is_nan());
+        assert_eq!(policy.action(features), 1);
+        assert_eq!(policy.action_among(features, &[true, true]), 1);
+        assert_eq!(policy.action_among(features, &[true, false]), 0);
     }
 
     #[test]

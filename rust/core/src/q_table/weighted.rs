@@ -7,8 +7,11 @@ use crate::numeric::{sum_products, sum_row_products};
 use crate::schedules::StepSize;
 
 impl<const N: usize> QTable<N> {
-    /// The action values Σᵢ wᵢ xᵢ. These functions are inlined into code for wide vector registers; WebAssembly has none, and a
-    /// module that is downloaded should be small.
+    /// The action values Σᵢ wᵢ xᵢ. Records an overflow: unlike a sum of weights, one of products can be NaN, and comparisons
+    /// would pass over it.
+    ///
+    /// These functions are inlined into code for wide vector registers; WebAssembly has none, and a module that is downloaded
+    /// should be small.
     #[cfg_attr(target_family = "wasm", inline(never))]
     #[cfg_attr(not(target_family = "wasm"), inline(always))]
     pub(super) fn weighted_action_values(&mut self, x: &[f64]) -> &[f64] {
@@ -22,6 +25,7 @@ impl<const N: usize> QTable<N> {
                 }
             }
         }
+        self.check_finite(self.sums.iter().fold(0.0, |sum, value| sum + value * 0.0));
         &self.sums
     }
 
@@ -185,6 +189,22 @@ mod tests {
             }
         }
         assert_eq!(scaled.logged().iter().count(), 1);
+    }
+
+    #[test]
+    fn an_action_value_that_overflows_is_recorded_although_comparisons_pass_over_it() {
+        for actions in 2..=5 {
+            let mut weights = vec![0.0; 3 * actions];
+            let mut table = QTable::<0>::new(weights.clone(), actions);
+            table.action_values(&features());
+            assert!(!table.diverged());
+            // ∞ - ∞ in the last column; the other values are 0.
+            (weights[actions - 1], weights[2 * actions - 1]) = (f64::MAX, f64::MAX);
+            let Some(large) = FeatureVector::<3>::new(&[2.0, -2.0, 0.0]) else { unreachable!("there is room") };
+            let mut table = QTable::<0>::new(weights, actions);
+            assert!(table.action_values(&large)[actions - 1].is_nan());
+            assert!(table.diverged());
+        }
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use qtab_core::features::{ActiveFeatures, FeatureVector};
-use qtab_core::numeric::sum_products;
+use qtab_core::numeric::{argmax_with_nan, sum_products};
 
 /// The values of an observation, added over one or several tables.
 pub(crate) struct ActionValues {
@@ -65,9 +65,7 @@ impl ActionValues {
 
     /// The action with the largest value, as by `np.argmax`, which takes the first NaN.
     pub(super) fn best(&self) -> usize {
-        let is_better = |new: f64, old: f64| new > old || new.is_nan() && !old.is_nan();
-        let values = &self.values;
-        (1..values.len()).fold(0, |best, index| if is_better(values[index], values[best]) { index } else { best })
+        argmax_with_nan(&self.values)
     }
 
     /// The number of products for an observation.
