@@ -28,4 +28,4 @@ pub use policy_task::{ActionFromTask, ObservableTask, ObservationPolicy, PolicyT
 pub use predictor::{Behavior, PredictionRule, PredictionStep, Predictor};
 pub use state_features::StateFeatures;
 pub use td_zero::TdZero;
-pub use traces::{OffPolicyTdLambda, TdLambda, TrueOnlineTdLambda};
+pub use traces::{TdLambda, TrueOnlineTdLambda};

@@ -1,10 +1,8 @@
 //! Eligibility traces of state values, and the methods with traces (Sutton & Barto, chapter 12).
 
-mod off_policy_td_lambda;
 mod td_lambda;
 mod true_online_td_lambda;
 
-pub use off_policy_td_lambda::OffPolicyTdLambda;
 pub use td_lambda::TdLambda;
 pub use true_online_td_lambda::TrueOnlineTdLambda;
 

@@ -3,7 +3,7 @@
 use pyo3::prelude::*;
 use qtab_core::StopFlag;
 use qtab_core::prediction::{
-    BatchTd, EmphaticTd, GradientTd, GradientTdKind, ImportanceSampling, Lstd, NStepTd, OffPolicyTd, OffPolicyTdLambda,
+    BatchTd, EmphaticTd, GradientTd, GradientTdKind, ImportanceSampling, Lstd, NStepTd, OffPolicyTd,
     OfflineLambdaReturn, PredictionRule, TdLambda, TdZero, TrueOnlineTdLambda,
 };
 use qtab_core::schedules::LearningRate;
@@ -135,7 +135,7 @@ impl MethodSpec {
             }
             Self::BatchTd => Box::new(BatchTd::new(weights)),
             Self::OffPolicyTd => Box::new(OffPolicyTd::new(weights)),
-            Self::OffPolicyTdLambda { trace_decay } => Box::new(OffPolicyTdLambda::new(trace_decay, weights)),
+            Self::OffPolicyTdLambda { trace_decay } => Box::new(TdLambda::off_policy(trace_decay, weights)),
             Self::GradientTd { kind, second_learning_rate } => {
                 Box::new(GradientTd::new(kind, constant(second_learning_rate), weights))
             }
