@@ -18,6 +18,10 @@ impl ScaledBox {
         BuildError::check(!low.is_empty(), "low", "the bounds of at least one component", "none")?;
         let bounds: Vec<_> = low.iter().copied().zip(high.iter().copied()).collect();
         check_bounds(bounds.iter().copied())?;
+        for (component, (low, high)) in bounds.iter().enumerate() {
+            let got = format_args!("{high} above {low} for component {component}");
+            BuildError::check((high - low).is_finite(), "high", "a finite distance above low", got)?;
+        }
         Ok(Self { bounds })
     }
 
@@ -50,5 +54,20 @@ impl ScaledBox {
             write(self.scale(axis, value.into())?, features);
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bounds_whose_difference_overflows_are_refused() {
+        let refused = ScaledBox::try_new(&[0.0, -1e308], &[1.0, 1e308]).map_err(|error| error.to_string());
+        let distant =
+            format!("high must be a finite distance above low, got {} above {} for component 1", 1e308, -1e308);
+        assert_eq!(refused, Err(distant));
+        let widest = ScaledBox::try_new(&[f64::MIN / 2.0], &[f64::MAX / 2.0]).expect("a finite difference");
+        assert_eq!([f64::MIN, 0.0, f64::INFINITY].map(|value| widest.scale(0, value)), [Ok(0.0), Ok(0.5), Ok(1.0)]);
     }
 }
