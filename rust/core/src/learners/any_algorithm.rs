@@ -211,6 +211,11 @@ impl AnyAlgorithm {
         matches!(self, Self::GradientBandit { .. } | Self::Reinforce) || self.value_learning_rate().is_some()
     }
 
+    /// Whether the learning rate can depend on the visits of each weight, which an update of several weights at once excludes.
+    pub(crate) fn takes_rates_by_visits(&self) -> bool {
+        !self.learns_preferences() && !matches!(self, Self::TrueOnlineSarsaLambda { .. })
+    }
+
     /// The algorithm with the time limit of a run, which Monte Carlo methods need.
     #[must_use]
     pub(crate) fn with_time_limit(mut self, steps: u64) -> Self {

@@ -70,6 +70,8 @@ impl<E, F> TrainerBuilder<E, F> {
         match &self.learning_rate {
             LearningRateSpec::Schedule(schedule) => self.check_schedule("learning_rate", schedule, most),
             &LearningRateSpec::Visits { value, minimum } => {
+                let fits = self.algorithm.takes_rates_by_visits();
+                BuildError::check(fits, "learning_rate", "a schedule for this algorithm", "one by visits")?;
                 BuildError::check_number("learning_rate", 0.0, most, value)?;
                 BuildError::check_number("the minimum of learning_rate", 0.0, value, minimum)
             }
