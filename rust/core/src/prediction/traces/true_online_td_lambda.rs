@@ -26,9 +26,7 @@ impl TrueOnlineTdLambda {
     pub fn new(trace_decay: f64, weights: usize) -> Self {
         Self { trace_decay, traces: StateTraces::new(weights), v_old: 0.0 }
     }
-}
 
-impl TrueOnlineTdLambda {
     /// αγλ zᵀx.
     fn reduction(&self, values: &LinearValues, state: u32, decay: f64) -> f64 {
         let traces = &self.traces.values;
