@@ -81,18 +81,6 @@ pub(super) trait EligibilityTraces {
 }
 
 impl Traces {
-    /// Samples A′ in the next state S′ and returns it with Q(S′, A′); `None` if S′ is terminal. If the episode is
-    /// truncated, A′ is sampled for its value and never taken.
-    #[inline(always)]
-    pub fn sample_next<R: ActiveFeatures>(
-        &self,
-        agent: &mut Agent,
-        next: Next<R>,
-        rng: &mut impl Rng,
-    ) -> Option<(usize, f64)> {
-        EligibilityTraces::sample_next(self, agent, next, rng)
-    }
-
     /// The trace of a weight for features `R`: [`get`](Self::get) for binary features.
     #[inline]
     pub fn get_of<R: ActiveFeatures>(&self, weight_index: usize) -> f64 {
@@ -195,3 +183,31 @@ impl EligibilityTraces for Traces {
         Self::clear(self, table);
     }
 }
+
+/// Implements what update rules with `traces` for features `R` have in common: learning with borrowed features, the work of a
+/// pass, and the places of the values.
+macro_rules! has_traces {
+    () => {
+        $crate::learners::learn_borrowed!(Agent);
+
+        #[inline]
+        fn work(&self, row_work: u64) -> u64 {
+            row_work + self.traces.pass_len_of::<R>() as u64 / $crate::learners::VALUES_PER_WORK
+        }
+
+        fn complete_tables(&mut self, agent: &mut Agent) {
+            self.traces.complete_table(&mut agent.table);
+        }
+
+        fn reserve(
+            &mut self,
+            agent: &mut Agent,
+            _work: u64,
+            _memory: &mut $crate::memory::RunMemory,
+        ) -> Result<(), $crate::memory::AllocationError> {
+            self.traces.reserve_of::<R>(&mut agent.table)
+        }
+    };
+}
+
+pub(super) use has_traces;

@@ -15,7 +15,7 @@ mod trace_vector;
 mod true_online_sarsa_lambda;
 mod watkins_q_lambda;
 
-use eligibility_traces::EligibilityTraces;
+use eligibility_traces::{EligibilityTraces, has_traces};
 pub use sarsa_lambda::SarsaLambda;
 pub use trace_vector::{TraceKind, TraceOptions, Traces};
 pub use true_online_sarsa_lambda::TrueOnlineSarsaLambda;

@@ -1,10 +1,9 @@
 //! True online Sarsa(λ), with dutch traces (H. van Seijen et al., 2016; Sutton & Barto, the box in section 12.7).
 
-use super::{EligibilityTraces, Traces};
+use super::{EligibilityTraces, Traces, has_traces};
 use crate::checkpoint::{Checkpoint, CheckpointError, Persist};
 use crate::features::ActiveFeatures;
-use crate::learners::{Agent, UpdateRule, VALUES_PER_WORK, learn_borrowed};
-use crate::memory::{AllocationError, RunMemory};
+use crate::learners::{Agent, UpdateRule};
 use crate::random::Rng;
 use crate::tasks::Next;
 
@@ -62,24 +61,11 @@ impl<R: Copy + ActiveFeatures> UpdateRule<R, Agent> for TrueOnlineSarsaLambda {
         next_action
     }
 
-    learn_borrowed!(Agent);
-
-    #[inline]
-    fn work(&self, row_work: u64) -> u64 {
-        row_work + self.traces.pass_len_of::<R>() as u64 / VALUES_PER_WORK
-    }
+    has_traces!();
 
     fn end_episode(&mut self, agent: &mut Agent) {
         self.q_old = 0.0;
         self.traces.clear_of::<R>(&mut agent.table);
-    }
-
-    fn complete_tables(&mut self, agent: &mut Agent) {
-        self.traces.complete_table(&mut agent.table);
-    }
-
-    fn reserve(&mut self, agent: &mut Agent, _work: u64, _memory: &mut RunMemory) -> Result<(), AllocationError> {
-        self.traces.reserve_of::<R>(&mut agent.table)
     }
 
     fn persist(&mut self, shape: (usize, usize), checkpoint: &mut Checkpoint<'_>) -> Result<(), CheckpointError> {
