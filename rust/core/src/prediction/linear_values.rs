@@ -83,12 +83,6 @@ impl LinearValues {
         }
     }
 
-    /// The step size shared by all weights of binary features, which the methods with traces need.
-    #[inline]
-    pub fn step_size(&self) -> f64 {
-        self.learning_rate.at(0)
-    }
-
     /// Records a divergence if an error is not a finite number.
     #[inline]
     pub fn check_finite(&mut self, error: f64) {
@@ -116,12 +110,6 @@ pub(super) fn add_scaled(weights: &mut [f64], rate: &LearningRate, error: f64, z
         let change = rate.at(0) * error;
         weights.for_each(|(weight, z)| *weight += change * z);
     }
-}
-
-/// αᵢ: the step size of a weight, for a rate that does not depend on visits.
-#[inline]
-pub(super) fn step_of(rate: &LearningRate, row: usize) -> f64 {
-    rate.of_rows().map_or_else(|| rate.at(0), |steps| steps[row])
 }
 
 #[cfg(test)]

@@ -72,10 +72,10 @@ impl LearningRate {
         self.step_size
     }
 
-    /// The step size of a row of weighted features.
+    /// The step size of a row, if it does not depend on visits.
     #[inline(always)]
-    pub(crate) fn of_row(&self, row: u32) -> f64 {
-        self.of_rows.get(row as usize).copied().unwrap_or(self.step_size)
+    pub(crate) fn of_row(&self, row: usize) -> f64 {
+        self.of_rows.get(row).copied().unwrap_or(self.step_size)
     }
 
     /// The step sizes of another learning rate, divided as this one: that which all rows share, and that of each row, which

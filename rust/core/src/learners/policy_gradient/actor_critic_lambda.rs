@@ -116,11 +116,11 @@ impl<R: Copy + ActiveFeatures> UpdateRule<R, Agent> for ActorCriticLambda {
                 *trace += self.power * part * value_of(row);
             }
         }
-        let step = agent.step_size() * error;
+        let step = agent.learning_rate.shared() * error;
         let traces = self.value_traces.iter().zip(self.preference_traces.chunks_exact(num_actions));
         for (&row, (value_trace, preference_traces)) in self.visited.iter().zip(traces) {
             let value_step = if R::WEIGHTED { self.critic.step_size_of(row) } else { self.critic.step_size };
-            let step = if R::WEIGHTED { agent.learning_rate.of_row(row) * error } else { step };
+            let step = if R::WEIGHTED { agent.learning_rate.of_row(row as usize) * error } else { step };
             self.critic.add(row, value_step * error * value_trace);
             for (action, trace) in preference_traces.iter().enumerate() {
                 *agent.table.value_mut(row, action) += step * trace;

@@ -2,7 +2,6 @@
 
 use crate::features::ActiveFeatures;
 use crate::learners::{Agent, masked_values};
-use crate::schedules::StepSize;
 
 impl Agent {
     /// The components of ∇ln π(A | S), one per action. They are the same for each active row, and multiplied by its value for
@@ -17,12 +16,12 @@ impl Agent {
     #[inline]
     pub(in crate::learners) fn ascend<R: ActiveFeatures>(&mut self, rows: R, action: usize, scale: f64) {
         self.table.check_finite(scale);
-        let step = self.step_size() * scale;
+        let step = self.learning_rate.shared() * scale;
         let values = masked_values::<0>(&mut self.masks, rows.as_ref(), self.table.action_values(&rows));
         let gradient = self.policy.log_gradient(values, action);
         if R::WEIGHTED {
             for (&row, x) in rows.as_ref().iter().zip(rows.values()) {
-                let step = self.learning_rate.of_row(row) * scale;
+                let step = self.learning_rate.of_row(row as usize) * scale;
                 for (preference, part) in self.table.row_mut(row).iter_mut().zip(gradient) {
                     *preference += step * part * x;
                 }
@@ -34,11 +33,5 @@ impl Agent {
                 *preference += step * part;
             }
         }
-    }
-
-    /// The step size α, divided by the number of active rows.
-    #[inline]
-    pub(in crate::learners) fn step_size(&self) -> f64 {
-        self.learning_rate.uniform().unwrap_or_default()
     }
 }

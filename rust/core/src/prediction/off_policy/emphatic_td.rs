@@ -1,7 +1,6 @@
 //! One-step emphatic TD (R. Sutton, A. Mahmood and M. White, 2016; Sutton & Barto, section 11.8).
 
 use super::feature_counts::FeatureCounts;
-use crate::prediction::linear_values::step_of;
 use crate::prediction::{LinearValues, PredictionRule, PredictionStep};
 
 /// With the emphasis M, an interest of 1 in every state, and the ratios ρ = π(A|S) / b(A|S) of this step and ρ₋ of the step
@@ -32,7 +31,7 @@ impl PredictionRule for EmphaticTd {
         let error = values.td_error(step.state, step.reward, step.next);
         let LinearValues { weights, features, learning_rate, .. } = values;
         self.counts.for_each(features, step.state, None, |row, x, _| {
-            weights[row] += step_of(learning_rate, row) * self.emphasis * step.ratio * error * x;
+            weights[row] += learning_rate.of_row(row) * self.emphasis * step.ratio * error * x;
         });
     }
 

@@ -2,7 +2,6 @@
 //! with linear function approximation", 2009; Sutton & Barto, section 11.7).
 
 use super::feature_counts::FeatureCounts;
-use crate::prediction::linear_values::step_of;
 use crate::prediction::{LinearValues, PredictionRule, PredictionStep};
 use crate::schedules::LearningRate;
 use crate::tasks::Next;
@@ -52,12 +51,12 @@ impl PredictionRule for GradientTd {
         let Self { kind, v, second_rate, counts } = self;
         let ratio = step.ratio;
         counts.for_each(features, step.state, next, |row, x, next_x| {
-            let change = step_of(learning_rate, row) * ratio;
+            let change = learning_rate.of_row(row) * ratio;
             weights[row] += match kind {
                 GradientTdKind::Gtd2 => change * (x - *discount * next_x) * correction,
                 GradientTdKind::Tdc => change * (error * x - *discount * next_x * correction),
             };
-            v[row] += step_of(second_rate, row) * ratio * (error - correction) * x;
+            v[row] += second_rate.of_row(row) * ratio * (error - correction) * x;
         });
     }
 

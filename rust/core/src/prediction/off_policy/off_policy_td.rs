@@ -1,7 +1,6 @@
 //! Off-policy semi-gradient TD(0) (Sutton & Barto, equation 11.2).
 
 use super::feature_counts::FeatureCounts;
-use crate::prediction::linear_values::step_of;
 use crate::prediction::{LinearValues, PredictionRule, PredictionStep};
 
 /// w ← w + α ρ δ ∇v(S) with ρ = π(A|S) / b(A|S) and δ = R + γ v(S′) - v(S). It may diverge with function approximation.
@@ -22,7 +21,7 @@ impl PredictionRule for OffPolicyTd {
         let error = values.td_error(step.state, step.reward, step.next);
         let LinearValues { weights, features, learning_rate, .. } = values;
         self.counts.for_each(features, step.state, None, |row, x, _| {
-            weights[row] += step_of(learning_rate, row) * step.ratio * error * x;
+            weights[row] += learning_rate.of_row(row) * step.ratio * error * x;
         });
     }
 

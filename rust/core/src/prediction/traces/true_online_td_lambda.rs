@@ -2,7 +2,6 @@
 
 use super::StateTraces;
 use crate::numeric::sum_products;
-use crate::prediction::linear_values::step_of;
 use crate::prediction::{LinearValues, PredictionRule, PredictionStep};
 
 /// With the weights w, the traces z, the features x of S, V = wᵀx and V′ = wᵀx′:
@@ -31,10 +30,10 @@ impl TrueOnlineTdLambda {
     fn reduction(&self, values: &LinearValues, state: u32, decay: f64) -> f64 {
         let traces = &self.traces.values;
         if let Some(x) = values.features.vector(state) {
-            return decay * sum_products(x, |row| [step_of(&values.learning_rate, row) * traces[row]])[0];
+            return decay * sum_products(x, |row| [values.learning_rate.of_row(row) * traces[row]])[0];
         }
         let overlap = values.features.of(state).iter().fold(0.0, |sum, &row| sum + traces[row as usize]);
-        values.step_size() * decay * overlap
+        values.learning_rate.shared() * decay * overlap
     }
 }
 
@@ -53,10 +52,10 @@ impl PredictionRule for TrueOnlineTdLambda {
         self.traces.apply(weights, learning_rate, error + change);
         if let Some(x) = features.vector(step.state) {
             for (row, (weight, x)) in weights.iter_mut().zip(x).enumerate() {
-                *weight -= step_of(learning_rate, row) * change * x;
+                *weight -= learning_rate.of_row(row) * change * x;
             }
         } else {
-            let reduced = step_of(learning_rate, 0) * change;
+            let reduced = learning_rate.shared() * change;
             for &row in features.of(step.state) {
                 weights[row as usize] -= reduced;
             }
