@@ -7,34 +7,34 @@ use crate::numeric::{argmax_with_nan, sum_products};
 /// NaN. It is a copy of the learned values, so training can continue beside it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GreedyPolicy {
-    values: Vec<f64>,
+    /// The tables whose action values are added.
+    tables: Vec<Vec<f64>>,
     num_actions: usize,
 }
 
 impl GreedyPolicy {
-    /// The policy that maximizes the sum of some tables, given row by row, over the available actions. `masks` holds
-    /// whether each action is available in each row; masks of another size, as learners have with several active rows,
-    /// are ignored.
+    /// The policy that maximizes the sum of the action values of some tables, given row by row, over the available actions.
+    /// `masks` holds whether each action is available in each row; masks of another size, as learners have with several
+    /// active rows, are ignored.
     ///
     /// # Panics
     /// If there is no table, if the tables differ in size, or if they have no rows of `num_actions` values.
     pub fn new(tables: &[&[f64]], num_actions: usize, masks: Option<&[bool]>) -> Self {
         let [first, others @ ..] = tables else { panic_without_tables() };
         assert!(num_actions > 0 && first.len().is_multiple_of(num_actions), "a row must have {num_actions} values");
-        let mut values = first.to_vec();
-        for table in others {
-            assert!(table.len() == values.len(), "the tables must have the same size");
-            values.iter_mut().zip(*table).for_each(|(sum, value)| *sum += value);
+        assert!(others.iter().all(|table| table.len() == first.len()), "the tables must have the same size");
+        let mut tables: Vec<_> = tables.iter().map(|table| table.to_vec()).collect();
+        if let Some(masks) = masks.filter(|masks| masks.len() == first.len()) {
+            for table in &mut tables {
+                mask(table, masks);
+            }
         }
-        if let Some(masks) = masks.filter(|masks| masks.len() == values.len()) {
-            mask(&mut values, masks);
-        }
-        Self { values, num_actions }
+        Self { tables, num_actions }
     }
 
     /// The number of rows and of actions.
     pub fn shape(&self) -> (usize, usize) {
-        (self.values.len() / self.num_actions, self.num_actions)
+        (self.tables[0].len() / self.num_actions, self.num_actions)
     }
 
     /// The greedy action of the state with these active rows, which
@@ -57,25 +57,39 @@ impl GreedyPolicy {
     }
 
     /// The action values of the state with these active rows, each the sum over the rows; with weighted features, each
-    /// row is multiplied by its value.
+    /// row is multiplied by its value. Those of several tables are added, as a learner with two tables adds them.
     ///
     /// # Panics
     /// As for `action`.
     pub fn action_values<R: ActiveFeatures>(&self, rows: R) -> Vec<f64> {
-        if R::WEIGHTED {
-            let value = |row: usize, action: usize| self.values[row * self.num_actions + action];
-            return (0..self.num_actions)
-                .map(|action| sum_products(rows.values(), |row| [value(row, action)])[0])
-                .collect();
-        }
-        let mut sums = vec![0.0; self.num_actions];
-        for (index, &row) in rows.as_ref().iter().enumerate() {
-            let row = &self.values[row as usize * self.num_actions..][..self.num_actions];
-            // A sum that begins with a value keeps the sign of its zero.
-            sums.iter_mut().zip(row).for_each(|(sum, value)| *sum = if index == 0 { *value } else { *sum + value });
+        let mut tables = self.tables.iter().map(|table| self.values_in(table, &rows));
+        let mut sums = tables.next().unwrap_or_default();
+        for values in tables {
+            add(&mut sums, &values);
         }
         sums
     }
+
+    /// The action values of a table.
+    fn values_in<R: ActiveFeatures>(&self, table: &[f64], rows: &R) -> Vec<f64> {
+        if R::WEIGHTED {
+            let weight = |row: usize, action: usize| table[row * self.num_actions + action];
+            let value = |action| sum_products(rows.values(), |row| [weight(row, action)])[0];
+            return (0..self.num_actions).map(value).collect();
+        }
+        let mut rows = rows.as_ref().iter().map(|&row| &table[row as usize * self.num_actions..][..self.num_actions]);
+        // A sum that begins with a value keeps the sign of its zero.
+        let mut sums = rows.next().map_or_else(|| vec![0.0; self.num_actions], <[f64]>::to_vec);
+        for row in rows {
+            add(&mut sums, row);
+        }
+        sums
+    }
+}
+
+/// Adds numbers to sums.
+fn add(sums: &mut [f64], numbers: &[f64]) {
+    sums.iter_mut().zip(numbers).for_each(|(sum, number)| *sum += number);
 }
 
 /// Replaces the values of unavailable actions by -∞.
@@ -101,6 +115,16 @@ mod tests {
         assert_eq!(policy.shape(), (2, 2));
         assert_eq!([policy.action([0]), policy.action([1]), policy.action([0, 1])], [0, 1, 1]);
         assert_eq!(policy.action_values([0, 1]), [2.5, 3.0]);
+    }
+
+    #[test]
+    fn the_values_of_several_tables_are_added_after_those_of_the_rows() {
+        let policy = GreedyPolicy::new(&[&[0.1, 0.2], &[0.3, 0.7]], 1, None);
+        // 1.3, whereas (0.1 + 0.3) + (0.2 + 0.7) is 1.2999999999999998.
+        assert_eq!(policy.action_values([0, 1]), [(0.1 + 0.2) + (0.3 + 0.7)]);
+        let features = FeatureVector::<2>::new(&[1.5, -0.3]).expect("there is room");
+        let expected = (0.1 * 1.5 + 0.2 * -0.3) + (0.3 * 1.5 + 0.7 * -0.3);
+        assert_eq!(policy.action_values(features), [expected]);
     }
 
     #[test]
