@@ -33,8 +33,8 @@ pub fn sum_products<const A: usize>(x: &[f64], weights: impl Fn(usize) -> [f64; 
     add_parts(parts)
 }
 
-/// [`sum_products`] with as many rows of weights as features, of each of which `pick` takes `A` columns. Whole blocks of rows
-/// are read without a check of their bounds, and the products of a block fit into vector registers.
+/// [`sum_products`] with a row of weights for each feature; `pick` takes `A` columns of a row. Whole blocks of rows are read
+/// without a check of their bounds, and the products of a block fit into vector registers.
 #[inline(always)]
 pub(crate) fn sum_row_products<const N: usize, const A: usize>(
     x: &[f64],

@@ -89,12 +89,12 @@ impl LinearValues {
         self.diverged |= !error.is_finite();
     }
 
-    /// Records that the values will never settle.
+    /// Records a divergence that no error shows: values that never settle, or equations without a solution.
     pub fn give_up(&mut self) {
         self.diverged = true;
     }
 
-    /// Whether a value has overflowed, or the values will never settle.
+    /// Whether a divergence was recorded.
     pub fn diverged(&self) -> bool {
         self.diverged
     }

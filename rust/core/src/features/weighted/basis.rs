@@ -1,7 +1,7 @@
 //! `Features` for a basis.
 
-/// Implements [`Features`](crate::features::Features) for a type `$basis<T, M>` by its methods `n_features` and `write`, and
-/// by one that returns the divisors of the step sizes, if these differ. Components of observations have the dtype `T`, and
+/// Implements [`Features`](crate::features::Features) for a type `$basis<T, M>` with its methods `n_features` and `write`,
+/// and one that returns the divisors of the step sizes, if these differ. Components of observations have the dtype `T`, and
 /// there is room for `M` features.
 macro_rules! features_of_basis {
     ($basis:ident $(, $divisors:ident)?) => {

@@ -31,9 +31,9 @@ impl<T: Float, const M: usize> CoarseCoding<T, M> {
     /// neighboring centers.
     ///
     /// # Errors
-    /// If the lengths differ, the bounds are not finite and in order, a component has fewer than 2 centers, observations
-    /// would lie within no receptive field, or all within all of them, or there would be more than `M` features, or more
-    /// than [`MAX_FEATURES`].
+    /// If the lengths differ, the bounds are not finite and in order, a component has fewer than 2 centers, some
+    /// observation would lie in no receptive field, or every receptive field would contain the whole box, or there would be
+    /// more than `M` features, or more than [`MAX_FEATURES`].
     pub fn try_new(low: &[f64], high: &[f64], centers: &[u32], radius: &[f64]) -> Result<Self, BuildError> {
         let grid = CenterGrid::try_new((low, high), centers, ("radius", radius), M.min(MAX_FEATURES))?;
         let is_finite = radius.iter().all(|&radius| radius.is_finite() && radius > 0.0);
@@ -47,7 +47,7 @@ impl<T: Float, const M: usize> CoarseCoding<T, M> {
         let expected = "large enough that every observation lies within a receptive field";
         BuildError::check(covers, "radius", expected, format_args!("{radius:?}"))?;
         let differ = squared(|count| f64::from(count - 1)) > 1.0;
-        let expected = "small enough that receptive fields do not all contain the whole box";
+        let expected = "small enough that not every receptive field contains the whole box";
         BuildError::check(differ, "radius", expected, format_args!("{radius:?}"))?;
         Ok(Self { grid, dtype: PhantomData })
     }
@@ -106,13 +106,13 @@ mod tests {
     }
 
     #[test]
-    fn a_radius_without_sense_is_refused_by_name() {
+    fn invalid_radii_are_refused_by_name() {
         let error = |radius: &[f64]| {
             let refused = CoarseCoding::<f64, 64>::try_new(&[0.0; 2], &[1.0; 2], &[3, 5], radius);
             refused.expect_err("an invalid radius").to_string()
         };
         assert!(error(&[0.7, 0.7]).starts_with("radius must be large enough that every observation"));
-        assert!(error(&[9.0, 9.0]).starts_with("radius must be small enough that receptive fields"));
+        assert!(error(&[9.0, 9.0]).starts_with("radius must be small enough that not every receptive field"));
         assert!(error(&[0.0, 1.0]).starts_with("radius must be finite numbers above 0, got [0.0, 1.0]"));
         assert!(error(&[f64::NAN, 1.0]).starts_with("radius must be finite"));
         assert!(CoarseCoding::<f64, 64>::try_new(&[0.0; 2], &[1.0; 2], &[3, 5], &[0.71, 0.71]).is_ok());

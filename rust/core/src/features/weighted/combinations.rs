@@ -4,7 +4,7 @@ use super::scaled_box::ScaledBox;
 use crate::features::OutOfBounds;
 use crate::numeric::Float;
 
-/// The room for the numbers of a component of small bases. It is cleared at every step, so less is faster.
+/// The capacity for the numbers of a component of a small basis. It is cleared at every step, so less is faster.
 pub(super) const SMALL: usize = 16;
 
 /// All combinations of one of `counts[j]` numbers of each component j, in C order.
@@ -12,7 +12,7 @@ pub(super) const SMALL: usize = 16;
 pub(super) struct Combinations {
     counts: Vec<usize>,
     len: usize,
-    /// Whether [`SMALL`] numbers are room enough for those of a component.
+    /// Whether no component has more than [`SMALL`] numbers.
     is_small: bool,
 }
 

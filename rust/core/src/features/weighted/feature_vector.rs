@@ -17,7 +17,7 @@ static ROWS: [u32; MAX_FEATURES] = {
 };
 
 /// The values xᵢ(s) of the features of an observation: feature i belongs to row i. `M` is the capacity, at most
-/// [`MAX_FEATURES`]: values are copied at every step, so a smaller capacity is faster.
+/// [`MAX_FEATURES`]: a state takes the memory of `M` values, so a smaller capacity is faster.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FeatureVector<const M: usize = MAX_FEATURES> {
     values: [f64; M],

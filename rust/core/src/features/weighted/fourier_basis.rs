@@ -28,7 +28,7 @@ pub struct FourierBasis<T = f64, const M: usize = MAX_FEATURES> {
     scaled: ScaledBox,
     frequencies: MultiIndices,
     scales_step_sizes: bool,
-    /// Whether [`SMALL`] numbers are room enough for the powers and their products, as for up to 16² features of two
+    /// Whether there are at most [`SMALL`] powers and as many of their products, as for up to 16² features of two
     /// components.
     is_small: bool,
     dtype: PhantomData<T>,
@@ -214,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn a_basis_without_sense_is_refused_by_name() {
+    fn an_invalid_basis_is_refused_by_name() {
         let error = |low: &[f64], high: &[f64], order, coupled| {
             let refused = FourierBasis::<f64, 64>::try_new(low, high, order, coupled, true);
             refused.expect_err("an invalid basis").to_string()

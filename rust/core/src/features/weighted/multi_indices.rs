@@ -84,7 +84,7 @@ mod tests {
     }
 
     #[test]
-    fn orders_without_sense_are_refused_by_name() {
+    fn invalid_orders_are_refused_by_name() {
         let error = |dimensions, order, coupled| {
             MultiIndices::try_new(dimensions, order, coupled, 64).expect_err("an invalid order").to_string()
         };

@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn a_basis_without_sense_is_refused_by_name() {
+    fn an_invalid_basis_is_refused_by_name() {
         let error = |high: f64, order| {
             let refused = PolynomialBasis::<f64, 64>::try_new(&[0.0; 2], &[1.0, high], order, true);
             refused.expect_err("an invalid basis").to_string()

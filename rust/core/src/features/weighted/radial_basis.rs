@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn a_basis_without_sense_is_refused_by_name() {
+    fn an_invalid_basis_is_refused_by_name() {
         let error = |centers: &[u32], width: &[f64]| {
             let refused = Basis::try_new(&[0.0; 2], &[1.0; 2], centers, width, false);
             refused.expect_err("an invalid basis").to_string()
