@@ -116,8 +116,8 @@ fn what_does_not_fit_is_refused_by_name() {
     let softmax = || lake().policy(PolicySpec::Softmax { temperature: 1.0 });
     let true_online = AnyAlgorithm::TrueOnlineSarsaLambda { trace_decay: 0.9, trace_cutoff: 0.0 };
     for run in [lake().algorithm(true_online), softmax().algorithm(AnyAlgorithm::Reinforce)] {
-        let by_visits = message(run.learning_rate(LearningRateSpec::by_visit_count(1.0, 0.0)));
-        assert_eq!(by_visits, "learning_rate must be a schedule for this algorithm, got one by visits");
+        let by_visit_count = message(run.learning_rate(LearningRateSpec::by_visit_count(1.0, 0.0)));
+        assert_eq!(by_visit_count, "learning_rate must be a schedule for this algorithm, got one by visits");
     }
     let ucb = PolicySpec::Ucb { confidence: 2.0, ties: TieBreaking::First };
     assert!(message(car().policy(ucb)).starts_with("policy must be one without counts"));
