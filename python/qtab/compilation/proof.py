@@ -19,6 +19,8 @@ STEPS = 2000
 """The steps for each seed."""
 LONGEST_EPISODE = 200
 """The steps after which an episode of an even seed is reset; those of odd seeds end only in terminal states."""
+FAILED_RESETS = 20
+"""The resets that may fail before the first one that does not, as they draw other random numbers."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +54,7 @@ def prove(twin: Any, compiled: CompiledEnv, parameters: NDArray[np.uint8], funct
     Raises:
         NotCompilable: at the first difference; it names the numbers, the likely line and what to write instead. Also
             if compiled code changes the parameters, which several runs may share.
-        NotNow: if a reset fails, so that nothing can be compared.
+        NotNow: if resets fail again and again, so that nothing can be compared.
     """
     before = parameters.tobytes()
     with warnings.catch_warnings(), np.errstate(all="ignore"):
@@ -76,7 +78,7 @@ def _compare(
     rng = np.random.Generator(np.random.PCG64(seed))
     stepper = Stepper(compiled, parameters, np.random.PCG64(seed))
     choose = np.random.default_rng(seed + 1000)
-    episode, step = 0, -1
+    episode, step, failed_resets = 0, -1, 0
     for _ in range(STEPS):
         if step < 0:
             episode, step = episode + 1, 0
@@ -92,7 +94,8 @@ def _compare(
             if code == FAILED:
                 # The state in Python may have changed; both start again with equal generators.
                 rng.bit_generator.state = stepper.bit_generator.state
-                if step == 0:
+                failed_resets += step == 0
+                if failed_resets == episode == FAILED_RESETS:
                     failure: Exception = numbers
                     return failure
             step = -1

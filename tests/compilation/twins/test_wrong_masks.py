@@ -76,6 +76,15 @@ class Counts(Method):
         return np.array([True, True])
 
 
+class Walled(Method):
+    """Begins in a cell without actions at times."""
+
+    def reset(self, *, seed=None, options=None):
+        super().reset(seed=seed)
+        self.cell = int(self.np_random.integers(14))
+        return self.cell, {}
+
+
 @pytest.fixture(autouse=True)
 def _files_of_code(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
@@ -97,7 +106,9 @@ def test_the_error_is_that_of_python(cls: Any, message: str) -> None:
     assert errors[0] == errors[1]
 
 
-@pytest.mark.parametrize(("cls", "action_mask"), [(Method, False), (Raises, False), (RaisesAtTheEnd, True)])
+@pytest.mark.parametrize(
+    ("cls", "action_mask"), [(Method, False), (Raises, False), (RaisesAtTheEnd, True), (Walled, False)]
+)
 def test_masks_that_python_does_not_read_are_not_read(cls: Any, action_mask: bool) -> None:
     runs = [qtab.train(cls(), action_mask=action_mask, backend=one, **SETTINGS) for one in ("numba", "python")]
     assert runs[0].config.backend == "numba"
