@@ -208,7 +208,7 @@ class Program:
         if isinstance(fixed, tuple | list):
             parts = tuple(self.lift(Value(fixed=part), refuse) for part in fixed)
             return tuple_value(parts)
-        if type(fixed) is dict and fixed and all(isinstance(key, str) for key in fixed):
+        if type(fixed) is dict and all(isinstance(key, str) for key in fixed):
             made = tuple_value(tuple(self.lift(Value(fixed=part), refuse) for part in fixed.values()))
             return Value(DictKind(tuple(fixed), made.kind.items), made.code, parts=made.parts)
         if fixed is None:

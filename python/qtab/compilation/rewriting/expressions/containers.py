@@ -102,6 +102,8 @@ def element(scope: "Expressions", node: ast.Subscript, base: Value) -> Value:
 def array_index(scope: "Expressions", node: ast.Subscript, kind: Array) -> tuple[str, int, tuple[int, ...] | None]:
     """Returns the code of an array's index, the dimensions that are left, and the shape of the part if it is known."""
     items = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
+    if not items:
+        raise scope.refuse(node, "an empty index of an array", "write array[:]")
     codes: list[str] = []
     left: list[int | None] = []
     position = 0

@@ -30,7 +30,7 @@ class Displays(Expressions):
         if not all(key.is_fixed and isinstance(key.fixed, str | int) for key in keys):
             raise self.refuse(node, "a dict with keys that are not constant", "use a NumPy array indexed by integers")
         names = tuple(key.fixed for key in keys)
-        if parts and all(part.is_fixed for part in parts):
+        if all(part.is_fixed for part in parts):
             return constant(dict(zip(names, (part.fixed for part in parts), strict=True)))
         lifted = tuple_value(tuple(self.lift(part, node) for part in parts))
         return Value(DictKind(names, lifted.kind.items), lifted.code, parts=lifted.parts)

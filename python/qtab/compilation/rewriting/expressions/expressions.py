@@ -194,6 +194,8 @@ class Expressions(Scope):
                         parts.append(value)
                     break
                 continue
+            if not parts and i == len(node.values) - 1 and not is_test:
+                return value
             assigned = set(self.flow.assigned)
             parts.append(self.test(one))
             if i:

@@ -216,6 +216,18 @@ def _round(scope: "Expressions", node: ast.Call, values: list[Value], named: dic
     )
 
 
+def _divmod(scope: "Expressions", node: ast.Call, values: list[Value], named: dict[str, Value]) -> Value:
+    if all(value.is_fixed for value in values) and not named:
+        return scope.folded(node, divmod, *[value.fixed for value in values])
+    lifted = [scope.lift(value, node) for value in values]
+    if named or [value.kind for value in lifted] != [INT, INT]:
+        raise scope.refuse(node, "divmod of something other than two integers", "write x // y and x % y")
+    for value in lifted:
+        scope.no_effects(value, node, "a call whose result is used several times")
+    left, right = (value.code for value in lifted)
+    return tuple_value((Value(INT, f"({left} // {right})"), Value(INT, f"({left} % {right})")))
+
+
 def _isinstance(scope: "Expressions", node: ast.Call, values: list[Value], named: dict[str, Value]) -> Value:
     if len(values) == 2 and not named and values[0].is_fixed and values[1].is_fixed:
         return scope.folded(node, isinstance, values[0].fixed, values[1].fixed)
@@ -242,9 +254,10 @@ TABLE: dict[Any, Handler] = {
     list: _sequence(list),
     round: _round,
     isinstance: _isinstance,
+    divmod: _divmod,
     dict: _dict,
     **{getattr(builtins, name): _folded(getattr(builtins, name)) for name in
-       ("enumerate", "zip", "reversed", "range", "sorted", "set", "frozenset", "divmod", "pow", "str", "repr",
+       ("enumerate", "zip", "reversed", "range", "sorted", "set", "frozenset", "pow", "str", "repr",
         "getattr", "hasattr", "type", "map", "filter")},
 }  # fmt: skip
 """The functions by object."""

@@ -45,6 +45,7 @@ def draw(scope: "Expressions", node: ast.Call, name: str) -> Value:
         if size.kind == INT:
             shape = (size.fixed,) if isinstance(size.fixed, int) else None
             return Value(Array("int64", 1, shape), f"rng.permutation({size.code})", fresh=True)
+        raise scope.refuse(node, f"permutation of {in_words(size.kind)}", "draw the indices with permutation(n)")
     if name not in DRAWS:
         advice = "use random, uniform, normal, integers, choice, permutation, exponential, poisson or binomial"
         raise scope.refuse(node, f"Generator.{name} cannot be compiled with the same draws", advice)

@@ -77,6 +77,8 @@ def _is_reference(node: ast.expr) -> bool:
     """Returns whether an expression may be an object that has another name."""
     if isinstance(node, ast.IfExp):
         return _is_reference(node.body) or _is_reference(node.orelse)
+    if isinstance(node, ast.BoolOp):
+        return any(map(_is_reference, node.values))
     return isinstance(node, ast.Name | ast.Attribute | ast.Subscript)
 
 
@@ -214,6 +216,9 @@ def scalar_name(value: Value) -> str:
 
 def _check_in_place(scope: "Statements", node: ast.AST, before: Value, after: Value) -> None:
     shapes = before.kind.shape, after.kind.shape if isinstance(after.kind, Array) else None
-    if after.kind.dtype != before.kind.dtype or None in shapes or shapes[0] != shapes[1]:
+    if after.kind.dtype == before.kind.dtype and None in shapes:
+        advice = "write a loop over the elements"
+        raise scope.refuse(node, "a part of an array whose size is not known is changed in place", advice)
+    if after.kind.dtype != before.kind.dtype or shapes[0] != shapes[1]:
         advice = "write x = x + y"
         raise scope.refuse(node, f"{in_words(before.kind)} becomes {in_words(after.kind)} in place", advice)

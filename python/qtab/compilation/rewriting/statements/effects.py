@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 PURE_BUILTINS = (
     *("abs", "all", "any", "bool", "dict", "divmod", "enumerate", "float", "frozenset", "getattr", "hasattr", "int"),
     *("isinstance", "len", "list", "max", "min", "pow", "range", "repr", "reversed", "round", "set", "sorted", "str"),
-    *("sum", "tuple", "type", "zip", "map", "filter"),
+    *("sum", "tuple", "type", "zip", "map", "filter", "bin"),
 )
 PURE_METHODS = (
     *("all", "any", "argmax", "argmin", "astype", "copy", "count", "flatten", "format", "get", "index", "item"),

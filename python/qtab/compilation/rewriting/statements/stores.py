@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from qtab.compilation.rewriting import specials
 from qtab.compilation.rewriting.expressions import containers
+from qtab.compilation.rewriting.library import arrays
 from qtab.compilation.rewriting.statements.left_out import note_attribute, note_kind
 from qtab.compilation.rewriting.statements.variables import in_variables, is_simple
 from qtab.compilation.rewriting.values import (
@@ -82,6 +83,8 @@ def store_element(scope: "Statements", node: ast.stmt, target: ast.Subscript, va
         return
     code, left, shape = containers.array_index(scope, target, base.kind)
     value = scope.lift(value, node)
+    if isinstance(value.kind, TupleKind) and left == 1:
+        value = arrays.make(scope, node, value, base.kind.dtype)
     scalar = scalar_of(base.kind.dtype)
     source = base.raw or base.code
     if isinstance(value.kind, Array) and left:
@@ -120,7 +123,7 @@ def changeable(scope: "Statements", node: ast.stmt, target: ast.Subscript) -> Va
             known = scope.program.attributes
             known.note_assigned(base.attr)
             copies, scope.copies_state = scope.copies_state, False
-            whole = isinstance(target.slice, ast.Slice) and ast.unparse(target.slice) == ":"
+            whole = ":" in (text := ast.unparse(target.slice)) and set(text) <= set("(:, )")
             value = scope.load_state(base.attr, base, not whole)
             scope.program.stored.add(base.attr)
             if whole:
