@@ -261,3 +261,9 @@ def test_a_function_that_reads_rows_refuses_the_run() -> None:
 def test_a_step_size_that_diverges_is_named() -> None:
     with pytest.raises(OverflowError, match=r"learning_rate"):
         qtab.train(CAR, episodes=200, order=9, scale_step_sizes=False, **{**FOURIER, "learning_rate": 1.5})
+
+
+def test_action_values_that_are_infinite_or_no_numbers_are_an_error() -> None:
+    # Comparisons would pass over the NaN of ∞ - ∞; NumPy's argmax does not.
+    with pytest.raises(OverflowError, match="^the action values overflowed in episode 0"):
+        qtab.train(CAR, episodes=3, **{**FOURIER, "initial_q": 1e308})
