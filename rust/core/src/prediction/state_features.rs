@@ -120,12 +120,6 @@ impl StateFeatures {
         self.is_weighted
     }
 
-    /// Whether each state has one active row, so that its value is a weight.
-    #[inline]
-    pub fn has_single_rows(&self) -> bool {
-        self.has_single_rows
-    }
-
     /// The active rows of a state with binary features.
     #[inline]
     pub fn of(&self, state: u32) -> &[u32] {
@@ -136,6 +130,12 @@ impl StateFeatures {
     #[inline]
     pub fn first(&self, state: u32) -> usize {
         self.rows[state as usize * self.n_active] as usize
+    }
+
+    /// The row of a state if each state has one active row, so that its value is a weight; `None` otherwise.
+    #[inline]
+    pub fn single_row(&self, state: u32) -> Option<usize> {
+        self.has_single_rows.then(|| self.rows[state as usize] as usize)
     }
 
     /// The values of a state with weighted features; `None` for binary ones.
@@ -245,7 +245,7 @@ mod tests {
     #[test]
     fn a_single_weighted_feature_is_no_table() {
         let Some(features) = StateFeatures::weighted(vec![2.0, -3.0], 1) else { unreachable!("they fit") };
-        assert!(!features.has_single_rows());
+        assert_eq!(features.single_row(0), None);
         assert_eq!((features.num_states(), features.n_weights(), features.n_active()), (2, 1, 1));
         assert_eq!(features.dot(1, &[0.5]), -1.5);
         assert_eq!(StateFeatures::weighted(vec![f64::NAN], 1), None);
