@@ -51,23 +51,24 @@ impl TieBreaking {
     #[inline]
     pub(super) fn expected_value(self, epsilon: f64, values: impl Iterator<Item = f64> + Clone) -> f64 {
         let largest = values.clone().reduce(|largest, value| if value > largest { value } else { largest });
-        let is_largest = |value| value == largest.unwrap_or(f64::NAN);
+        let largest = largest.unwrap_or(f64::NAN);
         let other = epsilon / values.clone().count() as f64;
+        // The closures own their numbers: references would be read from memory for every action.
         match self {
             Self::First => {
                 let (greedy, mut found) = (other + (1.0 - epsilon), false);
-                sum(values.map(|value| {
-                    let first = is_largest(value) && !found;
+                sum(values.map(move |value| {
+                    let first = value == largest && !found;
                     found |= first;
                     (if first { greedy } else { other }) * value
                 }))
             }
             Self::Random => {
-                let ties = values.clone().filter(|&value| is_largest(value)).count();
+                let ties = values.clone().filter(|&value| value == largest).count();
                 // Skips a division by 1, which takes time.
                 let share = if ties == 1 { 1.0 - epsilon } else { (1.0 - epsilon) / ties as f64 };
                 let greedy = other + share;
-                sum(values.map(|value| select_unpredictable(is_largest(value), greedy, other) * value))
+                sum(values.map(move |value| select_unpredictable(value == largest, greedy, other) * value))
             }
         }
     }
