@@ -98,6 +98,12 @@ impl<const N: usize> QTable<N> {
         target: f64,
         step_size: &mut impl StepSize,
     ) {
+        // The only row is looked up once.
+        if let (&[row], Some(step)) = (rows.as_ref(), step_size.uniform()) {
+            let value = self.value_mut(row, action);
+            *value += step * (target - *value);
+            return;
+        }
         let error = target - self.value(rows, action);
         let rows = rows.as_ref();
         if rows.len() != 1 {
