@@ -95,7 +95,8 @@ impl<const N: usize, P: Policy, A: StepSize> Agent<N, P, A> {
         }
     }
 
-    /// A random available action. It is a separate function, so that the case without masks is inlined.
+    /// A random available action. It is a separate function, so that the case without masks is inlined, and marked as cold,
+    /// so that this case keeps its registers: otherwise Dyna-Q+ takes 2 % more instructions.
     #[cold]
     fn sample_available_action(&mut self, rows: impl ActiveFeatures, rng: &mut impl Rng) -> usize {
         random_available_action(self.action_values(rows), rng)

@@ -58,7 +58,7 @@ impl<R: Copy + ActiveFeatures> UpdateRule<R, Agent> for DynaQPlus {
     ) -> usize {
         let (row, entry) = (single_row(&state), ModelEntry::new(reward, &next));
         self.now += 1;
-        self.last_tried[agent.table.weight_index(row, action)] = self.now;
+        self.last_tried[self.model.pair(row, action)] = self.now;
         agent.update_from_transition(row, action, entry.reward, entry.next);
         self.model.record(row, action, entry);
         self.planning.begin(self.planning_steps);
@@ -82,7 +82,7 @@ impl<R: Copy + ActiveFeatures> UpdateRule<R, Agent> for DynaQPlus {
             let action = agent.sample_action([row], rng);
             let ModelEntry { reward, next } =
                 self.model.entry(row, action).unwrap_or(ModelEntry { reward: 0.0, next: Some(row) });
-            let elapsed = (self.now - self.last_tried[agent.table.weight_index(row, action)]) as f64;
+            let elapsed = (self.now - self.last_tried[self.model.pair(row, action)]) as f64;
             let reward = reward + self.time_weight * elapsed.sqrt();
             agent.update_from_transition(row, action, reward, next);
         }

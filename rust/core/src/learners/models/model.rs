@@ -72,6 +72,12 @@ impl Model {
         self.entries.len()
     }
 
+    /// The index of a pair.
+    #[inline]
+    pub(crate) fn pair(&self, row: u32, action: usize) -> usize {
+        row as usize * self.num_actions + action
+    }
+
     /// Replaces the entry of a pair.
     pub fn record(&mut self, row: u32, action: usize, entry: ModelEntry) {
         let row_start = row as usize * self.num_actions;
@@ -89,7 +95,7 @@ impl Model {
 
     /// The entry of a pair, if it was ever tried.
     pub fn entry(&self, row: u32, action: usize) -> Option<ModelEntry> {
-        self.entries[row as usize * self.num_actions + action]
+        self.entries[self.pair(row, action)]
     }
 
     /// Whether the model has not learned from any transition yet.
