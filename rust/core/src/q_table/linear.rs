@@ -98,8 +98,10 @@ impl<const N: usize> QTable<N> {
         target: f64,
         step_size: &mut impl StepSize,
     ) {
-        // The only row is looked up once.
-        if let (&[row], Some(step)) = (rows.as_ref(), step_size.uniform()) {
+        // The only row is looked up once. Without a known number of actions this would take more instructions.
+        if N > 0
+            && let (&[row], Some(step)) = (rows.as_ref(), step_size.uniform())
+        {
             let value = self.value_mut(row, action);
             *value += step * (target - *value);
             return;
