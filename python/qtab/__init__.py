@@ -1,4 +1,4 @@
-"""Tabular reinforcement learning on Gymnasium environments in Rust, bit for bit equal to Gymnasium and NumPy.
+"""Tabular and linear reinforcement learning in Rust on Gymnasium environments, bit for bit as in Gymnasium and NumPy.
 
     import qtab
 

@@ -87,7 +87,7 @@ def _help() -> str:
     commands = "\n".join(f"  {name:11}{summary}" for name, summary in SUBCOMMANDS.items())
     return (
         "usage: qtab COMMAND [OPTIONS]\n\n"
-        "Tabular reinforcement learning on Gymnasium environments, in Rust.\n\n"
+        "Tabular and linear reinforcement learning on Gymnasium environments, in Rust.\n\n"
         f"commands:\n{commands}\n\n"
         "options:\n  --help    show this help; after a command, show the options of the command\n"
         "  --version show the version"

@@ -87,8 +87,8 @@ def estimate_values(
         policy: ``"random"`` for equal probabilities; an array (*cells,) of actions or (*cells, actions) of
             probabilities; a function from an observation to an action's number or to (actions,) probabilities; a run,
             for its greedy policy, with preferences the most likely action; or an optimum that does not depend on the
-            steps left. Functions, and runs with other cells or a function of action masks, choose by the
-            observation, not by its cell.
+            steps left. Functions, and runs on a Box with other cells or a function of action masks, choose by
+            the observation, not by its cell.
         method: ``"td"`` is TD(0) (Sutton & Barto, 2nd ed., eq. 6.2), ``"n_step_td"`` eq. 7.2, ``"td_lambda"`` and
             ``"true_online_td_lambda"`` the boxes in sections 12.2 and 12.5, ``"offline_lambda_return"`` eq. 12.4,
             ``"monte_carlo"`` eq. 6.1 and the box in section 5.1, ``"importance_sampling"`` eqs. 5.5 and 5.6,

@@ -81,6 +81,7 @@ def process_pool(workers: int, task: bytes | None = None) -> Iterator[ProcessPoo
             ) from error
         finally:
             ours.send_bytes(b"stop")
+            ours.close()  # which wakes them, too
             executor.shutdown(cancel_futures=True)
 
 

@@ -52,6 +52,26 @@ def test_parts_of_arrays_are_assigned() -> None:
     assert assert_equal_steps(Board(), rewrite(Board()), 500, 3)
 
 
+class AddsInReset(ExtraEnv):
+    def __init__(self):
+        super().__init__()
+        self.grid = np.zeros((2, 2))
+
+    def reset(self, *, seed=None, options=None):
+        super().reset(seed=seed)
+        self.cell = 0
+        self.grid[:, :] += 1.0
+        self.board[:] += 1.0  # after the base class has set it
+        return self.cell, {}
+
+    def extra(self) -> Any:
+        return float(self.board[0] + self.grid[0, 0])
+
+
+def test_a_whole_array_that_a_reset_changes_keeps_its_values() -> None:
+    assert rewrite(AddsInReset()).kept_between_episodes == ("grid",)
+
+
 @pytest.mark.slow
 def test_compiled_they_are_equal() -> None:
     pytest.importorskip("numba")
@@ -104,6 +124,27 @@ class SharedByOr(ExtraEnv):
         return float(self.second[0])
 
 
+class SharedVariable(ExtraEnv):
+    def extra(self) -> Any:
+        first = np.zeros(2)
+        second = None or first
+        first += 1.0  # here
+        return float(second[0])
+
+
+class SharedByGet(ExtraEnv):
+    def reset(self, *, seed=None, options=None):
+        options = options or {}
+        first = [1, 2]
+        self.first = first
+        self.second = options.get("second", first)  # here
+        return super().reset(seed=seed)
+
+    def extra(self) -> Any:
+        self.second[0] += 1
+        return float(self.first[0])
+
+
 REFUSALS = {
     EmptyIndex: "an empty index of an array .*write array\\[:\\]",
     OtherLength: "an array of float64 with shape \\(2,\\) assigned to a part .*same dtype and shape",
@@ -111,6 +152,8 @@ REFUSALS = {
     DivmodOfFloats: "divmod of something other than two integers .*write x // y and x % y",
     DivmodOfDraws: "a call whose result is used several times .*assign it to a variable first",
     SharedByOr: "self.second shares memory that is changed in place .*write .copy\\(\\)",
+    SharedVariable: "may share its memory with another array",
+    SharedByGet: "shares memory that is changed in place",
     PermutationOfArray: "permutation of an array .*draw the indices with permutation\\(n\\)",
 }
 

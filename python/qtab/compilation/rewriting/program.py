@@ -113,7 +113,7 @@ class Program:
         self.changed_stale: list[tuple[str, Scalar | None, NotCompilable]] = []
         """Augmented assignments to such attributes: the name, the kind of the number, and the error for others."""
         self.stale_objects: set[str] = set()
-        """Those of which a value may be a list, an array or another object with another name."""
+        """The attributes that are never read and may hold a list, an array or another object with another name."""
         self.stale: dict[str, NotCompilable] = {}
         """The attributes that are assigned and never read, and the errors for those that reset does not assign."""
         self.stale_in_reset: set[str] | None = None

@@ -189,7 +189,7 @@ def _of_constant(scope: "Expressions", node: ast.Call, name: str, value: Any) ->
         if isinstance(value, dict) and name in ("items", "keys", "values"):
             return constant(list(result.fixed))
         return result
-    if isinstance(value, dict) and name == "get" and len(values) == 2 and values[0].is_fixed and not named:
+    if type(value) is dict and name == "get" and len(values) == 2 and values[0].is_fixed and not named:
         key, default = values
         if scope.folded(node, lambda one: one not in value, key.fixed).fixed:
             return default

@@ -40,7 +40,7 @@ def is_made(attributes: Attributes, source: Source, node: ast.expr, depth: int =
     if not isinstance(function, ast.Attribute):
         return False
     owner = function.value.id if isinstance(function.value, ast.Name) else None
-    is_copy = function.attr == "copy" and owner != own_name(source.node)
+    is_copy = function.attr == "copy" and owner != own_name(source.node) and ast.unparse(function.value) != "super()"
     if is_copy or is_step(node):  # of a base class, which is checked as well
         return True
     if owner is None:

@@ -108,6 +108,9 @@ def _parts(node: ast.expr) -> Iterator[ast.expr]:
     elif isinstance(node, ast.IfExp):
         yield from _parts(node.body)
         yield from _parts(node.orelse)
+    elif isinstance(node, ast.BoolOp):
+        for part in node.values:
+            yield from _parts(part)
     elif isinstance(node, (ast.Subscript, ast.Starred)):
         yield from _parts(node.value)
     else:

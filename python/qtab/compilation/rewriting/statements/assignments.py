@@ -59,8 +59,9 @@ def assign(scope: "Statements", node: ast.stmt, targets: list[ast.expr], value_n
 def _is_new(node: ast.expr) -> bool:
     """Returns whether an expression makes a value, or is a constant."""
     made = (ast.Constant, ast.JoinedStr, ast.Tuple, ast.List, ast.ListComp, ast.Dict, ast.Set, ast.BinOp, ast.Compare)
-    is_copy = isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr == "copy"
-    return isinstance(node, made) or is_copy
+    function = node.func if isinstance(node, ast.Call) else None
+    makes = isinstance(function, ast.Name) and function.id in ("dict", "list", "set")
+    return isinstance(node, made) or makes or (isinstance(function, ast.Attribute) and function.attr == "copy")
 
 
 def assign_value(scope: "Statements", node: ast.stmt, targets: "ast.expr | list[ast.expr]", value: Value) -> None:
@@ -79,6 +80,8 @@ def _is_reference(node: ast.expr) -> bool:
         return _is_reference(node.body) or _is_reference(node.orelse)
     if isinstance(node, ast.BoolOp):
         return any(map(_is_reference, node.values))
+    if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr == "get":  # of a dict
+        return any(map(_is_reference, node.args))
     return isinstance(node, ast.Name | ast.Attribute | ast.Subscript)
 
 

@@ -123,7 +123,8 @@ def changeable(scope: "Statements", node: ast.stmt, target: ast.Subscript) -> Va
             known = scope.program.attributes
             known.note_assigned(base.attr)
             copies, scope.copies_state = scope.copies_state, False
-            whole = ":" in (text := ast.unparse(target.slice)) and set(text) <= set("(:, )")
+            index = ast.unparse(target.slice)
+            whole = ":" in index and set(index) <= set("(:, )") and not isinstance(node, ast.AugAssign)
             value = scope.load_state(base.attr, base, not whole)
             scope.program.stored.add(base.attr)
             if whole:
