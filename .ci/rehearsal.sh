@@ -24,7 +24,7 @@ rehearsal() {
     launched_notebooks "$newest"
     kill "$server"
     wait "$server" || true
-    trap 'rm -rf "$work"' EXIT
+    trap end_of_work EXIT
 }
 
 # Starts an index for everyone on this machine on a free port; sets $index, its address, and $server, its process.
@@ -34,7 +34,7 @@ start_index() {
     mkdir -p "$work/index"
     "$1" run --interface 127.0.0.1 --port "$port" --authenticate . --passwords . --disable-fallback "$work/index" &
     server=$!
-    trap 'kill "$server" 2>/dev/null || true; rm -rf "$work"' EXIT
+    trap 'kill "$server" 2>/dev/null || true; end_of_work' EXIT
     index=http://127.0.0.1:$port
     "$host_python" - "$port" <<'END'
 import socket, sys, time

@@ -14,9 +14,8 @@ from pip._vendor.packaging.requirements import Requirement
 from pip._vendor.packaging.specifiers import SpecifierSet
 from pip._vendor.packaging.version import Version
 
-EXTRAS = ("", "all", "plot", "video", "cli", "stats", "cluster", "test")
-NOT_RUN = {"mypy", "pyright", "qtab"}
-"""What checks types, which `.ci/run lint` does; and the extras that the wheel puts together."""
+NOT_RUN = {"mypy", "pyright"}
+"""What checks types, which `.ci/run lint` does."""
 
 
 def main(wheel: Path, versions: str) -> None:
@@ -24,10 +23,10 @@ def main(wheel: Path, versions: str) -> None:
     with zipfile.ZipFile(wheel) as archive:
         (name,) = (name for name in archive.namelist() if name.endswith(".dist-info/METADATA"))
         metadata = Parser().parsestr(archive.read(name).decode())
+    declared = [Requirement(text) for text in metadata.get_all("Requires-Dist", [])]
     found = set()
-    for text in metadata.get_all("Requires-Dist", []):
-        requirement = Requirement(text)
-        if requirement.name in NOT_RUN or not any(applies(requirement, extra) for extra in EXTRAS):
+    for requirement in required(declared, metadata["Name"], "test"):
+        if requirement.name in NOT_RUN:
             continue
         requirement.marker = None
         lowest = [specifier.version for specifier in requirement.specifier if specifier.operator == ">="]
@@ -37,9 +36,20 @@ def main(wheel: Path, versions: str) -> None:
     print("\n".join(sorted(found)))
 
 
-def applies(requirement: Requirement, extra: str) -> bool:
-    """Returns whether a requirement belongs to an extra on this machine."""
-    return requirement.marker is None or requirement.marker.evaluate({"extra": extra})
+def required(declared: list[Requirement], package: str, *extras: str) -> list[Requirement]:
+    """Returns what a package needs on this machine with some extras, and with the extras that these name in turn."""
+    pending, seen, found = ["", *extras], set(), []
+    while pending:
+        extra = pending.pop()
+        seen.add(extra)
+        for requirement in declared:
+            if not (requirement.marker is None or requirement.marker.evaluate({"extra": extra})):
+                continue
+            if requirement.name == package:
+                pending.extend(requirement.extras - seen)
+            else:
+                found.append(requirement)
+    return found
 
 
 main(Path(sys.argv[1]), sys.argv[2])

@@ -158,7 +158,8 @@ class Counting(Branch):
 
 def test_changed_parameters_are_found_without_a_change_of_the_environment(proofs: list[Any]) -> None:
     env = Counting()
-    with pytest.raises(NotCompilable, match=r"an array of self is changed.*copy the array first"):
+    with pytest.raises(NotCompilable, match=r"is changed.*copy the array first") as refused:
         compiled_env(env)
-    assert len(proofs) == 1
+    # Numba 0.61 refuses the function itself; later ones take its array for a new one.
+    assert len(proofs) == ("an array of self is changed" in str(refused.value))
     assert not env.counts.any()
