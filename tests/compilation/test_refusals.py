@@ -68,6 +68,22 @@ class ChangesAnArray(Base):
         return state, 0.0, False
 
 
+class ChangesItsList(Base):
+    def __init__(self) -> None:
+        self.visits = [0, 0]
+
+    def transition(self, state: Any, action: int, rng: np.random.Generator) -> Any:
+        self.visits[action] += 1  # here
+        return state, 0.0, False
+
+
+class ChangesShape(Base):
+    def transition(self, state: Any, action: int, rng: np.random.Generator) -> Any:
+        if action == 1:
+            return (state, state), 0.0, False
+        return state, 0.0, False  # here
+
+
 class ReadsADict(Base):
     def __init__(self) -> None:
         self.rewards = {0: 1.0, 1: 2.0}
@@ -150,6 +166,8 @@ REFUSED: list[tuple[type[Base], str]] = [
     (StandardGenerator, r"random.random\(\) does not draw from the generator of the environment; draw from rng"),
     (ChangesItself, "self.count changes the environment; keep in the state what changes"),
     (ChangesAnArray, "Numba: an array of the state, or of self, is changed; copy the array first, and return the copy"),
+    (ChangesItsList, r"self.visits\[action\] changes the environment; keep in the state what changes"),
+    (ChangesShape, "its returns have different types; return the same number of values everywhere, each of one type"),
     (ReadsADict, "self.rewards contains a value of type dict"),
     (DrawsUnknown, "Unknown attribute 'bytes' of type NumPyRandomGeneratorType"),
     (Clips, r"Numba: clip\(float64, float64, float64\) is not available; write min\(max\(x, low\), high\)"),
@@ -240,3 +258,5 @@ def test_without_numba_the_refusal_names_the_installation(monkeypatch: pytest.Mo
     monkeypatch.setattr("qtab.compilation.functional.is_installed", lambda: False)
     with pytest.raises(NotCompilable, match=r"^Numba is not installed; pip install numba$"):
         capsule_of(Base())
+    with pytest.raises(ValueError, match="as backend='rust' asks: Numba is not installed; pip install numba$"):
+        qtab.train(Base(), backend="rust", discretizer="bins", bins=2, episodes=1)

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from qtab._utils.memory import memory_limit
 from qtab._utils.progress import check_progress
-from qtab.config.choices import DiscretizerName, LearningRateSchedule
+from qtab.config.choices import Backend, DiscretizerName, LearningRateSchedule
 from qtab.config.unknown import suggesting
 from qtab.planning.least_squares.lstdq import GivenFeatures
 from qtab.planning.policies import GivenPolicy
@@ -72,6 +72,7 @@ def estimate_values(
     seeds: int | Iterable[int] = 1,
     record: int | Sequence[int] | None = None,
     max_episode_steps: int | None = None,
+    backend: Backend = "auto",
     env_kwargs: Mapping[str, Any] | None = None,
     threads: int | None = None,
     progress: bool | None = None,
@@ -161,6 +162,7 @@ def estimate_values(
         record: The numbers of episodes after which the weights are kept: an integer n means every n episodes; a
             sequence lists the numbers, with 0 for the initial weights; None means after every episode.
         max_episode_steps: The time limit in steps; None means the environment's own limit, or 10,000.
+        backend: What steps the environment, as in :func:`qtab.train`: ``"numba"`` compiles an ordinary Gymnasium class.
         env_kwargs: Keyword arguments of the environment's constructor, with an id or a spec.
         threads: The number of threads; None means one per core. It does not change the results.
         progress: Whether to show a progress bar. None shows one on a terminal or in a notebook if the episodes take
@@ -179,7 +181,7 @@ def estimate_values(
     """
     arguments = locals()
     settings = PredictionSettings(**{field.name: arguments[field.name] for field in fields(PredictionSettings)})
-    of_task = (*OF_OBSERVATIONS, "max_episode_steps", "env_kwargs")
+    of_task = (*OF_OBSERVATIONS, "max_episode_steps", "backend", "env_kwargs")
     given = {name: arguments[name] for name in of_task if arguments[name] is not None}
     check_progress(progress)
     limit = memory_limit(None)

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 import qtab
 from support.environments import own
+from support.environments.gym_classes.grids import CliffEnv
 
 pytest.importorskip("numba")
 
@@ -107,6 +108,16 @@ def test_values_are_estimated() -> None:
     for index, seed in enumerate(one.seeds):
         other = qtab.estimate_values(same, "random", seeds=[seed], episodes=20)
         assert one.weights[index].tobytes() == other.weights[0].tobytes()
+
+
+def test_values_of_an_ordinary_class_are_estimated() -> None:
+    one = qtab.estimate_values(limited(CliffEnv), "random", seeds=2, episodes=20, backend="numba")
+    for index, seed in enumerate(one.seeds):
+        other = qtab.estimate_values(limited(CliffEnv), "random", seeds=[seed], episodes=20)
+        assert one.weights[index].tobytes() == other.weights[0].tobytes()
+    assert one.verify(env=limited(CliffEnv)).equal
+    with pytest.raises(ValueError, match=r"^backend must be .* got 'numba': Numba compiles your own classes"):
+        qtab.estimate_values("FrozenLake-v1", "random", backend="numba")
 
 
 class Spilling(own.RandomWalk):

@@ -131,6 +131,17 @@ def test_values_of_a_policy(lander: Path, discretizer: dict[str, Any], kind: str
         assert ours.weights[index].tobytes() == theirs.weights[0].tobytes()
 
 
+def test_the_time_limit_of_the_library_is_known_where_python_steps_it(caplog: pytest.LogCaptureFixture) -> None:
+    with caplog.at_level(logging.WARNING, "qtab"):
+        ours, theirs = (
+            qtab.train(ID, seed=1, time_aware=True, backend=backend, **{**BINS, "episodes": 3})
+            for backend in ("rust", "gymnasium")
+        )
+    assert "no time limit" not in caplog.text
+    assert ours.config.max_episode_steps == theirs.config.max_episode_steps == 200
+    assert ours.tables.tobytes() == theirs.tables.tobytes()
+
+
 def test_a_library_of_other_content_is_reported(lander: Path, tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     source = (EXAMPLES / "own_environment_c" / "lander.c").read_text(encoding="utf-8")
     heavier = compile_c(source.replace("{3.7, ", "{3.9, "), tmp_path, "heavier")

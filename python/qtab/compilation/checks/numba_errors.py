@@ -32,6 +32,7 @@ _ADVICE = (
     (">>> clip(float64", "write min(max(x, low), high)"),
     ("Unknown attribute", "use numbers, tuples and arrays, and functions of math and NumPy"),
     ("Cannot modify readonly array", "copy the array first, and return the copy"),
+    ("Can't unify return type", "return the same number of values everywhere, each of one type"),
     ("Cannot unify", "give the variable values of one type"),
     ("Untyped global name", "use numbers, tuples, arrays and functions"),
 )
@@ -63,6 +64,8 @@ def shortened(text: str) -> str:
     """Returns the line of an error of Numba that gives the reason."""
     if "Cannot modify readonly array" in text:
         return "an array of the state, or of self, is changed"
+    if "Can't unify return type" in text:
+        return "its returns have different types"
     if (call := re.search(r"No implementation of function.*\n[ \n]*>>> (.*)\n", text)) is not None:
         return f"{call[1]} is not available"
     lines = [line.strip() for line in text.splitlines()]

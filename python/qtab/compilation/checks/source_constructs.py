@@ -64,10 +64,9 @@ def _nodes(function: FunctionType) -> Iterator[tuple[ast.AST, str, int]]:
 
 
 def _refused(node: ast.AST) -> tuple[str, str] | None:
-    if isinstance(node, ast.Attribute):
-        name = _dotted(node)
-        if isinstance(node.ctx, ast.Store | ast.Del) and name.startswith("self."):
-            return "changes the environment", "keep in the state what changes"
+    is_assigned = isinstance(node, ast.Attribute | ast.Subscript) and isinstance(node.ctx, ast.Store | ast.Del)
+    if is_assigned and _dotted(node).startswith("self."):
+        return "changes the environment", "keep in the state what changes"
     if isinstance(node, ast.Try):
         # It would catch the errors of integers of more than 64 bits, which Python does not raise.
         return "cannot be compiled", "write the condition with if"
@@ -107,6 +106,8 @@ def _suspect(node: ast.AST) -> str | None:
 def _dotted(node: ast.AST) -> str:
     if isinstance(node, ast.Name):
         return node.id
+    if isinstance(node, ast.Subscript):
+        return _dotted(node.value)
     return f"{_dotted(node.value)}.{node.attr}" if isinstance(node, ast.Attribute) else "?"
 
 

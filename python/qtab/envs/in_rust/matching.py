@@ -42,15 +42,15 @@ class NotInRustError(ValueError):
 
 def rust_unavailable(reason: str | NotInRustError, backend: str = "rust") -> ValueError:
     """Returns the error for a backend that insists on Rust, or on Numba, if Rust cannot step the environment."""
+    if isinstance(reason, NotInRustError) and reason.problems:
+        return ValueError(_not_compiled(reason.problems, backend))
     if backend == "numba" and isinstance(reason, NotInRustError):
-        if reason.problems:
-            return ValueError(_not_compiled(reason.problems))
         reason = f"{reason}; {reason.remedy}" if reason.remedy else str(reason)
     return ValueError(f"backend must be 'auto' or 'gymnasium' for this environment, got {backend!r}: {reason}")
 
 
-def _not_compiled(problems: Sequence[str]) -> str:
-    headline = "the environment cannot be compiled, as backend='numba' asks"
+def _not_compiled(problems: Sequence[str], backend: str) -> str:
+    headline = f"the environment cannot be compiled, as backend={backend!r} asks"
     if len(problems) == 1:
         return f"{headline}: {problems[0]}"
     return "\n".join([f"{headline}, for these reasons:", *(f"  {problem}" for problem in problems)])

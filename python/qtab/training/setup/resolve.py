@@ -146,8 +146,8 @@ def _from_spec(env: str | EnvSpec, asked: Mapping[str, Any]) -> _Request:
         except ValueError:
             made.close()
             raise
-        if entry is not None:  # its class, or the function that makes it, may have a limit of its own
-            config, own_limit = _within_limit(config, time_limit(made))
+        # Its class, or the function that makes it, may have a limit of its own.
+        config, own_limit = _within_limit(config, time_limit(made))
     return _Request(made, entry, config, asked, own_limit, python_reason, spec)
 
 
