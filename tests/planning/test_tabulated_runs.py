@@ -162,6 +162,34 @@ def test_a_mask_without_any_action_in_terminal_states_is_not_asked_for() -> None
     assert best.gap(run).greedy_return == best.gap(unmasked).greedy_return
 
 
+class OneWay(Errand):
+    """Its action mask forbids the way back to the left, which the transition would allow."""
+
+    def action_mask(self, state: Any) -> Any:
+        return np.array([True, True, True, False])
+
+
+def test_a_run_that_takes_unavailable_actions_is_refused() -> None:
+    table = qtab.tabulate(limited(OneWay()))
+    best = qtab.optimum(table)
+    settings: dict[str, Any] = {"seed": 1, "episodes": 300, **SETTINGS}
+    masked = qtab.train(limited(OneWay()), action_mask=True, **settings)
+    [played] = qtab.evaluate(masked, 1, seed=0, env=limited(OneWay())).returns
+    assert best.gap(masked).greedy_return == pytest.approx(played)
+    run = qtab.train(limited(OneWay()), **settings)
+    expected = "^run must have action_mask=True, as the table leaves out unavailable actions, got False$"
+    for call in (best.gap, lambda run: qtab.policy_values(table, run), lambda run: qtab.diagnose(run, best)):
+        with pytest.raises(ValueError, match=expected):
+            call(run)
+
+
+def test_the_table_of_toy_text_has_the_outcomes_of_unavailable_actions() -> None:
+    env = gym.make("Taxi-v4")
+    run = qtab.train(env, seed=0, episodes=20)
+    ours, theirs = qtab.optimum(qtab.tabulate(env)), qtab.optimum("Taxi-v4")
+    assert ours.gap(run).greedy_return == theirs.gap(run).greedy_return
+
+
 def test_an_environment_with_other_arguments_is_refused(best: qtab.Optimum) -> None:
     run = qtab.train(limited(Errand(cost=2.0)), seed=0, episodes=10)
     expected = r"that the table was made of, got another one: its attribute cost was 2\.0 in training, and is 1\.0"

@@ -39,7 +39,8 @@ def on_table(run: AnyRun, table: TabulatedEnv) -> AnyRun:
         table: The table.
 
     Raises:
-        ValueError: if the environment of the run has the same name, but other arguments, attributes or spaces.
+        ValueError: if the environment of the run has the same name, but other arguments, attributes or spaces, or the
+            run takes actions that are unavailable in the table.
     """
     made_of, config = table.made_of, run.config
     if made_of is None or gymnasium_id(config.env) != gymnasium_id(made_of.name):
@@ -52,6 +53,8 @@ def on_table(run: AnyRun, table: TabulatedEnv) -> AnyRun:
     rows = np.array([run.discretizer.active_features(observation) for observation in table.observations])
     changes: dict[str, Any] = {"tables": None if run.tables is None else _of_states(run, run.tables, rows)}
     masks = _masks(run, table, rows)
+    if masks is None and _leaves_out_actions(table):
+        raise ValueError("run must have action_mask=True, as the table leaves out unavailable actions, got False")
     if isinstance(run.discretizer, TimeAware):
         cells = TimeAware(cells.low, cells.high, cells, run.discretizer.max_episode_steps)
     if masks is not None:
@@ -101,6 +104,12 @@ def _masks(run: Run | Runs, table: TabulatedEnv, rows: NDArray[Any]) -> NDArray[
         parts = flat.reshape(*leading, run.discretizer.max_episode_steps, -1, count)
         return parts[..., rows[:, 0], :].reshape(*leading, -1, count)
     return flat[..., rows[:, 0], :]
+
+
+def _leaves_out_actions(table: TabulatedEnv) -> bool:
+    """Returns whether the table does not have the outcomes of unavailable actions: they end the episode there."""
+    unavailable = [] if table.masks is None else np.argwhere(~table.masks).tolist()
+    return any(table.P[state][action][0][3] for state, action in unavailable[:1])
 
 
 def _entered(table: TabulatedEnv) -> set[int]:
