@@ -258,5 +258,5 @@ def test_without_numba_the_refusal_names_the_installation(monkeypatch: pytest.Mo
     monkeypatch.setattr("qtab.compilation.functional.is_installed", lambda: False)
     with pytest.raises(NotCompilable, match=r"^Numba is not installed; pip install numba$"):
         capsule_of(Base())
-    with pytest.raises(ValueError, match="as backend='rust' asks: Numba is not installed; pip install numba$"):
+    with pytest.raises(ValueError, match=r"as backend='rust' asks: Numba is not installed; pip install numba$"):
         qtab.train(Base(), backend="rust", discretizer="bins", bins=2, episodes=1)

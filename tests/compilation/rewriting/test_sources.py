@@ -1,6 +1,8 @@
 """A file that was edited after its class was imported is never compiled in place of the class that runs."""
 
+import ast
 import importlib.util
+import linecache
 import sys
 from pathlib import Path
 from typing import Any
@@ -68,3 +70,13 @@ def test_an_edit_that_changes_no_code_is_accepted(file: Path) -> None:
     module = imported(file)
     file.write_text(SOURCE + "\n# a comment\n", encoding="utf-8")
     assert_equal_steps(module.Edited(), rewrite(module.Edited()), 20)
+
+
+def test_a_cell_of_a_notebook_with_imports_above_the_class_is_accepted(monkeypatch: pytest.MonkeyPatch) -> None:
+    text = SOURCE.replace("return 0, (", "return int(np.sqrt(1.0)) - 1, (").replace("\n", "\nimport numpy as np\n", 1)
+    cell, namespace = "<ipython-input-1>", {"__name__": "__main__"}
+    monkeypatch.setitem(linecache.cache, cell, (len(text), None, text.splitlines(keepends=True), cell))
+    for statement in ast.parse(text).body:  # as IPython runs a cell
+        exec(compile(ast.Module([statement], []), cell, "exec"), namespace)  # noqa: S102 - the cell above
+    made: Any = namespace["Edited"]
+    assert_equal_steps(made(), rewrite(made()), 20)

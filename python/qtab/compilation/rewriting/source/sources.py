@@ -70,18 +70,33 @@ def _is_current(function: FunctionType, node: ast.FunctionDef) -> bool:
     if is_rewritten and any(isinstance(one, ast.Assert) for one in ast.walk(node)):
         return node.name == function.__name__
     code = function.__code__
-    found = _codes_of("".join(linecache.getlines(code.co_filename)), code.co_filename)
+    text = "".join(linecache.getlines(code.co_filename))
+    found = _codes_of(text, code.co_filename, by_statement=False)
     if found is None:
         return node.name == function.__name__
+    return _is_among(code, found) or _is_among(code, _codes_of(text, code.co_filename, by_statement=True) or [])
+
+
+def _is_among(code: CodeType, found: list[CodeType]) -> bool:
     same = [one for one in found if (one.co_name, one.co_firstlineno) == (code.co_name, code.co_firstlineno)]
     return any(_form(one) == _form(code) for one in same)
 
 
 @functools.lru_cache(maxsize=16)
-def _codes_of(text: str, file: str) -> list[CodeType] | None:
-    """Returns the code objects of a file; None for a cell of a notebook with commands of IPython."""
+def _codes_of(text: str, file: str, *, by_statement: bool) -> list[CodeType] | None:
+    """Returns the code objects of a file; None for a cell of a notebook with commands of IPython.
+
+    Args:
+        text: The content of the file.
+        file: Its name.
+        by_statement: Whether each statement is compiled alone, as IPython does with a cell. The code of a function then
+            does not depend on the imports above it.
+    """
     try:
-        return _nested(compile(text, file, "exec", dont_inherit=True))
+        if not by_statement:
+            return _nested(compile(text, file, "exec", dont_inherit=True))
+        alone = [ast.Module([statement], []) for statement in ast.parse(text, file).body]
+        return [one for module in alone for one in _nested(compile(module, file, "exec", dont_inherit=True))]
     except (SyntaxError, ValueError):
         return None
 
