@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import qtab
@@ -27,14 +28,12 @@ qtab-env = {{ path = "{(ROOT / "rust" / "env").as_posix()}" }}
 """
 
 
-def block(language: str) -> str:
-    """The only block of a language on the page."""
-    (found,) = blocks(PAGE.read_text(encoding="utf-8"), language)
-    return found.code
+def page_blocks(language: str) -> list[str]:
+    return [found.code for found in blocks(PAGE.read_text(encoding="utf-8"), language)]
 
 
 def in_c(folder: Path) -> Path:
-    return compile_c(block("c"), folder, "walk", "-Wno-unused-parameter")
+    return compile_c(page_blocks("c")[0], folder, "walk", "-Wno-unused-parameter")
 
 
 @needs_compiler
@@ -45,11 +44,23 @@ def test_the_environment_in_c_learns(tmp_path: Path) -> None:
 
 
 @needs_compiler
+@pytest.mark.parametrize("count", [2, 3, 5])
+def test_the_integers_in_c_are_those_of_numpy(tmp_path: Path, count: int) -> None:
+    walk, integers = page_blocks("c")
+    drawn = walk.replace("state = 3;", f"state = 1 + integer_below(rng, {count});")
+    with_integers = drawn.replace('"qtab_env.h"\n', f'"qtab_env.h"\n{integers}\n')
+    env = qtab.NativeEnv(compile_c(with_integers, tmp_path, "integers", "-Wno-unused-parameter"))
+    ours = [env.reset(seed=1)[0], *(env.reset()[0] for _ in range(500))]
+    generator = np.random.default_rng(1)
+    assert ours == [1 + int(generator.integers(0, count)) for _ in ours]
+
+
+@needs_compiler
 @needs_cargo
 @pytest.mark.slow
 def test_the_environment_in_rust_is_the_same(tmp_path: Path) -> None:
     (tmp_path / "src").mkdir()
-    (tmp_path / "src" / "lib.rs").write_text(block("rust"), encoding="utf-8")
+    (tmp_path / "src" / "lib.rs").write_text(page_blocks("rust")[0], encoding="utf-8")
     (tmp_path / "Cargo.toml").write_text(MANIFEST, encoding="utf-8")
     libraries = in_c(tmp_path), build_rust(tmp_path, tmp_path / "target", "walk")
     settings: dict[str, Any] = {"episodes": 100, "max_episode_steps": 100, "seed": 0}
