@@ -4,6 +4,7 @@ from argparse import Namespace
 
 from qtab.cli.errors import reading
 from qtab.cli.parser import Parser
+from qtab.envs.registry import spec_of
 from qtab.results.files.loading import load
 from qtab.results.run import Run
 
@@ -22,3 +23,21 @@ def load_run(options: Namespace) -> Run:
     """Returns the run of the file."""
     with reading("RUN", options.run):
         return load(options.run)
+
+
+def add_run_and_env(parser: Parser) -> None:
+    """Adds the argument, and the option ``--env`` of the commands that make the environment of the run."""
+    add_run(parser)
+    parser.option("env", str, ENV_OF_RUN, metavar="ENV")
+
+
+def load_run_and_env(options: Namespace) -> Run:
+    """Returns the run of the file, after importing the package of ``--env``, which registers its environment.
+
+    Raises:
+        ValueError: if ``--env`` is another environment.
+    """
+    saved, env = load_run(options), options.env
+    if env is not None and spec_of(env).id != saved.config.env.rpartition(":")[2]:
+        raise ValueError(f"env must be that of the run, {str(saved.config.env)!r}, got {env!r}")
+    return saved

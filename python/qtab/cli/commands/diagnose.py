@@ -9,7 +9,7 @@ from qtab._utils import checks
 from qtab.cli.errors import usage_errors
 from qtab.cli.parser import Parser
 from qtab.cli.reporting import Report
-from qtab.cli.saved_run import add_run, load_run
+from qtab.cli.saved_run import add_run_and_env, load_run_and_env
 from qtab.cli.values import integer
 from qtab.diagnosis.diagnose import diagnose
 from qtab.diagnosis.diagnosis import SEEDS, Diagnosis
@@ -18,7 +18,7 @@ from qtab.diagnosis.what_if import WhatIf
 
 def add_arguments(parser: Parser) -> None:
     """Adds the arguments of the command."""
-    add_run(parser)
+    add_run_and_env(parser)
     parser.output_flags()
     parser.switch("what_if", "Also try the advised changes, one at a time, over many seeds.")
     parser.option("seeds", integer, "The number of seeds for --what-if.", SEEDS)
@@ -30,7 +30,7 @@ def run(options: Namespace) -> int:
         with usage_errors(options):
             if options.what_if:
                 checks.integer("seeds", options.seeds, least=2)
-            saved = load_run(options)
+            saved = load_run_and_env(options)
             diagnosis = diagnose(saved)
         report.text(str(diagnosis))
         facts = ("findings", "unremarkable", "not_made", "reasons", "seconds")

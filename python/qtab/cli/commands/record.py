@@ -6,7 +6,7 @@ from qtab._utils.progress import print_above
 from qtab.cli.commands import watch
 from qtab.cli.errors import usage_errors
 from qtab.cli.parser import Parser
-from qtab.cli.saved_run import load_run
+from qtab.cli.saved_run import load_run_and_env
 from qtab.rendering.formats import check_video_path
 
 
@@ -20,7 +20,7 @@ def add_arguments(parser: Parser) -> None:
 def run(options: Namespace) -> int:
     """Runs the command and returns its exit code."""
     with usage_errors(options):
-        saved = load_run(options)
+        saved = load_run_and_env(options)
         check_video_path(options.path)
         played = watch.played_by(saved, options, window=False)
     played.save(options.path)

@@ -9,10 +9,8 @@ from qtab._utils.progress import ProgressBar
 from qtab.cli.errors import usage_errors
 from qtab.cli.parser import Parser
 from qtab.cli.reporting import Report
-from qtab.cli.saved_run import ENV_OF_RUN, add_run, load_run
+from qtab.cli.saved_run import add_run_and_env, load_run_and_env
 from qtab.cli.values import integer
-from qtab.envs.registry import spec_of
-from qtab.results.run import Run
 from qtab.training.verify import verify
 
 SILENT_SECONDS = 2.0
@@ -21,19 +19,16 @@ SILENT_SECONDS = 2.0
 
 def add_arguments(parser: Parser) -> None:
     """Adds the arguments of the command."""
-    add_run(parser)
+    add_run_and_env(parser)
     parser.output_flags()
     parser.option("episodes", integer, "Compare only the first episodes, using the schedules of the full run.")
-    parser.option("env", str, ENV_OF_RUN, metavar="ENV")
 
 
 def run(options: Namespace) -> int:
     """Runs the command and returns its exit code."""
     with Report(options) as report:
         with usage_errors(options):
-            saved = load_run(options)
-            if options.env is not None:
-                _import_environment(saved, options.env)
+            saved = load_run_and_env(options)
             total = options.episodes if options.episodes is not None else len(saved.episode_returns)
             with ProgressBar(total, "episode", report.progress, "Gymnasium") as bar:
                 announce = _announcer(saved.config.env, bar)
@@ -41,16 +36,6 @@ def run(options: Namespace) -> int:
         report.text(str(verification))
         report.add(**vars(verification), equal=verification.equal)
     return 0 if verification.equal else 1
-
-
-def _import_environment(saved: Run, env: str) -> None:
-    """Imports the package that registers the environment of a run.
-
-    Raises:
-        ValueError: if ``env`` is another environment.
-    """
-    if spec_of(env).id != saved.config.env.rpartition(":")[2]:
-        raise ValueError(f"env must be that of the run, {str(saved.config.env)!r}, got {env!r}")
 
 
 def _announcer(env: str, bar: ProgressBar) -> Callable[[int, int], None]:

@@ -5,7 +5,7 @@ from argparse import Namespace
 from qtab._utils.progress import print_above
 from qtab.cli.errors import UsageError, usage_errors
 from qtab.cli.parser import Parser
-from qtab.cli.saved_run import add_run, load_run
+from qtab.cli.saved_run import add_run_and_env, load_run_and_env
 from qtab.cli.values import integer, number
 from qtab.rendering.play import Playback, play
 from qtab.rendering.window import display_problem
@@ -14,7 +14,7 @@ from qtab.results.run import Run
 
 def add_arguments(parser: Parser) -> None:
     """Adds the arguments of the command, which ``qtab record`` has as well."""
-    add_run(parser)
+    add_run_and_env(parser)
     parser.option("episodes", integer, "The number of episodes.", 1)
     parser.option("seed", integer, "The seed of the environment; by default a random one, which is printed.")
     parser.option("fps", number, "Pictures per second; by default the environment's.")
@@ -25,7 +25,7 @@ def add_arguments(parser: Parser) -> None:
 def run(options: Namespace) -> int:
     """Runs the command and returns its exit code."""
     with usage_errors(options):
-        saved = load_run(options)
+        saved = load_run_and_env(options)
         problem = display_problem()
         if problem is not None:
             advice = f"qtab record {options.run} agent.mp4 writes a video without one"
