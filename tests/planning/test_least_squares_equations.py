@@ -45,3 +45,15 @@ def test_the_initial_policy_is_masked() -> None:
     assert not np.array_equal(found.weights, lstdq(batch, x, 0, 0.9))
     assert found.q_values([0, 1])[1, 0] == -np.inf
     assert np.isfinite(found.q_values([0])).all()
+
+
+@pytest.mark.parametrize("epsilon", [0.0, 0.1])
+def test_matrices_that_do_not_fit_into_memory_are_refused(epsilon: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    batch = Transitions([0, 1], [0, 1], [1.0, 2.0], [1, 0], [False, False])
+    with pytest.raises(
+        MemoryError, match=r"^matrices of 1,000,000 x 1,000,000 numbers for 1,000,000 features of 2 act"
+    ):
+        lspi(batch, np.ones((2, 10**6)), 0.9, epsilon=epsilon)
+    monkeypatch.setattr("qtab._utils.memory.memory_limit", lambda _: 8 * 5 * 2 * 10**2)
+    with pytest.raises(MemoryError, match=r"^matrices of 20 x 20 numbers for 10 features of 2 actions need 15.6 KiB"):
+        lstdq(batch, np.ones((2, 10)), [0, 1], 0.9, epsilon=epsilon)  # the blocks of the actions fit, all of A does not

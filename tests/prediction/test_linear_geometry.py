@@ -221,6 +221,11 @@ def test_a_singular_update_is_refused() -> None:
         ),
         ({"features": np.full((19, 1), np.nan)}, ValueError, "features must be finite"),
         ({"features": [["a"]] * 19}, TypeError, "features must be None or an array of integers"),
+        (
+            {"features": np.arange(19) // 18 * 10**6},
+            MemoryError,
+            "numbers for 1,000,001 features need .* TiB, more than",
+        ),
         ({"distribution": np.full(19, 0.1)}, ValueError, "distribution must sum to 1, got 1.9"),
         ({"distribution": np.ones(3)}, ValueError, r"distribution must have the shape \(19,\), got \(3,\)"),
         ({"distribution": np.r_[-1.0, 2.0, np.zeros(17)]}, ValueError, "distribution must hold probabilities"),

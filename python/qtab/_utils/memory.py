@@ -85,6 +85,22 @@ def check_memory(what: str, needed: int, limit: int, instead: str = "") -> None:
         )
 
 
+def check_arrays(what: str, needed: int) -> None:
+    """Checks that arrays fit into half of the machine's memory and into what is free, where no setting limits them.
+
+    Args:
+        what: The name of the arrays, for the message.
+        needed: The number of bytes needed.
+
+    Raises:
+        MemoryError: if the arrays do not fit.
+    """
+    if needed > memory_limit(None) or (needed > ALWAYS_FREE and needed > free_memory()):
+        raise MemoryError(
+            f"{what} need {readable_size(needed)}, more than half of the machine's memory or than is free"
+        )
+
+
 def memory_left(needed: int, limit: int) -> tuple[int, int]:
     """Returns the limit and the bytes left of it, which the extension takes for data that grows during runs.
 

@@ -9,10 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils.linear_algebra import dependent_columns
+from qtab._utils.memory import check_arrays
 from qtab.planning.least_squares.transitions import Transitions
 
 FloatArray: TypeAlias = NDArray[np.float64]
 EPS = np.finfo(np.float64).eps
+MATRICES = 5
+"""The number of arrays of the size of A, or of its diagonal blocks, that exist at the same time."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,9 +41,11 @@ class Batch:
         feature for each state, w = D⁻¹(b + γPw) is first solved for the weights that P uses, and the others follow.
 
         Raises:
+            MemoryError: if the matrices would take more than half of the machine's memory.
             ValueError: if A is singular up to rounding errors, or numbers overflowed.
         """
         d, k = self.x.shape[1], self.transitions.n_actions
+        self._check_memory(d, k)
         is_used = np.array([(self.next_x[next_actions == action] != 0.0).any(axis=0) for action in range(k)])
         weights = None
         if 2 * is_used.sum() <= k * d and np.isfinite(self._blocks).all():
@@ -81,9 +86,16 @@ class Batch:
         weighted: FloatArray = self.transitions.weights[rows, None] * self.x[rows]
         return weighted
 
+    def _check_memory(self, size: int, blocks: int = 1) -> None:
+        """Raises an error if matrices that consist of so many square blocks do not fit into memory."""
+        d, k = self.x.shape[1], self.transitions.n_actions
+        what = f"matrices of {size:,} x {size:,} numbers for {d:,} features of {k:,} actions"
+        check_arrays(what, 8 * MATRICES * blocks * size**2)
+
     def _solved_at_once(self, next_actions: NDArray[np.int64]) -> FloatArray:
         """Returns w from the whole of A, (actions * d,)."""
         d, k = self.x.shape[1], self.transitions.n_actions
+        self._check_memory(k * d)
         blocks = np.zeros((k, d, k, d))
         with np.errstate(over="ignore", invalid="ignore"):
             for action, rows in enumerate(self._rows):

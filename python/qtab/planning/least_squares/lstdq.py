@@ -49,6 +49,7 @@ def lstdq(
             not determine near zero.
 
     Raises:
+        MemoryError: if the matrices would take more than half of the machine's memory.
         TypeError: for an argument of the wrong type.
         ValueError: for an argument out of range, features or a policy that do not fit the observations, or if A is
             singular, with the features whose weights are not determined.

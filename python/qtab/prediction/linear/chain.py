@@ -7,8 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab._utils.memory import memory_limit
-from qtab._utils.shown import shown
+from qtab._utils.memory import check_arrays
 
 FloatArray = NDArray[np.float64]
 MATRICES = 6
@@ -122,8 +121,7 @@ def chain_of(
         MemoryError: if matrices of all states would take more than half of the machine's memory.
     """
     states, actions = policy.shape
-    if MATRICES * 8 * states**2 > memory_limit(None):
-        raise MemoryError(f"matrices of {shown(states)} x {shown(states)} numbers do not fit in half of the memory")
+    check_arrays(f"matrices of {states:,} x {states:,} numbers for {states:,} states", 8 * MATRICES * states**2)
     chosen = [
         (pair // actions, weight * probability, next_state, reward, not terminated)
         for pair, weight in enumerate(policy.ravel().tolist())

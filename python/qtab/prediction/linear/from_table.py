@@ -10,12 +10,13 @@ from numpy.typing import ArrayLike
 
 from qtab._utils import checks
 from qtab._utils.arrays import numbers
+from qtab._utils.memory import check_arrays
 from qtab.config.unknown import suggesting
 from qtab.planning.policies import SUM_TOLERANCE, GivenPolicy, probabilities
 from qtab.planning.policy_values import policy_values
 from qtab.planning.table import opened_table
 from qtab.prediction.features import feature_matrix
-from qtab.prediction.linear.chain import FloatArray, chain_of
+from qtab.prediction.linear.chain import MATRICES, FloatArray, chain_of
 from qtab.prediction.linear.geometry import LinearGeometry
 
 
@@ -33,7 +34,8 @@ def linear_geometry(
 ) -> LinearGeometry:
     """Computes the fixed point of TD and the errors of linear values exactly, from a transition table.
 
-    Sutton & Barto, 2nd ed., sections 9.4 and 11.4 to 11.6. The arrays grow with the square of the number of states.
+    Sutton & Barto, 2nd ed., sections 9.4 and 11.4 to 11.6. The arrays grow with the squares of the numbers of states
+    and features.
 
     Args:
         env: A Gymnasium id, an ``EnvSpec`` or an environment with a transition table, which is neither stepped nor
@@ -68,6 +70,8 @@ def linear_geometry(
         if len(solver.rows) != states:
             raise ValueError(f"env must show its whole state, which the observations of {table.name} do not")
         matrix = feature_matrix(features, states, cells.shape)
+        d = matrix.shape[1]
+        check_arrays(f"matrices of {d:,} x {d:,} numbers for {d:,} features", 8 * MATRICES * d**2)
         weights = None if distribution is None else _distribution(distribution, cells.shape)
         exact = policy_values(table.env, policy, discount)
         transitions, initial = solver.transitions(), solver.initial_distribution

@@ -8,10 +8,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from qtab._utils import checks
 from qtab._utils.arrays import numbers
+from qtab._utils.memory import check_arrays
 from qtab._utils.shown import counted
 
 FloatArray = NDArray[np.float64]
 
+MATRICES = 3
+"""The number of (d, d) arrays that exist at the same time."""
 _SINGULAR = "A is singular after these transitions; another epsilon helps"
 
 
@@ -32,6 +35,7 @@ class LSTD:
             to rounding errors, which grow in the first case as ε becomes smaller.
 
     Raises:
+        MemoryError: if the matrices would take more than half of the machine's memory.
         TypeError: for an argument of the wrong type.
         ValueError: for an argument out of range.
     """
@@ -50,6 +54,7 @@ class LSTD:
         self.trace_decay = checks.real("trace_decay", trace_decay, 0.0, 1.0)
         self.recursive = checks.boolean("recursive", recursive)
         self.epsilon = checked_epsilon("epsilon", epsilon, recursive=self.recursive)
+        check_arrays(f"matrices of {count:,} x {count:,} numbers for {count:,} features", 8 * MATRICES * count**2)
         scale = 1.0 / self.epsilon if self.recursive else self.epsilon
         self._matrix = scale * np.eye(count)  # A⁻¹ if recursive, else A
         self._b, self._trace = np.zeros(count), np.zeros(count)
