@@ -243,6 +243,13 @@ def test_bad_arguments_are_refused(arguments: dict[str, Any], error: type[Except
         linear_geometry(**{"env": "qtab/RandomWalk-v0", "policy": "random", **arguments})
 
 
+def test_a_function_gives_the_feature_vector_of_each_state() -> None:
+    found = linear_geometry("FrozenLake-v1", "random", lambda state: (1, state // 4, state % 4), 0.9)
+    assert found.features.tolist() == [[1, state // 4, state % 4] for state in range(16)]
+    with pytest.raises(TypeError, match="features must return a vector of numbers, got None for the observation 0"):
+        linear_geometry("FrozenLake-v1", "random", lambda _: None)
+
+
 def test_bad_weights_and_names_are_refused() -> None:
     found = random_geometry()
     with pytest.raises(ValueError, match=r"weights must have 4 numbers, one for each feature, got shape \(3,\)"):

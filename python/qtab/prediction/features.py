@@ -1,13 +1,18 @@
 """The features of state values: a table, groups of states, tilings of numbered states, given rows or given vectors."""
 
+from collections.abc import Callable
 from typing import Any
 
+import gymnasium as gym
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qtab._utils import checks
 from qtab._utils.arrays import numbers
 from qtab._utils.shown import counted, shown
+from qtab.discretizers import Discretizer
+from qtab.discretizers.weighted.polynomial import OF_FUNCTION
+from qtab.planning.policies import discrete_observations
 
 Rows = NDArray[np.uint32]
 """(states, n_active): the active rows of each state."""
@@ -113,6 +118,36 @@ def feature_vectors(features: ArrayLike, states: int, shape: tuple[int, ...] | N
             f"({states}, d), got {given.shape}"
         )
     return np.ascontiguousarray(given)
+
+
+def features_of_function(function: Callable[[Any], Any], cells: Discretizer, space: gym.Space[Any] | None) -> Vectors:
+    """Returns the feature vector that a function returns for the observation of each state.
+
+    Args:
+        function: The function from an observation to (d,) numbers.
+        cells: The discretizer of the observations.
+        space: The observation space.
+
+    Raises:
+        TypeError: if the function does not return numbers.
+        ValueError: for another shape, a number that is not finite, or observations that are not discrete.
+    """
+    if not isinstance(space, gym.spaces.Discrete | gym.spaces.MultiDiscrete | gym.spaces.Tuple):
+        raise ValueError(
+            f"features must be an array for observations that are not discrete, got a function; {OF_FUNCTION}"
+        )
+    vectors: list[Vectors] = []
+    for observation in discrete_observations(space, cells):
+        where = f"for the observation {shown(np.asarray(observation).tolist())}"
+        returned = function(observation)
+        if returned is None:
+            raise TypeError(f"features must return a vector of numbers, got None {where}")
+        vector = numbers(f"features {where}", returned)
+        if vector.ndim != 1 or not vector.size or (vectors and vector.shape != vectors[0].shape):
+            wanted = counted(len(vectors[0]), "number") if vectors else "numbers"
+            raise ValueError(f"features must return a vector of {wanted}, got the shape {vector.shape} {where}")
+        vectors.append(vector)
+    return np.stack(vectors)
 
 
 def feature_matrix(features: ArrayLike | None, states: int, shape: tuple[int, ...] | None = None) -> Vectors:

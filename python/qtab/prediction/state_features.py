@@ -1,6 +1,5 @@
 """The features of the states of a prediction, and the initial weights, from the arguments."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,12 +8,18 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from qtab._utils.arrays import numbers
-from qtab._utils.shown import counted, shown
+from qtab._utils.shown import shown
 from qtab.discretizers import Discretizer
 from qtab.discretizers.weighted.polynomial import OF_FUNCTION
 from qtab.planning.least_squares.lstdq import GivenFeatures
-from qtab.planning.policies import discrete_observations
-from qtab.prediction.features import Rows, Vectors, are_floats, feature_rows, feature_vectors
+from qtab.prediction.features import (
+    Rows,
+    Vectors,
+    are_floats,
+    feature_rows,
+    feature_vectors,
+    features_of_function,
+)
 from qtab.prediction.learning_rates import AVERAGES_ONLY, LEAST_SQUARES, rate_settings
 from qtab.prediction.settings import PredictionSettings
 
@@ -115,35 +120,13 @@ def initial_weights(
 
 def _of_cells(features: GivenFeatures | None, cells: Discretizer, space: gym.Space[Any] | None) -> StateFeatures:
     if callable(features):
-        features = _of_function(features, cells, space)
+        features = features_of_function(features, cells, space)
     if features is not None and are_floats(features) and np.ndim(features) > 1:
         vectors = feature_vectors(features, cells.n_rows, cells.shape)
         count = vectors.shape[1]
         return StateFeatures(None, vectors, count, count, is_weighted=True)
     rows, n_weights = feature_rows(features, cells.n_rows)
     return StateFeatures(rows, None, n_weights, rows.shape[1], is_weighted=False)
-
-
-def _of_function(
-    function: Callable[[Any], Any], cells: Discretizer, space: gym.Space[Any] | None
-) -> NDArray[np.float64]:
-    """Returns (states, d): the numbers that a function returns for the observation of each state."""
-    if not isinstance(space, gym.spaces.Discrete | gym.spaces.MultiDiscrete | gym.spaces.Tuple):
-        raise ValueError(
-            f"features must be an array for observations that are not discrete, got a function; {OF_FUNCTION}"
-        )
-    vectors: list[NDArray[np.float64]] = []
-    for observation in discrete_observations(space, cells):
-        where = f"for the observation {shown(np.asarray(observation).tolist())}"
-        returned = function(observation)
-        if returned is None:
-            raise TypeError(f"features must return a vector of numbers, got None {where}")
-        vector = numbers(f"features {where}", returned)
-        if vector.ndim != 1 or not vector.size or (vectors and vector.shape != vectors[0].shape):
-            wanted = counted(len(vectors[0]), "number") if vectors else "numbers"
-            raise ValueError(f"features must return a vector of {wanted}, got the shape {vector.shape} {where}")
-        vectors.append(vector)
-    return np.stack(vectors)
 
 
 def _of_observations(features: GivenFeatures | None, cells: Discretizer) -> StateFeatures:

@@ -12,10 +12,11 @@ from qtab._utils import checks
 from qtab._utils.arrays import numbers
 from qtab._utils.memory import check_arrays
 from qtab.config.unknown import suggesting
+from qtab.planning.least_squares.lstdq import GivenFeatures
 from qtab.planning.policies import SUM_TOLERANCE, GivenPolicy, probabilities
 from qtab.planning.policy_values import policy_values
 from qtab.planning.table import opened_table
-from qtab.prediction.features import feature_matrix
+from qtab.prediction.features import feature_matrix, features_of_function
 from qtab.prediction.linear.chain import MATRICES, FloatArray, chain_of
 from qtab.prediction.linear.geometry import LinearGeometry
 
@@ -24,7 +25,7 @@ from qtab.prediction.linear.geometry import LinearGeometry
 def linear_geometry(
     env: str | EnvSpec | gym.Env,
     policy: GivenPolicy,
-    features: ArrayLike | None = None,
+    features: GivenFeatures | None = None,
     discount: float = 1.0,
     *,
     trace_decay: float = 0.0,
@@ -42,8 +43,8 @@ def linear_geometry(
             closed. Observations show the whole state.
         policy: The policy whose values are approximated, in the forms of :func:`qtab.policy_values`.
         features: (states, d) or (*cells, d) floats: the feature vector of each state; or, as in
-            :func:`qtab.estimate_values`, None for a table, or (states,) or (states, n_active) integers: the active
-            features in each state.
+            :func:`qtab.estimate_values`, None for a table, (states,) or (states, n_active) integers: the active
+            features in each state, or a function from an observation to its feature vector.
         discount: The discount γ, in [0, 1].
         trace_decay: λ, in [0, 1].
         behavior: The policy that chooses the actions, in the same forms; None means ``policy`` itself. It determines
@@ -69,6 +70,8 @@ def linear_geometry(
         cells, solver, states = table.cells, table.solver, table.cells.n_rows
         if len(solver.rows) != states:
             raise ValueError(f"env must show its whole state, which the observations of {table.name} do not")
+        if callable(features):
+            features = features_of_function(features, cells, table.env.observation_space)
         matrix = feature_matrix(features, states, cells.shape)
         d = matrix.shape[1]
         check_arrays(f"matrices of {d:,} x {d:,} numbers for {d:,} features", 8 * MATRICES * d**2)
