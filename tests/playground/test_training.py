@@ -154,6 +154,21 @@ def test_divergence_is_said(playground: Playground) -> None:
     assert "α" in playground.text("problem")
 
 
+def test_visits_are_shown_where_values_diverged(playground: Playground) -> None:
+    playground.open(
+        "#env=MountainCar-v0&algorithm=sarsa&discretizer=fourier&order=5&learning_rate=1&discount=1&episodes=500&epsilon=0"
+    )
+    assert playground.result()["state"] == "diverged"
+    values = "() => [...playground.view.visits.content.map.values].every(Number.isNaN)"
+    assert playground.page.evaluate(values)
+    shares = (
+        "() => { const { map, share } = playground.view.visits.content; return [...map.visits.keys()].map(share); }"
+    )
+    shown = playground.page.evaluate(shares)
+    assert min(shown) == 0
+    assert max(shown) == pytest.approx(1)
+
+
 def test_examples_show_failure_and_cure(playground: Playground) -> None:
     playground.open("#env=FrozenLake-v1")
     failed = playground.result()

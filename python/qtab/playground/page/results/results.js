@@ -59,7 +59,8 @@ export function learnedContent(map, [low, high], frame, path) {
 export function visitsContent(map, frame) {
   const most = Math.round(map.visits.reduce((largest, visits) => Math.max(largest, visits), 0));
   const top = Math.log1p(most) || 1;
-  const share = (cell) => (isWall(map.values, cell) ? NaN : Math.log1p(map.visits[cell]) / top);
+  // A plane has no walls: there values are NaN only if they diverged.
+  const share = (cell) => (!frame.plane && isWall(map.values, cell) ? NaN : Math.log1p(map.visits[cell]) / top);
   const palette = themeColors().isDark ? "darkVisits" : "visits";
   const label = `Map of the visits, ${describeSize(map)}: at most ${count(most)} visits of a cell.`;
   return { ...frame, map, greedy: null, palette, share, isUnvisited: () => false, path: null, label, most };
