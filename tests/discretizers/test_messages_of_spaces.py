@@ -1,5 +1,6 @@
 """What is refused about an observation or its space is named as the environment names it, with what would fit."""
 
+import re
 from typing import Any
 
 import gymnasium as gym
@@ -10,6 +11,7 @@ from gymnasium import spaces
 import qtab
 
 SHORT: dict[str, Any] = {"seed": 0, "episodes": 2, "max_episode_steps": 3}
+WRAPPERS = ("DtypeObservation", "FlattenObservation")
 ROOM = spaces.Dict(
     {"speed": spaces.Box(-1, 1, (2,), np.float32), "floor": spaces.Discrete(4, start=5), "lamps": spaces.MultiBinary(2)}
 )
@@ -82,6 +84,25 @@ def test_a_component_of_an_observation_is_named_by_its_keys(observation: Any, me
 def test_a_space_is_refused_with_what_would_fit(space: Any, settings: Any, message: str) -> None:
     with pytest.raises(ValueError, match=message):
         qtab.train(Still(space), **settings, **SHORT)
+
+
+@pytest.mark.parametrize(
+    ("space", "wrapper"),
+    [
+        (spaces.Discrete(4), "DtypeObservation(FlattenObservation(env), np.float32)"),
+        (spaces.Box(0, 5, (2, 2), np.uint8), "DtypeObservation(FlattenObservation(env), np.float32)"),
+        (spaces.Box(0, 5, (2,), np.int64), "DtypeObservation(env, np.float32)"),
+        (spaces.Box(0, 5, (2, 2)), "FlattenObservation(env)"),
+        (spaces.Dict({"floor": spaces.Discrete(3), "speed": spaces.Box(0, 1, (2,))}), "FlattenObservation(env)"),
+    ],
+)
+def test_weighted_features_name_the_wrappers_with_which_they_work(space: Any, wrapper: str) -> None:
+    settings: dict[str, Any] = {"discretizer": "polynomial", "order": 1, "coupled": False, **SHORT}
+    env = Still(space)
+    with pytest.raises(ValueError, match=re.escape(f"; {wrapper} of gymnasium.wrappers makes one")):
+        qtab.train(env, **settings)
+    names = {"env": env, "np": np, **{name: getattr(gym.wrappers, name) for name in WRAPPERS}}
+    assert qtab.train(eval(wrapper, names), **settings).completed  # noqa: S307 - one of the strings above
 
 
 @pytest.mark.slow

@@ -63,11 +63,12 @@ class WeightedFeatures(BoxDiscretizer):
         """
         if not isinstance(space, spaces.Box) or len(space.shape) != 1 or space.dtype not in FLOATS:
             is_flat = isinstance(space, spaces.Box) and len(space.shape) == 1
-            wrapper = "DtypeObservation(env, np.float32)" if is_flat else "FlattenObservation"
+            wrapped = "env" if is_flat else "FlattenObservation(env)"
+            wrapper = wrapped if _has_floats(space) else f"DtypeObservation({wrapped}, np.float32)"
             raise ValueError(
                 "discretizer must be another one for an observation space that is not a Box of float32 or float64 with "
-                f"one axis, {' '.join(str(space).split())}, got {config.discretizer!r}; gymnasium.wrappers.{wrapper} "
-                "makes one"
+                f"one axis, {' '.join(str(space).split())}, got {config.discretizer!r}; {wrapper} of "
+                "gymnasium.wrappers makes one"
             )
         limits = span(space, config.low, config.high)
         built = cls(space.low, space.high, limits, **cls.options(config, len(space.low)))
@@ -143,3 +144,10 @@ class WeightedFeatures(BoxDiscretizer):
         """Returns the part of :meth:`spec` that all weighted features have."""
         low, high = self.span
         return {"dtype": self.dtype, "low": low.tolist(), "high": high.tolist()}
+
+
+def _has_floats(space: Any) -> bool:
+    """Returns whether the observations of a space hold numbers of float32 or float64, also once they are flattened."""
+    if isinstance(space, spaces.Dict | spaces.Tuple):
+        return any(map(_has_floats, space.spaces.values() if isinstance(space, spaces.Dict) else space.spaces))
+    return isinstance(space, spaces.Box) and space.dtype in FLOATS
