@@ -109,7 +109,7 @@ def _masks(run: Run | Runs, table: TabulatedEnv, rows: NDArray[Any]) -> NDArray[
 def _leaves_out_actions(table: TabulatedEnv) -> bool:
     """Returns whether the table does not have the outcomes of unavailable actions: they end the episode there."""
     unavailable = [] if table.masks is None else np.argwhere(~table.masks).tolist()
-    return any(table.P[state][action][0][3] for state, action in unavailable[:1])
+    return bool(unavailable) and all(table.P[state][action][0][3] for state, action in unavailable)
 
 
 def _entered(table: TabulatedEnv) -> set[int]:

@@ -19,12 +19,11 @@ REFUSED = {
     "np.full(2, max(0, x))[0]": "sometimes an integer and sometimes a float",
     "(np.array([n, m]) * max(0, x))[0]": "sometimes an integer and sometimes a float",
     "-[n, x].pop()": "sometimes an integer and sometimes a float",
-    "(p if q else n) + p": "sometimes a boolean",
+    "(p if q else n) + p": "sometimes a boolean|arithmetic of booleans",  # the latter with Numba 0.61
     "-([n] + [x])[0]": "a list of int64 and float64",
     "[n, p][1] + p": "booleans in a list of int64",
     "([n] + [p])[1] + p": "a list of int64 and bool",
     "{n: m}.popitem()[1]": r"dict.popitem\(\)",
-    "max(n, p)": "max of a boolean and a number",
     # Sets, lists, sums and sorts.
     "x in {1, 2}": "float64 beside int64 in a set",
     "{n: np.float32(x), m: y}[n]": "numbers of several types in a dict",
@@ -56,7 +55,6 @@ REFUSED = {
     "list(map(abs, [n, m]))[0]": "map is not checked in compiled code",
     "hash(x)": "another result in compiled code",
     "p is True": "write ==",
-    "max(n)": "give two numbers or more",
     "len(range(x))": "range of float64",
 }
 
@@ -68,6 +66,16 @@ def test_numbers_that_would_differ_are_refused_with_their_line(expression: str) 
         in_functional_env(expression)
     assert raised.value.line
     assert raised.value.advice
+
+
+MAX = {"max(n, p)": "max of a boolean and a number", "max(n)": "give two numbers or more"}
+
+
+@pytest.mark.parametrize("expression", MAX)
+def test_a_max_of_other_numbers_is_refused_by_the_checks_or_by_numba_itself(expression: str) -> None:
+    of_numba = r"No implementation of function Function\(<built-in function max>\)"  # of 0.61
+    with pytest.raises(NotCompilable, match=f"{MAX[expression]}|{of_numba}"):
+        in_functional_env(expression)
 
 
 NAN = {"x": math.nan, "y": math.nan}
