@@ -88,17 +88,13 @@ impl WeightedSpec {
     }
 }
 
-/// Evaluates an expression in which the constant `$m` is a capacity for at least `$len` features, at most
-/// [`MAX_FEATURES`].
+/// Evaluates an expression in which the constant `$m` is a capacity for at least `$len` features: 64 or [`MAX_FEATURES`]. A
+/// third would make the extension several percent larger.
 macro_rules! match_capacity {
     ($len:expr, $m:ident => $compiled:expr) => {
         match $len {
             0..=64 => {
                 const $m: usize = 64;
-                $compiled
-            }
-            65..=256 => {
-                const $m: usize = 256;
                 $compiled
             }
             _ => {
