@@ -192,7 +192,7 @@ def test_the_table_of_toy_text_has_the_outcomes_of_unavailable_actions() -> None
 
 def test_an_environment_with_other_arguments_is_refused(best: qtab.Optimum) -> None:
     run = qtab.train(limited(Errand(cost=2.0)), seed=0, episodes=10)
-    expected = r"that the table was made of, got another one: its attribute cost was 2\.0 in training, and is 1\.0"
+    expected = r"that the table was made of, got another one: its attribute cost was 1\.0, and is now 2\.0"
     with pytest.raises(ValueError, match=expected):
         best.gap(run)
     with pytest.raises(ValueError, match=expected):

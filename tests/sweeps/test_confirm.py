@@ -80,7 +80,7 @@ def test_a_loaded_sweep_is_confirmed_as_the_sweep_itself(tmp_path: Path) -> None
         ({"top": 0}, ValueError, "top must be an integer from 1 to 6, got 0"),
         ({"top": 7}, ValueError, "top must be an integer from 1 to 6, got 7"),
         ({"env": 3}, TypeError, "env must be"),
-        ({"env": "Acrobot-v1"}, ValueError, "got another one: the run was trained on MountainCar-v0, not on Acrobot"),
+        ({"env": "Acrobot-v1"}, ValueError, "got another one: it was MountainCar-v0, and is now Acrobot"),
     ],
 )
 def test_bad_arguments_are_refused(arguments: dict[str, Any], error: type[Exception], message: str) -> None:

@@ -69,7 +69,7 @@ def test_the_table_of_a_store_takes_the_function_that_made_the_environment(tmp_p
     table = qtab.load_sweep(path)
     assert_same_run(table.run(0, 1, env=make), made.run(0, 1))
     assert len(table.confirm(2, env=make).confirmed) == 2
-    with pytest.raises(ValueError, match="its argument is_slippery was False in training, and is True"):
+    with pytest.raises(ValueError, match="its argument is_slippery was False, and is now True"):
         table.run(0, 1, env=lambda: gym.make("FrozenLake-v1", is_slippery=True))
 
 

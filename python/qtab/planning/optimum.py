@@ -195,7 +195,7 @@ class Optimum:
                 raise ValueError(f"run must have {name} {ours!r} as this optimum has, got {theirs!r}")
         description = trained_on(config)
         if description is not None and self.environment is not None:
-            found = differences(description, self.environment)
+            found = differences(self.environment, description)
             if found:
                 raise ValueError(f"run must be on the environment of this optimum, got another one: {'; '.join(found)}")
 

@@ -46,7 +46,7 @@ def on_table(run: AnyRun, table: TabulatedEnv) -> AnyRun:
     if made_of is None or gymnasium_id(config.env) != gymnasium_id(made_of.name):
         return run
     description = trained_on(config)
-    found = [] if description is None else differences(description, made_of)
+    found = [] if description is None else differences(made_of, description)
     if found:
         raise ValueError(f"run must be on the environment that the table was made of, got another one: {found[0]}")
     cells: Discretizer = Identity.of_space(table.observation_space, len(run.actions))

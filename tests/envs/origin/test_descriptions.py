@@ -106,24 +106,24 @@ def other_space(env: Any) -> Any:
 
 
 DIFFERENT: dict[str, tuple[Callable[[], Any], Callable[[], Any], str]] = {
-    "id": (car, lambda: gym.make("CartPole-v1"), "trained on MountainCar-v0, not on CartPole-v1"),
+    "id": (car, lambda: gym.make("CartPole-v1"), "it was MountainCar-v0, and is now CartPole-v1"),
     "argument": (
         car,
         lambda: car(goal_velocity=0.1),
-        "its argument goal_velocity was not given in training, and is 0.1",
+        "its argument goal_velocity was not given, and is now 0.1",
     ),
-    "attribute": (car, lambda: changed(car(), force=0.01), "its attribute force was 0.001 in training, and is 0.01"),
+    "attribute": (car, lambda: changed(car(), force=0.01), "its attribute force was 0.001, and is now 0.01"),
     "method": (car, lambda: changed(car(), step=lambda action: None), "its attribute step was as the constructor"),
-    "table": (lambda: gym.make(LAKE), lake_with_rewards, "its transition table is not that of the training"),
+    "table": (lambda: gym.make(LAKE), lake_with_rewards, "its transition table has changed"),
     "wrapper": (
         lambda: RescaleObservation(car(), np.float32(0), np.float32(1)),
         car,
-        "was trained in the wrapper RescaleObservation, and this environment is without a wrapper",
+        "it was in the wrapper RescaleObservation, and is now without a wrapper",
     ),
     "argument of a wrapper": (
         lambda: ClipReward(car(), -1.0, 0.0),
         lambda: ClipReward(car(), -2.0, 0.0),
-        "of the wrapper ClipReward, the argument min_reward was -1.0 in training, and is -2.0",
+        "of the wrapper ClipReward, the argument min_reward was -1.0, and is now -2.0",
     ),
     "function of a wrapper": (
         lambda: TransformReward(car(), lambda reward: 2 * float(reward)),
@@ -133,37 +133,37 @@ DIFFERENT: dict[str, tuple[Callable[[], Any], Callable[[], Any], str]] = {
     "attribute of a wrapper": (
         lambda: Padded(car(), 1.0),
         lambda: Padded(car(), 2.0),
-        "of the wrapper Padded, the attribute amount was 1.0 in training, and is 2.0",
+        "of the wrapper Padded, the attribute amount was 1.0, and is now 2.0",
     ),
     "attribute of a wrapper without arguments": (
         lambda: Doubled(car()),
         lambda: changed_layer(Doubled(car()), factor=5),
-        "of the wrapper Doubled, the attribute factor was 2 in training, and is 5",
+        "of the wrapper Doubled, the attribute factor was 2, and is now 5",
     ),
     "attribute of Taxi": (
         lambda: gym.make("Taxi-v4"),
         lambda: changed(gym.make("Taxi-v4"), fickle_passenger=True),
-        "its attribute fickle_passenger was as the constructor leaves it in training, and is True",
+        "its attribute fickle_passenger was as the constructor leaves it, and is now True",
     ),
     "bounds": (
         lambda: other_space(car()),
         lambda: TransformObservation(car(), np.array, gym.spaces.Box(-3.0, 2.0, (2,), np.float32)),
-        "its observation_space was Box(-2.0, 2.0, (2,), float32) in training, and is Box(",
+        "its observation_space was Box(-2.0, 2.0, (2,), float32), and is now Box(",
     ),
     "order of a MultiDiscrete": (
         lambda: changed(Corridor(), observation_space=gym.spaces.MultiDiscrete([4, 6])),
         lambda: changed(Corridor(), observation_space=gym.spaces.MultiDiscrete([6, 4])),
-        "its observation_space was MultiDiscrete([4 6]) in training, and is MultiDiscrete([6 4])",
+        "its observation_space was MultiDiscrete([4 6]), and is now MultiDiscrete([6 4])",
     ),
     "constructor of a class without an id": (
         Corridor,
         lambda: Corridor(-7.0),
-        "its attribute penalty was -1.0 in training, and is -7.0",
+        "its attribute penalty was -1.0, and is now -7.0",
     ),
     "transitions of a class without an id": (
         lambda: qtab.TabularEnv([[[(1.0, 0, -1.0, True)]]], [1.0]),
         lambda: qtab.TabularEnv([[[(1.0, 0, -7.0, True)]]], [1.0]),
-        "its transition table is not that of the training",
+        "its transition table has changed",
     ),
 }
 

@@ -181,7 +181,7 @@ def test_an_edited_object_verifies_only_against_itself():
     run = qtab.train(env, seed=0, episodes=10)
     assert qtab.verify(run, env=env).equal
     assert qtab.verify(run).equal  # in an environment that was made again
-    with pytest.raises(ValueError, match=r"its attribute force was 0\.002 in training, and is 0\.001"):
+    with pytest.raises(ValueError, match=r"its attribute force was 0\.002, and is now 0\.001"):
         qtab.verify(run, env=gym.make("MountainCar-v0"))
 
 

@@ -61,7 +61,7 @@ def make_again(
 
 def cannot_be_made(description: EnvironmentDescription, reason: str) -> ValueError:
     """Returns the error for an environment that cannot be made again."""
-    return ValueError(f"env must be given: the environment {description.name} cannot be made as in training: {reason}")
+    return ValueError(f"env must be given: the environment {description.name} cannot be made as it was: {reason}")
 
 
 def _wrapped(env: gym.Env, description: EnvironmentDescription) -> gym.Env:

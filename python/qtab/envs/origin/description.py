@@ -159,14 +159,15 @@ def differences(trained_on: EnvironmentDescription, given: EnvironmentDescriptio
 
     The id of this package and that of Gymnasium count as equal, since they have the same numbers. The time limit is a
     setting of the run, and is compared there. Edited code of the user may still give the same numbers, so that it
-    is only logged, once per process.
+    is only logged, once per process. The sentences do not name a run, because estimates and tables have an environment
+    too.
 
     Args:
-        trained_on: The environment of the training.
-        given: The other environment.
+        trained_on: The environment of a run, of estimates or of a table.
+        given: The environment to compare with it.
     """
     for name in _edited(trained_on, given):
-        _log_once(f"the code of {name} was edited since the training of {trained_on.name}: its numbers may differ")
+        _log_once(f"the code of {name} was edited: its numbers may differ from those before")
     return list(_all(trained_on, given))
 
 
@@ -185,31 +186,31 @@ def _log_once(message: str) -> None:
 
 def _all(ours: EnvironmentDescription, theirs: EnvironmentDescription) -> Iterator[str]:
     if _bare(ours.name) != _bare(theirs.name):
-        yield f"the run was trained on {ours.name}, not on {theirs.name}"
+        yield f"it was {ours.name}, and is now {theirs.name}"
         return
     if not (ours.code == theirs.code == LIBRARY):
         if _class_name(ours) != _class_name(theirs):
-            yield f"the run was trained on the class {ours.cls}, not on {theirs.cls}"
+            yield f"its class was {ours.cls}, and is now {theirs.cls}"
         elif LIBRARY in (ours.code, theirs.code):
-            yield f"methods of its class {_class_name(ours)} were replaced {_when(ours)}"
+            yield f"methods of its class {_class_name(ours)} {_replaced(ours)}"
     yield from _values("its argument", ours.kwargs, theirs.kwargs, "not given")
     yield from _values("its attribute", ours.attributes, theirs.attributes, _NOT_SET)
     if ours.table != theirs.table:
-        yield "its transition table is not that of the training"
+        yield "its transition table has changed"
     yield from _wrappers(ours.wrappers, theirs.wrappers)
     for name in ("observation_space", "action_space"):
         one, other = getattr(ours, name), getattr(theirs, name)
         if one != other:
-            yield f"its {name} was {without_digest(one)} in training, and is {without_digest(other)}"
+            yield f"its {name} was {without_digest(one)}, and is now {without_digest(other)}"
 
 
 def _wrappers(ours: tuple[WrapperDescription, ...], theirs: tuple[WrapperDescription, ...]) -> Iterator[str]:
     if [wrapper.name for wrapper in ours] != [wrapper.name for wrapper in theirs]:
-        yield f"the run was trained {_listed(ours)}, and this environment is {_listed(theirs)}"
+        yield f"it was {_listed(ours)}, and is now {_listed(theirs)}"
         return
     for one, other in zip(ours, theirs, strict=True):
         if one.code != other.code and LIBRARY in (one.code, other.code):
-            yield f"methods of the wrapper {one.name} were replaced {_when(one)}"
+            yield f"methods of the wrapper {one.name} {_replaced(one)}"
         what = f"of the wrapper {one.name}, the"
         if one.kwargs is not None and other.kwargs is not None:
             yield from _values(f"{what} argument", one.kwargs, other.kwargs, "not given")
@@ -225,11 +226,11 @@ def _values(what: str, ours: Mapping[str, Any], theirs: Mapping[str, Any], missi
     for name in sorted(ours.keys() | theirs.keys()):
         if name in ours and name in theirs and same(ours[name], theirs[name]):
             continue
-        yield f"{what} {name} was {show(ours, name)} in training, and is {show(theirs, name)}"
+        yield f"{what} {name} was {show(ours, name)}, and is now {show(theirs, name)}"
 
 
-def _when(ours: EnvironmentDescription | WrapperDescription) -> str:
-    return "after the training" if ours.code == LIBRARY else "in training, and are not replaced now"
+def _replaced(ours: EnvironmentDescription | WrapperDescription) -> str:
+    return "have been replaced since" if ours.code == LIBRARY else "were replaced, and are not now"
 
 
 def _class_name(description: EnvironmentDescription | WrapperDescription) -> str:
