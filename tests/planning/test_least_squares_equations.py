@@ -1,10 +1,11 @@
-"""The equations of least-squares policy iteration: near singularity, in tasks of one step, and with masks."""
+"""The equations of least-squares policy iteration: near singularity, for one step, with masks and features of runs."""
 
 from typing import Any
 
 import numpy as np
 import pytest
 
+import qtab
 from qtab.planning import Transitions, lspi, lstdq
 
 
@@ -57,3 +58,18 @@ def test_matrices_that_do_not_fit_into_memory_are_refused(epsilon: float, monkey
     monkeypatch.setattr("qtab._utils.memory.memory_limit", lambda _: 8 * 5 * 2 * 10**2)
     with pytest.raises(MemoryError, match=r"^matrices of 20 x 20 numbers for 10 features of 2 actions need 15.6 KiB"):
         lstdq(batch, np.ones((2, 10)), [0, 1], 0.9, epsilon=epsilon)  # the blocks of the actions fit, all of A does not
+
+
+def test_a_discretizer_and_its_rows_are_not_feature_vectors() -> None:
+    batch = Transitions.sample("MountainCar-v0", 200, seed=0)
+    settings: dict[str, Any] = {"algorithm": "sarsa", "preset": None, "learning_rate": 0.001, "episodes": 1, "seed": 0}
+    basis: Any = qtab.train("MountainCar-v0", discretizer="fourier", order=3, **settings).discretizer
+    tiles: Any = qtab.train("MountainCar-v0", discretizer="tiles", **settings).discretizer
+    as_vector = "a vector is 1 at the active_rows and 0 elsewhere"
+    for given, hint in ((basis, "its feature_values does"), (tiles, as_vector), (tiles.active_rows, as_vector)):
+        expected = f"^features must be an array or a function that returns vectors, got <.*>; {hint}$"
+        with pytest.raises(TypeError, match=expected):
+            lspi(batch, given)
+    assert lspi(batch, basis.feature_values, epsilon=0.01).weights.shape == (16, 3)
+    vector = lambda seen: np.isin(np.arange(tiles.n_rows), tiles.active_rows(seen))  # noqa: E731
+    assert lspi(batch, vector, epsilon=0.01).weights.shape == (648, 3)

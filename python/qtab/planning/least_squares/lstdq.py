@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from qtab._utils import checks
 from qtab._utils.arrays import numbers
 from qtab._utils.shown import shown
+from qtab.discretizers import Discretizer
 from qtab.planning.least_squares.equations import Batch, FloatArray
 from qtab.planning.least_squares.transitions import Transitions
 
@@ -95,9 +96,11 @@ def feature_vectors(features: GivenFeatures, observations: NDArray[Any]) -> Floa
     """Returns the feature vectors of observations, (n, d) float64; see :func:`lstdq`.
 
     Raises:
-        TypeError: if the features are not numbers, or an array is given for observations that are not integers.
+        TypeError: if the features are not numbers, an array is given for observations that are not integers, or a
+            discretizer or its rows are given.
         ValueError: for another shape, or a number that is not finite.
     """
+    _check_vectors(features)
     if callable(features):
         try:
             given: Any = np.array([features(one) for one in each(observations)])
@@ -111,6 +114,21 @@ def feature_vectors(features: GivenFeatures, observations: NDArray[Any]) -> Floa
         return vectors
     vectors = _looked_up("features", numbers("features", features), observations, axes=1)
     return np.ascontiguousarray(vectors)
+
+
+def _check_vectors(features: Any) -> None:
+    """Checks that features are not a discretizer, or its row numbers, which would count as feature vectors.
+
+    Raises:
+        TypeError: if they are.
+    """
+    owner = getattr(features, "__self__", features)
+    if not isinstance(owner, Discretizer):
+        return
+    is_weighted = hasattr(owner, "feature_values")
+    if features is owner or not is_weighted:
+        hint = "its feature_values does" if is_weighted else "a vector is 1 at the active_rows and 0 elsewhere"
+        raise TypeError(f"features must be an array or a function that returns vectors, got {owner!r}; {hint}")
 
 
 def chosen_actions(name: str, policy: GivenActions, transitions: Transitions) -> NDArray[np.int64]:
