@@ -44,7 +44,7 @@ def test_threads_do_not_change_runs_and_their_memory_is_limited(kind: Any) -> No
     assert one.tables is not None
     assert two.tables is not None
     assert one.tables.tobytes() == two.tables.tobytes()
-    with pytest.raises(MemoryError, match=r"^5 runs of 3 episodes need .* more than memory_limit=3000 "):
+    with pytest.raises(MemoryError, match=r"^5 runs of 3 episodes would take .* more than memory_limit=3000 "):
         qtab.train_many(CAR, seeds=5, tables=True, discretizer=kind, memory_limit=3000, **SHORT)
 
 

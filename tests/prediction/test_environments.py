@@ -35,7 +35,7 @@ def test_memory_of_runs_in_progress_is_counted(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr("qtab.prediction.estimate.memory_limit", lambda _: 500)
     settings: dict[str, Any] = {"episodes": 2, "seeds": [0], "record": 2}
     qtab.estimate_values("FrozenLake-v1", "random", method="td", **settings)
-    with pytest.raises(MemoryError, match=r"^1 run of 'batch_td' with 1 recorded episode .* need 896 bytes"):
+    with pytest.raises(MemoryError, match=r"^1 run of 'batch_td' with 1 recorded episode .* would take 896 bytes"):
         qtab.estimate_values("FrozenLake-v1", "random", method="batch_td", **settings)
 
 

@@ -7,6 +7,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from qtab._utils import checks
+from qtab._utils.shown import plural
 
 DEFAULT_LIMIT = 4 * 2**30
 """The limit in bytes if the memory of the machine is unknown."""
@@ -72,17 +73,15 @@ def check_memory(what: str, needed: int, limit: int, instead: str = "") -> None:
     Raises:
         MemoryError: if the data do not fit.
     """
+    size = f"{what} would take {readable_size(needed)}"
     if needed > limit:
         default = ", by default half of the machine's memory" if limit == memory_limit(None) else ""
         raise MemoryError(
-            f"{what} need {readable_size(needed)}, more than memory_limit={limit} ({readable_size(limit)}{default}); "
-            f"request less, or increase memory_limit{instead}"
+            f"{size}, more than memory_limit={limit} ({readable_size(limit)}{default}); request less, or increase "
+            f"memory_limit{instead}"
         )
     if needed > ALWAYS_FREE and limit == memory_limit(None) and needed > (free := free_memory()):
-        raise MemoryError(
-            f"{what} need {readable_size(needed)}, more than the {readable_size(free)} of memory that are free; "
-            f"request less{instead}"
-        )
+        raise MemoryError(f"{size}, more than the {readable_size(free)} of memory that are free; request less{instead}")
 
 
 def check_arrays(what: str, needed: int) -> None:
@@ -114,7 +113,8 @@ def memory_left(needed: int, limit: int) -> tuple[int, int]:
 def readable_size(count: int) -> str:
     """Returns a number of bytes as text in a suitable unit."""
     power = min(int(math.log2(max(count, 1))) // 10, 4)
-    return f"{count / 2 ** (10 * power):.3g} {('bytes', 'KiB', 'MiB', 'GiB', 'TiB')[power]}"
+    unit = (plural("byte", count), "KiB", "MiB", "GiB", "TiB")[power]
+    return f"{count / 2 ** (10 * power):.3g} {unit}"
 
 
 def _windows_memory() -> tuple[int, int]:

@@ -27,9 +27,20 @@ def shown(value: Any) -> str:
     return f"{text[:half]} ... {text[-half:]}"
 
 
+def plural(noun: str, count: int) -> str:
+    """Returns the noun of a count: ``"number"`` for 1, ``"numbers"`` otherwise."""
+    return noun if count == 1 else f"{noun}s"
+
+
 def counted(count: int, noun: str) -> str:
     """Returns a count with its noun: ``"1 number"``, ``"2 numbers"``."""
-    return f"{count:,} {noun}{'' if count == 1 else 's'}"
+    return f"{count:,} {plural(noun, count)}"
+
+
+def last_of(count: int, noun: str = "") -> str:
+    """Returns ``"last number"`` or ``"last 100 numbers"``; ``"last"`` or ``"last 100"`` without a noun."""
+    number = "" if count == 1 else f" {count:,}"
+    return f"last{number} {plural(noun, count)}" if noun else f"last{number}"
 
 
 def nearest(word: str, known: Iterable[str]) -> str | None:

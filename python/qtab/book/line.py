@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from qtab._utils.shown import counted
 from qtab.book.runner import FloatArray
 
 
@@ -46,10 +47,10 @@ class Line(LineStyle):
     def __repr__(self) -> str:
         """Returns one line of text, without the points."""
         count = len(self.x)
-        points = f"{count:,} point{'' if count == 1 else 's'}"
+        points = counted(count, "point")
         if count:
             points += f" from {self.x[0]:g} to {self.x[-1]:g}"
-        return f"<Line {self.name!r}: {points}, {self.runs:,} runs>"
+        return f"<Line {self.name!r}: {points}, {counted(self.runs, 'run')}>"
 
 
 def line_from_samples(

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from qtab._utils import html
 from qtab._utils.data_frames import data_frame
 from qtab._utils.files import replacing
+from qtab._utils.shown import counted
 from qtab.book.description import Description
 from qtab.book.line import Line, joined
 from qtab.book.runner import FloatArray
@@ -55,8 +56,8 @@ class Result:
 
     def __repr__(self) -> str:
         """Returns one line; ``str(result)`` is the table."""
-        lines = f"{len(self.lines)} line{'' if len(self.lines) == 1 else 's'}"
-        return f"<Result of {self.experiment.heading}: {lines}, {self.runs:,} runs of each setting, seed {self.seed}>"
+        lines, runs = counted(len(self.lines), "line"), counted(self.runs, "run")
+        return f"<Result of {self.experiment.heading}: {lines}, {runs} of each setting, seed {self.seed}>"
 
     def _repr_html_(self) -> str:
         """HTML for notebooks: a table with the lowest and the highest point of each line, and the lines."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from qtab._utils import checks
 from qtab._utils.files import check_writable
-from qtab._utils.shown import counted
+from qtab._utils.shown import counted, last_of
 from qtab.callbacks import Checkpoint
 from qtab.cli.reporting import Report
 from qtab.config import Config
@@ -104,13 +104,8 @@ class Outputs:
             self.files["record"] = self._record
             self._say(f"Saved {counted(len(run.recordings), 'video')} to {self._record}")
         if self._screen is not None:
-            self._say(f"Showing {last_episodes(len(run.recordings))}")
+            self._say(f"Showing the {last_of(len(run.recordings), 'episode')}")
             different = replay_all(self._screen, run)
         if different:
             returned = f"{different} of them had another return than in training"
             self._say(f"{returned}: the environment keeps state besides its random generator")
-
-
-def last_episodes(count: int) -> str:
-    """Returns ``the last episode`` or, for more, ``the last 100 episodes``."""
-    return "the last episode" if count == 1 else f"the last {counted(count, 'episode')}"

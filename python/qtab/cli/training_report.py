@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from qtab.cli.outputs import Outputs, last_episodes
+from qtab._utils.shown import last_of
+from qtab.cli.outputs import Outputs
 from qtab.cli.reporting import Report
 from qtab.config import Config
 from qtab.config.presets import presets
@@ -136,7 +137,7 @@ def _summary_text(run: Run) -> str:
         return f"No episode was finished in {run.seconds:.3g} s"
     speed = f" ({steps / run.seconds:,.0f} steps/s)" if run.seconds > 0 else ""
     took = f"{steps:,} steps in {run.seconds:.3g} s{speed}"
-    return f"Mean return over {last_episodes(len(returns))}: {returns.mean():.2f}; {took}"
+    return f"Mean return over the {last_of(len(returns), 'episode')}: {returns.mean():.2f}; {took}"
 
 
 def _best_mean(run: Run) -> float | None:
@@ -172,7 +173,7 @@ def _gap_text(run: Run, gap: "Gap[float] | None") -> str | None:
         return text[0].upper() + text[1:]
     if not is_usual_mountain_car(run.config) or not len(run.episode_returns):
         return None
-    last = last_episodes(min(len(run.episode_returns), FINAL_EPISODES))
+    last = f"the {last_of(min(len(run.episode_returns), FINAL_EPISODES), 'episode')}"
     short = BEST_KNOWN_MOUNTAIN_CAR - _final_return(run)
     return f"Best known {BEST_KNOWN_MOUNTAIN_CAR:.4g}, gap {short:.4g} over {last}"
 

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
 from qtab._utils import html
-from qtab._utils.shown import counted
+from qtab._utils.shown import counted, last_of
 from qtab.diagnosis.facts import Facts
 from qtab.diagnosis.finding import COLUMNS, Finding
 from qtab.diagnosis.what_if import WhatIf, try_changes
@@ -121,8 +121,8 @@ class Diagnosis:
         if played is None:
             return ""
         greedy = counted(len(played.returns), "greedy episode")
-        last = counted(verdict.last, "training episode")
-        return f"Mean returns: {played.returns.mean():.4g} in {greedy}, {verdict.final_return:.4g} in the last {last}."
+        last = last_of(verdict.last, "training episode")
+        return f"Mean returns: {played.returns.mean():.4g} in {greedy}, {verdict.final_return:.4g} in the {last}."
 
     def _not_checked(self) -> Iterator[str]:
         for reason in dict.fromkeys(self.reasons.values()):

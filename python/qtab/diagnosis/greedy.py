@@ -8,7 +8,7 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab._utils.shown import counted
+from qtab._utils.shown import counted, last_of
 from qtab.diagnosis.finding import Finding, Share, Unchecked, changes, percent
 from qtab.envs.actions import flat
 from qtab.envs.registry import UNLIMITED_MAX_EPISODE_STEPS
@@ -126,7 +126,7 @@ def greedy_loop(facts: "Facts") -> Finding | Unchecked | None:
         title="The greedy policy repeats states until the time limit.",
         evidence={
             "greedy policy": float(returns.mean()),
-            f"last {len(last)} training episodes": float(last.mean()),
+            last_of(len(last), "training episode"): float(last.mean()),
             "share of greedy episodes that repeat states": Share(share),
             "time limit": run.config.max_episode_steps or UNLIMITED_MAX_EPISODE_STEPS,
         },

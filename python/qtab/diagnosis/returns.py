@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from qtab._utils.shown import last_of
 from qtab.config.presets import presets
 from qtab.diagnosis.facts import Facts
 from qtab.diagnosis.finding import Finding, Share, Unchecked, changes, percent
@@ -17,7 +18,7 @@ def not_solved(facts: Facts) -> Finding | Unchecked | None:
     goal = verdict.goal.least
     if verdict.solved is None or goal is None:
         return Unchecked(verdict.why_unknown)
-    evidence = {f"last {verdict.last} training episodes": verdict.final_return}
+    evidence = {last_of(verdict.last, "training episode"): verdict.final_return}
     if verdict.greedy_return is not None:
         evidence["greedy policy"] = verdict.greedy_return
     if verdict.goal.threshold is not None:

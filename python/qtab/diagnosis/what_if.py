@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from qtab._utils import html
 from qtab._utils.progress import ProgressBar, check_progress
+from qtab._utils.shown import counted
 from qtab.config import Config
 from qtab.config.origin import copied
 from qtab.diagnosis.facts import Facts
@@ -41,7 +42,7 @@ class Trial:
     def __repr__(self) -> str:
         """Returns one line: the change and its gain."""
         gained = "" if self.comparison is None else f", difference {_interval(self.comparison)}"
-        solved = "" if self.solved is None else f", {self.solved} of {len(self.returns)} seeds solved"
+        solved = "" if self.solved is None else f", {self.solved} of {counted(len(self.returns), 'seed')} solved"
         change = as_keywords(self.change)
         return f"<Trial of {change}: mean return {number_text(float(self.returns.mean()))}{gained}{solved}>"
 
@@ -87,10 +88,9 @@ class WhatIf:
         return html.sentences(self._heading(), columns, rows, self._failures())
 
     def _heading(self) -> str:
-        config = self.config
+        config, seeds = self.config, counted(len(self.seeds), "seed")
         return (
-            f"{config.env}, {config.algorithm}: one change at a time over {len(self.seeds)} seeds, mean return of the "
-            "last 100 episodes"
+            f"{config.env}, {config.algorithm}: one change at a time over {seeds}, mean return of the last 100 episodes"
         )
 
     def _rows(self) -> list[list[str]]:

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from qtab._utils import html
 from qtab._utils.fields import with_fields
+from qtab._utils.shown import counted
 
 Number = TypeVar("Number", float, NDArray[np.float64])
 """A float for one run, (runs,) float64 for several."""
@@ -54,12 +55,12 @@ class Gap(Generic[Number]):
 
     def __repr__(self) -> str:
         """A one-line summary; for several runs, with their means."""
-        count = f" of {np.size(self.final_return)} runs" if np.ndim(self.final_return) else ""
+        count = f" of {counted(np.size(self.final_return), 'run')}" if np.ndim(self.final_return) else ""
         return f"<Gap{count}: {self}>"
 
     def _repr_html_(self) -> str:
         """A table of the returns and the gaps, for notebooks."""
-        heading = f"Gap of {np.size(self.final_return)} runs" if np.ndim(self.final_return) else "Gap"
+        heading = f"Gap of {counted(np.size(self.final_return), 'run')}" if np.ndim(self.final_return) else "Gap"
         rows = [
             ("greedy policy", *map(_shown, (self.greedy_return, self.greedy))),
             ("last 100 episodes of training", *map(_shown, (self.final_return, self.final))),

@@ -159,7 +159,7 @@ def recorded_episodes(record: Any, episodes: int) -> NDArray[np.uint64]:
     if not checks.is_sequence(record):
         every = checks.count("record", record, least=1)
         count = math.ceil(episodes / every)
-        check_memory(f"{count} recorded episodes (record= keeps fewer)", 8 * count, memory_limit(None))
+        check_memory(f"{counted(count, 'recorded episode')} (record= keeps fewer)", 8 * count, memory_limit(None))
         points = np.arange(1, count + 1, dtype=np.uint64) * np.uint64(every)
         points[-1] = episodes
         return points

@@ -12,7 +12,7 @@ import numpy as np
 from qtab._utils import checks
 from qtab._utils.files import check_writable, replacing
 from qtab._utils.page import page, paragraph, picture, section, table
-from qtab._utils.shown import shown
+from qtab._utils.shown import counted, last_of, shown
 from qtab.config import Config
 from qtab.config.choices import ALGORITHM_NAMES, IN_PYTHON
 from qtab.diagnosis.diagnose import diagnose
@@ -81,7 +81,7 @@ def _summary(run: Run) -> list[tuple[str, Any]]:
     ]
     if len(returns):
         last = returns[-FINAL_EPISODES:]
-        rows.append((f"mean return of the last {len(last)} episodes", f"{last.mean():.2f}"))
+        rows.append((f"mean return of the {last_of(len(last), 'episode')}", f"{last.mean():.2f}"))
         rows.append(("best return", f"{returns.max():.6g}"))
     threshold = threshold_of(run.config)
     if threshold is not None:
@@ -97,7 +97,7 @@ def _learning_curve(run: Run, optimum: Optimum | float | None) -> str:
         count = min(FINAL_EPISODES, len(returns))
         text = f"the first {count} have a mean of {returns[:count].mean():.2f}, the last {returns[-count:].mean():.2f}"
     return picture(
-        png(figure, DOTS_PER_INCH), f"Learning curve, the return of each of {len(returns):,} episodes: {text}."
+        png(figure, DOTS_PER_INCH), f"Learning curve, the returns of {counted(len(returns), 'episode')}: {text}."
     )
 
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from qtab._utils.files import replacing
 from qtab._utils.page import page, paragraph, picture, section, table
+from qtab._utils.shown import counted
 from qtab.envs.metadata.goals import what_changes_returns
 from qtab.plots.parts.axes import not_shown, png
 from qtab.sweeps.environments import environments_of, sweep_threshold
@@ -133,9 +134,10 @@ def report_page(
 
 def _notes(sweep: Sweep, ranked: int) -> list[str]:
     total = len(sweep.settings) * len(sweep.seeds)
-    runs = f"{len(sweep):,} runs" if len(sweep) == total else f"{len(sweep):,} of {total:,} runs"
+    runs = ("" if len(sweep) == total else f"{len(sweep):,} of ") + counted(total, "run")
+    settings, seeds = counted(len(sweep.settings), "setting"), counted(len(sweep.seeds), "seed")
     notes = [
-        f"{runs}: {len(sweep.settings)} settings, {len(sweep.seeds)} seeds each, {sweep.failed} failed. Final returns "
+        f"{runs}: {settings}, {seeds} each, {sweep.failed} failed. Final returns "
         "are means of the last 100 episodes; the interval of the mean has a coverage of 95%."
     ]
     if sweep.failed:

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from qtab._utils import checks, html
 from qtab._utils.fields import with_fields
+from qtab._utils.shown import last_of, plural
 from qtab.config import Config
 from qtab.config.origin import trained_on
 from qtab.discretizers import Discretizer
@@ -75,11 +76,12 @@ class Run(WithPage):
     def __repr__(self) -> str:
         """Returns one line, without the tables."""
         config, finished = self.config, len(self.episode_returns)
-        episodes = str(finished) if self.completed else f"{finished} of {config.episodes}"
+        of_all = "" if self.completed else f" of {config.episodes}"
+        episodes = f"{finished}{of_all} {plural('episode', config.episodes)}"
         last = self.episode_returns[-FINAL_EPISODES:]
-        mean = f", the last {len(last)} at {last.mean():.2f}" if finished else ""
+        mean = f", the {last_of(len(last))} at {last.mean():.2f}" if finished else ""
         unchecked = ", from a file without a digest" if self.unchecked else ""
-        return f"<Run of {config.env}: {config.algorithm}, seed {config.seed}, {episodes} episodes{mean}{unchecked}>"
+        return f"<Run of {config.env}: {config.algorithm}, seed {config.seed}, {episodes}{mean}{unchecked}>"
 
     def _repr_html_(self) -> str:
         """Returns a table and the learning curve, for notebooks."""

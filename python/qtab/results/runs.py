@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from qtab._utils import checks, html
 from qtab._utils.data_frames import data_frame, integer_column
 from qtab._utils.fields import with_fields
+from qtab._utils.shown import last_of, plural
 from qtab.config import Config
 from qtab.config.config import replace_checked
 from qtab.config.origin import trained_on
@@ -71,11 +72,12 @@ class Runs:
     def __repr__(self) -> str:
         runs, episodes = self.episode_returns.shape
         mean = (
-            f", their last {min(episodes, FINAL_EPISODES)} at {self.final_returns().mean():.2f}"
+            f", their {last_of(min(episodes, FINAL_EPISODES))} at {self.final_returns().mean():.2f}"
             if self.episode_returns.size
             else ""
         )
-        return f"<Runs of {self.config.env}: {self.config.algorithm}, {runs} seeds, {episodes} episodes each{mean}>"
+        seeds, each = f"{runs} {plural('seed', runs)}", f"{episodes} {plural('episode', episodes)} each"
+        return f"<Runs of {self.config.env}: {self.config.algorithm}, {seeds}, {each}{mean}>"
 
     def _repr_html_(self) -> str:
         """Returns a table and the mean learning curve, for notebooks."""

@@ -67,8 +67,12 @@ class Sweep:
 
     def __repr__(self) -> str:
         versions = ", different versions" if different_versions(self.run_versions) else ""
-        settings = counted(len(self.settings), "setting")
-        return f"<Sweep of {self.env}: {settings}, {len(self):,} runs, {self.failed} failed{versions}>"
+        return f"<{self._summary}{versions}>"
+
+    @property
+    def _summary(self) -> str:
+        settings, runs = counted(len(self.settings), "setting"), counted(len(self), "run")
+        return f"Sweep of {self.env}: {settings}, {runs}, {self.failed} failed"
 
     def _repr_html_(self) -> str:
         """Returns a table and the mean learning curves of the best settings, for notebooks."""
@@ -80,12 +84,10 @@ class Sweep:
             (setting, *map(self.settings[setting].get, names), len(returns[setting]), f"{means[setting]:.2f}")
             for setting in best
         ]
-        heading = f"Sweep of {self.env}: {len(self.settings)} settings, {len(self):,} runs, {self.failed} failed"
-        if len(best) < len(self.settings):
-            heading += f"; the best {len(best)}"
+        heading = self._summary + (f"; the best {len(best)}" if len(best) < len(self.settings) else "")
         note = versions_note(self.run_versions)
         curves = {f"setting {setting}": self.curves(setting).mean(axis=0) for setting in best}
-        lines = html.lines(f"Mean learning curves in blocks of {self.block:,} episodes", curves)
+        lines = html.lines(f"Mean learning curves in blocks of {counted(self.block, 'episode')}", curves)
         columns, colors = ("setting", *names, "runs", "mean final return"), [html.color(i) for i in range(len(best))]
         return html.listing(heading, columns, rows, lines, colors, [note] if note else [])
 

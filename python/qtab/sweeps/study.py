@@ -13,6 +13,7 @@ import numpy as np
 from qtab._utils import checks
 from qtab._utils.memory import check_memory
 from qtab._utils.memory import memory_limit as memory_limit_in_bytes
+from qtab._utils.shown import counted
 from qtab.config import DEFAULTS
 from qtab.config.functions import function_name
 from qtab.config.merge import Base, over
@@ -101,7 +102,7 @@ class Study:
         """
         limit = memory_limit_in_bytes(self.memory_limit)
         for resolved in self.resolved:
-            check_memory(f"runs of {resolved.config.episodes} episodes", bytes_of_run(resolved), limit)
+            check_memory(f"runs of {counted(resolved.config.episodes, 'episode')}", bytes_of_run(resolved), limit)
 
     @cached_property
     def stored(self) -> StoredStudy:
@@ -203,7 +204,7 @@ def _check_runs(settings: int, seeds: Any, limit: int) -> None:
     else:
         count = len(seeds) if hasattr(seeds, "__len__") else 1
     runs = settings * count
-    check_memory(f"the results of {runs:,} runs", runs * BYTES_PER_STORED_RUN, limit)
+    check_memory(f"the results of {counted(runs, 'run')}", runs * BYTES_PER_STORED_RUN, limit)
 
 
 def settings_of(grid: Any, limit: int = 2**63) -> list[dict[str, Any]]:
@@ -216,7 +217,7 @@ def settings_of(grid: Any, limit: int = 2**63) -> list[dict[str, Any]]:
     """
     if isinstance(grid, Mapping):
         count = math.prod(len(values) for values in grid.values() if hasattr(values, "__len__"))
-        check_memory(f"{count:,} settings", count * BYTES_PER_SETTING, limit)
+        check_memory(counted(count, "setting"), count * BYTES_PER_SETTING, limit)
         return designs.grid(grid)
     if isinstance(grid, (str, bytes)) or not isinstance(grid, Sequence):
         raise TypeError(f"grid must map names to lists of values, or be a list of mappings, got {grid!r}")

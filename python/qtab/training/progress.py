@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from qtab import _core
 from qtab._utils.fields import with_fields
-from qtab._utils.shown import counted
+from qtab._utils.shown import counted, last_of
 from qtab.config import Config
 from qtab.config.schedules import ByVisits, Constant, Schedule, epsilon, learning_rate
 from qtab.results.rates import rates
@@ -44,8 +44,8 @@ class Progress:
     def __repr__(self) -> str:
         """Returns one line, without the returns."""
         last = self.returns[-FINAL_EPISODES:]
-        mean = f", the last {len(last)} at {last.mean():.2f}" if len(last) else ""
-        return f"<Progress: {self.episodes:,} of {self.total:,} episodes{mean}>"
+        mean = f", the {last_of(len(last))} at {last.mean():.2f}" if len(last) else ""
+        return f"<Progress: {self.episodes:,} of {counted(self.total, 'episode')}{mean}>"
 
     @property
     def episode(self) -> int:

@@ -19,7 +19,7 @@ from qtab._utils import checks
 from qtab._utils.attach import attach
 from qtab._utils.memory import BYTES_PER_EPISODE, BYTES_PER_RUN, check_memory, memory_left
 from qtab._utils.memory import memory_limit as bytes_limit
-from qtab._utils.shown import shown
+from qtab._utils.shown import counted, shown
 from qtab._utils.versions import versions
 from qtab.config import Config
 from qtab.config.choices import INSISTING
@@ -142,7 +142,7 @@ def seed_sequence(seeds: Any, limit: int) -> Sequence[int]:
     """
     if hasattr(seeds, "__index__") and not np.ndim(seeds):  # an array has an __index__ too
         count = checks.integer("seeds", seeds, least=1)
-        check_memory(f"{count} runs", count * BYTES_PER_RUN, limit)
+        check_memory(counted(count, "run"), count * BYTES_PER_RUN, limit)
         return range(count)
     if not checks.is_sequence(seeds):
         raise TypeError(f"seeds must be an integer or a sequence of integers, got {shown(seeds)}")
@@ -152,7 +152,7 @@ def seed_sequence(seeds: Any, limit: int) -> Sequence[int]:
         if number in numbers:
             raise ValueError(f"seeds must differ from each other, got {number} twice")
         numbers[number] = None
-        check_memory(f"more than {len(numbers) - 1} runs", len(numbers) * BYTES_PER_RUN, limit)
+        check_memory(f"more than {counted(len(numbers) - 1, 'run')}", len(numbers) * BYTES_PER_RUN, limit)
     if not numbers:
         raise ValueError("seeds must hold at least one seed, got none")
     return tuple(numbers)
@@ -232,7 +232,7 @@ def allocate_results(
     masks = mask_bytes(resolved.discretizer, len(resolved.actions)) if keep_masks else 0
     stored = BYTES_PER_RUN + episodes * BYTES_PER_EPISODE + (8 * values if keep_tables else 0) + masks
     needed = runs * stored + at_once * bytes_in_progress(resolved)
-    check_memory(f"{runs} runs of {episodes} episodes", needed, limit)
+    check_memory(f"{counted(runs, 'run')} of {counted(episodes, 'episode')}", needed, limit)
     results: Results = {
         "returns": np.zeros((runs, episodes)),
         "lengths": np.zeros((runs, episodes), dtype=np.int64),

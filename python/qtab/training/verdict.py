@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from qtab._utils.shown import last_of
 from qtab.config import Config
 from qtab.config.choices import IN_PYTHON
 from qtab.config.options import PREFERENCES
@@ -85,8 +86,8 @@ class Verdict:
         }
 
     def __str__(self) -> str:
-        episodes = "training episode" if self.last == 1 else f"{self.last} training episodes"
-        text = f"the last {episodes} {self.final_return:.4g}" if self.last else "no training episode was finished"
+        episodes = last_of(self.last, "training episode")
+        text = f"the {episodes} {self.final_return:.4g}" if self.last else "no training episode was finished"
         if self.greedy_return is not None:
             over = "" if self.greedy_is_exact else f" over {EVALUATION_EPISODES} episodes"
             text += f"; greedy policy {self.greedy_return:.4g}{over}"

@@ -78,7 +78,7 @@ class Verification:
 
     def _repr_html_(self) -> str:
         """Returns the report as a table, for notebooks."""
-        facts = {"compared": f"{self.episodes:,} episodes, byte for byte", **self._words()}
+        facts = {"compared": f"{counted(self.episodes, 'episode')}, byte for byte", **self._words()}
         if self.episode is not None:
             facts["they differ from"] = f"{self._place} on (counted from 0)"
         if not self.table_of_run:
@@ -113,11 +113,12 @@ class Verification:
 
     @property
     def _heading(self) -> str:
-        return f"{self.env}, seed {self.seed}, {self.episodes} episodes against Gymnasium and NumPy, byte for byte"
+        episodes = counted(self.episodes, "episode")
+        return f"{self.env}, seed {self.seed}, {episodes} against Gymnasium and NumPy, byte for byte"
 
     @property
     def _other_table(self) -> str:
-        return f"from training again in Rust: the run holds none after {self.episodes:,} episodes"
+        return f"from training again in Rust: the run holds none after {counted(self.episodes, 'episode')}"
 
     @property
     def _place(self) -> str:

@@ -56,16 +56,14 @@ def test_a_table_that_does_not_fit_is_refused_by_the_setting_that_decides(
 
 def test_what_an_algorithm_keeps_beside_a_table_that_fits_is_counted_against_what_is_free(free: int) -> None:
     settings: dict[str, Any] = {"discretizer": "bins", "bins": 1700, "episodes": 1}  # 66 MiB
-    with pytest.raises(
-        MemoryError, match=r"^1 episodes with a table .* more than the 95.4 MiB of memory that are free"
-    ):
+    with pytest.raises(MemoryError, match=r"^1 episode with a table .* more than the 95.4 MiB of memory that are free"):
         qtab.train("MountainCar-v0", algorithm="dyna_q", **settings)
 
 
 def test_verify_counts_the_tables_of_the_reference(monkeypatch: pytest.MonkeyPatch) -> None:
     run = qtab.train("MountainCar-v0", discretizer="bins", bins=1300, episodes=1, max_episode_steps=2)
     monkeypatch.setattr(memory, "free_memory", lambda: run.tables.nbytes)
-    with pytest.raises(MemoryError, match=r"^the tables of the reference need"):
+    with pytest.raises(MemoryError, match=r"^the tables of the reference would take"):
         qtab.verify(run)
 
 
@@ -78,7 +76,7 @@ def test_a_small_table_needs_no_look_at_what_is_free(monkeypatch: pytest.MonkeyP
 def test_a_limit_that_is_given_is_the_users_decision(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(memory, "free_memory", lambda: 0)
     memory.check_memory("this", 2**40, 2**41)
-    with pytest.raises(MemoryError, match=r"^this need 128 MiB, more than the 0 bytes of memory that are free"):
+    with pytest.raises(MemoryError, match=r"^this would take 128 MiB, more than the 0 bytes of memory that are free"):
         memory.check_memory("this", 2**27, memory.memory_limit(None))
 
 

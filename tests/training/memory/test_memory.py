@@ -16,12 +16,12 @@ CAR = "MountainCar-v0"
 
 @pytest.mark.parametrize("episodes", [10**13, 2**62])
 def test_too_many_episodes_are_refused_before_the_first(episodes):
-    with pytest.raises(MemoryError, match=rf"^{episodes} episodes need \S+ TiB, more than memory_limit="):
+    with pytest.raises(MemoryError, match=rf"^{episodes:,} episodes would take \S+ TiB, more than memory_limit="):
         qtab.train(CAR, episodes=episodes)
 
 
 def test_too_many_recordings_are_refused_before_the_first_episode():
-    with pytest.raises(MemoryError, match=r"^100000 episodes with 100000 recordings need"):
+    with pytest.raises(MemoryError, match=r"^100,000 episodes with 100,000 recordings would take"):
         qtab.train(CAR, episodes=10**5, record=10**13, memory_limit=10**7)
 
 
@@ -30,11 +30,11 @@ def test_what_an_algorithm_keeps_for_each_value_counts(settings):
     table = 8 * 19 * 15 * 3
     if settings == {"schedule": "visits"}:
         settings = {"learning_rate_schedule": "visits", "learning_rate": 1.0}
-    with pytest.raises(MemoryError, match=r"^1 episodes with a table of 285 rows of 3 actions need"):
+    with pytest.raises(MemoryError, match=r"^1 episode with a table of 285 rows of 3 actions would take"):
         qtab.train(CAR, episodes=1, memory_limit=2 * table + 100, **settings)
     assert qtab.train(CAR, episodes=1, memory_limit=2 * table + 100, algorithm="sarsa").completed
     shared: dict[str, Any] = {"grid": {"discount": [0.9]}, "seeds": 1, "episodes": 1, "memory_limit": table + 1000}
-    with pytest.raises(MemoryError, match=r"^runs of 1 episodes need"):
+    with pytest.raises(MemoryError, match=r"^runs of 1 episode would take"):
         qtab.sweep(CAR, **shared, **settings)
     assert len(qtab.sweep(CAR, **shared, algorithm="sarsa")) == 1
 
@@ -111,14 +111,14 @@ def test_processes_that_are_not_started_take_no_share_of_the_memory():
 
 @pytest.mark.parametrize("seeds", [10**9, 10**12, 10**30])
 def test_too_many_seeds_are_refused_without_a_list_of_them(seeds):
-    with pytest.raises(MemoryError, match=rf"^{seeds} runs need .* more than memory_limit="):
+    with pytest.raises(MemoryError, match=rf"^{seeds:,} runs would take .* more than memory_limit="):
         qtab.train_many(CAR, seeds)
-    with pytest.raises(MemoryError, match=rf"{seeds:,} runs need .* more than memory_limit="):
+    with pytest.raises(MemoryError, match=rf"{seeds:,} runs would take .* more than memory_limit="):
         qtab.sweep(CAR, {"discount": [0.9]}, seeds=seeds)
 
 
 def test_seeds_without_an_end_are_refused():
-    with pytest.raises(MemoryError, match=r"^more than 3906 runs need"):
+    with pytest.raises(MemoryError, match=r"^more than 3,906 runs would take"):
         qtab.train_many(CAR, itertools.count(), memory_limit=10**6)
 
 

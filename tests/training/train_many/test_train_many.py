@@ -283,7 +283,7 @@ def test_summaries_have_a_number_per_run():
         ({"env": lambda: 3}, TypeError, "env must make an environment, got 3"),
         ({"env": 3}, TypeError, "env must be an environment id"),
         ({"memory_limit": 0}, ValueError, "memory_limit must be an integer of at least 1"),
-        ({"memory_limit": 10**6}, MemoryError, "1000 runs of 5000 episodes need 81.. MiB, more than memory_limit"),
+        ({"memory_limit": 10**6}, MemoryError, "1,000 runs of 5,000 episodes would take 81.. MiB, more than memory"),
         ({"seeds": 10, "tables": True, "scale": (1e4, 1e4)}, MemoryError, "more than memory_limit"),
     ],
 )

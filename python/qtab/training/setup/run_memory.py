@@ -4,7 +4,7 @@ import math
 
 from qtab._utils.memory import BYTES_PER_EPISODE, check_memory, memory_left
 from qtab._utils.memory import memory_limit as bytes_limit
-from qtab._utils.shown import shown
+from qtab._utils.shown import counted, shown
 from qtab.config.options import n_tables
 from qtab.results.run import Run
 from qtab.training.callbacks import TrainingOptions
@@ -70,7 +70,7 @@ def table_words(resolved: ResolvedRun, needed: int) -> tuple[str, str]:
     space = f" for {shown(environment.env.observation_space)}" if isinstance(environment, PythonEnvironment) else ""
     no_cells = resolved.config.max_rows is not None or not resolved.discretizer.has_cells
     instead = "" if no_cells else "; max_rows= assigns rows only to the observations that are seen"
-    return f" with a table of {rows:,} rows of {actions} actions{space}", instead
+    return f" with a table of {counted(rows, 'row')} of {counted(actions, 'action')}{space}", instead
 
 
 def check_run_memory(
@@ -97,8 +97,8 @@ def check_run_memory(
     recordings = min(int(options.record), episodes)
     state = 0 if earlier is None or earlier.state is None else RESTORED * len(earlier.state.checkpoint)
     needed = bytes_in_progress(resolved) + copies + recordings * BYTES_PER_RECORDING + state
-    extras = [f"{recordings} recordings"] * bool(recordings) + [f"{snapshots} snapshots"] * bool(snapshots)
-    what = f"{episodes} episodes" + (f" with {' and '.join(extras)}" if extras else "")
+    extras = [counted(number, noun) for number, noun in ((recordings, "recording"), (snapshots, "snapshot")) if number]
+    what = counted(episodes, "episode") + (f" with {' and '.join(extras)}" if extras else "")
     table, instead = table_words(resolved, needed)
     check_memory(what + table, needed, limit, instead)
     return memory_left(needed, limit)
