@@ -271,7 +271,7 @@ def test_a_fourier_basis_has_no_array_of_values() -> None:
         (
             "off_policy_td",
             {"behavior": "random"},
-            "may help, but off policy this method can diverge with any: 'tdc' does",
+            "may help, but off policy this method can diverge with any learning rate: 'tdc' does",
         ),
         (
             "tdc",

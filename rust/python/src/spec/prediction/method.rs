@@ -94,7 +94,7 @@ impl MethodSpec {
             }
             Self::ImportanceSampling { .. } => {
                 "the importance sampling ratios of long episodes overflow; a smaller max_episode_steps helps, or a \
-                 behavior that is more like policy"
+                 behavior closer to the policy"
             }
             Self::BatchTd => {
                 "the values of states from which no episode ends have no limit; a discount below 1 helps, or episodes \
@@ -102,7 +102,7 @@ impl MethodSpec {
             }
             Self::OffPolicyTd | Self::OffPolicyTdLambda { .. } => {
                 "the updates grow instead of settling; a smaller learning_rate may help, but off policy this method can \
-                 diverge with any: 'tdc' does not if both of its learning rates are small"
+                 diverge with any learning rate: 'tdc' does not if both of its learning rates are small"
             }
             Self::GradientTd { .. } => {
                 "the updates grow instead of settling; a smaller learning_rate helps, and a smaller \
