@@ -51,7 +51,7 @@ impl StateFeatures {
     }
 }
 
-/// The value of an action in a state: the sum over the tables.
+/// The value of an action in a state: the sum of its values in the tables, which are added as in the core.
 #[inline(never)]
 pub(crate) fn action_value(
     tables: &[&[f64]],
@@ -61,14 +61,16 @@ pub(crate) fn action_value(
 ) -> Option<f64> {
     let mut sum = 0.0;
     for table in tables {
-        if let Some(x) = features.weighted() {
+        sum += if let Some(x) = features.weighted() {
             let weights = table.get(..x.len() * num_actions)?;
-            sum += sum_products(x, |row| [weights[row * num_actions + action]])[0];
-            continue;
-        }
-        for &row in &features.rows {
-            sum += table.get(row as usize * num_actions + action)?;
-        }
+            sum_products(x, |row| [weights[row * num_actions + action]])[0]
+        } else {
+            let mut value = 0.0;
+            for &row in &features.rows {
+                value += table.get(row as usize * num_actions + action)?;
+            }
+            value
+        };
     }
     Some(sum)
 }
@@ -94,4 +96,19 @@ pub(crate) fn greedy_action(tables: &[&[f64]], features: &StateFeatures, num_act
         }
     }
     Some(best.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_values_of_two_tables_are_added_as_in_the_core() {
+        let (first, second) = ([0.4, 0.3], [0.4, 0.6]);
+        let value = action_value(&[&first, &second], &StateFeatures::of(&[0, 1]), 1, 0);
+        // 1.7, whereas 0.4 + 0.3 + 0.4 + 0.6 from left to right is 1.7000000000000002.
+        assert_eq!(value, Some((0.4 + 0.3) + (0.4 + 0.6)));
+        let features = StateFeatures { rows: vec![0, 1], values: vec![1.5, -0.3] };
+        assert_eq!(action_value(&[&first], &features, 1, 0), Some(0.4 * 1.5 + 0.3 * -0.3));
+    }
 }
