@@ -211,7 +211,8 @@ impl AnyAlgorithm {
         matches!(self, Self::GradientBandit { .. } | Self::Reinforce) || self.value_learning_rate().is_some()
     }
 
-    /// Whether the learning rate can depend on the visits of each weight: not where an update has one step size for several.
+    /// Whether the learning rate can depend on the visits to each weight. It cannot where several weights share the step size
+    /// of an update.
     pub(crate) fn takes_rates_by_visits(&self) -> bool {
         !self.learns_preferences() && !matches!(self, Self::TrueOnlineSarsaLambda { .. })
     }

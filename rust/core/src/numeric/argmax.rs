@@ -1,7 +1,7 @@
 //! The maximum of some values, and its index.
 
 /// The index of the maximum, and of the first one if several are equal: `np.argmax` of values without NaN. With NaN the
-/// index is unspecified: a table with NaN has diverged, and its run ends. [`argmax_with_nan`] is for other values.
+/// index is unspecified: a table with NaN has diverged, and its run ends. [`argmax_with_nan`] takes NaN.
 ///
 /// # Panics
 /// If there are no values.
@@ -25,7 +25,7 @@ pub fn argmax(values: &[f64]) -> usize {
     best.0
 }
 
-/// `np.argmax`, with NaN too: the index of the first NaN, and without one that of the first maximum.
+/// `np.argmax`: the index of the first NaN, or of the first maximum if there is none.
 ///
 /// # Panics
 /// If there are no values.
@@ -51,7 +51,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_nan_wins_where_it_counts() {
+    fn the_first_nan_is_the_maximum_as_in_numpy() {
         assert_eq!(argmax_with_nan(&[1.0, f64::NAN, f64::INFINITY, f64::NAN]), 1);
         assert_eq!(argmax_with_nan(&[f64::NEG_INFINITY, 3.0, 3.0]), 1);
     }

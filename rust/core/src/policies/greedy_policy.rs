@@ -3,8 +3,8 @@
 use crate::features::ActiveFeatures;
 use crate::numeric::{argmax_with_nan, sum_products};
 
-/// The greedy policy: the action with the largest value, and the first one of several, as by `np.argmax`, which takes the first
-/// NaN. It is a copy of the learned values, so training can continue beside it.
+/// The greedy policy: the action that `np.argmax` finds, the first one with the largest value, or with the value NaN if there
+/// is one. It is a copy of the learned values, so training can continue beside it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GreedyPolicy {
     /// The tables whose action values are added.
@@ -128,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn a_value_that_is_not_a_number_is_followed() {
+    fn the_first_action_whose_value_is_not_a_number_is_greedy() {
         // ∞ - ∞ in the second column.
         let policy = GreedyPolicy::new(&[&[1.0, f64::MAX, 1.0, f64::MAX]], 2, None);
         let features = FeatureVector::<2>::new(&[2.0, -2.0]).expect("there is room");

@@ -78,8 +78,8 @@ impl LearningRate {
         self.of_rows.get(row).copied().unwrap_or(self.step_size)
     }
 
-    /// The step sizes of another learning rate, divided as this one: that which all rows share, and that of each row, which
-    /// is empty if they share one.
+    /// The step sizes of another learning rate, divided as this one: the one that all rows share, and those of the rows,
+    /// empty if they share one.
     pub(crate) fn divided(&self, learning_rate: f64) -> (f64, Vec<f64>) {
         let of_rows = self.divisors.iter().map(|divisor| learning_rate / divisor).collect();
         (learning_rate / self.n_active, of_rows)

@@ -4,7 +4,7 @@ use super::scaled_box::ScaledBox;
 use crate::features::OutOfBounds;
 use crate::numeric::Float;
 
-/// The capacity for the numbers of a component of a small basis. It is cleared at every step, so less is faster.
+/// The number of values of a component for which small bases have room. The room is cleared at every step, so less is faster.
 pub(super) const SMALL: usize = 16;
 
 /// All combinations of one of `counts[j]` numbers of each component j, in C order.

@@ -19,7 +19,7 @@ impl ScaledBox {
         let bounds: Vec<_> = low.iter().copied().zip(high.iter().copied()).collect();
         check_bounds(bounds.iter().copied())?;
         for (component, (low, high)) in bounds.iter().enumerate() {
-            let got = format_args!("{high} above {low} for component {component}");
+            let got = format_args!("{high:?} above {low:?} for component {component}");
             BuildError::check((high - low).is_finite(), "high", "a finite distance above low", got)?;
         }
         Ok(Self { bounds })
@@ -39,7 +39,8 @@ impl ScaledBox {
         Ok((value.clamp(low, high) - low) / (high - low))
     }
 
-    /// Writes 1, and then `order` features of each component: `write` receives the component in [0, 1], and their place.
+    /// Writes 1, and then `order` features of each component: `write` receives the component in [0, 1], and the place for its
+    /// features.
     #[inline]
     pub(super) fn write_uncoupled<T: Float>(
         &self,
@@ -64,9 +65,8 @@ mod tests {
     #[test]
     fn bounds_whose_difference_overflows_are_refused() {
         let refused = ScaledBox::try_new(&[0.0, -1e308], &[1.0, 1e308]).map_err(|error| error.to_string());
-        let distant =
-            format!("high must be a finite distance above low, got {} above {} for component 1", 1e308, -1e308);
-        assert_eq!(refused, Err(distant));
+        let distant = "high must be a finite distance above low, got 1e308 above -1e308 for component 1";
+        assert_eq!(refused, Err(distant.to_owned()));
         let widest = ScaledBox::try_new(&[f64::MIN / 2.0], &[f64::MAX / 2.0]).expect("a finite difference");
         assert_eq!([f64::MIN, 0.0, f64::INFINITY].map(|value| widest.scale(0, value)), [Ok(0.0), Ok(0.5), Ok(1.0)]);
     }

@@ -184,8 +184,8 @@ impl EligibilityTraces for Traces {
     }
 }
 
-/// Implements what update rules with `traces` for features `R` have in common: learning with borrowed features, the work of a
-/// pass, and the places of the values.
+/// Implements what update rules with `traces` have in common for features `R`: learning from borrowed features, the work of a
+/// pass, completing the table, and reserving memory.
 macro_rules! has_traces {
     () => {
         $crate::learners::learn_borrowed!(Agent);

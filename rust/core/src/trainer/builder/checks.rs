@@ -125,7 +125,7 @@ impl<E, F> TrainerBuilder<E, F> {
 
     fn check_algorithm(&self, shape: Shape) -> Result<(), BuildError> {
         let takes_weighted = self.algorithm.feature_kinds() == FeatureKinds::All;
-        let expected = "one that learns with weighted features, without traces or with accumulating ones";
+        let expected = "one that learns with weighted features, without replacing traces";
         BuildError::check(
             takes_weighted || !shape.weighted,
             "algorithm",

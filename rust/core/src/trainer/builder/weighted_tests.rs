@@ -112,8 +112,7 @@ fn what_has_no_meaning_with_weighted_features_is_refused_by_name() {
         [binary, AnyAlgorithm::DynaQ { planning_steps: 5 }, AnyAlgorithm::MonteCarlo { max_episode_steps: 9 }]
     {
         let refused = message(car().algorithm(algorithm));
-        let expected =
-            "algorithm must be one that learns with weighted features, without traces or with accumulating ones, got ";
+        let expected = "algorithm must be one that learns with weighted features, without replacing traces, got ";
         assert!(refused.starts_with(expected), "{refused}");
     }
     let by_visit_count = message(car().learning_rate(LearningRateSpec::by_visit_count(1.0, 0.0)));
