@@ -107,42 +107,15 @@ class DivmodOfDraws(ExtraEnv):
         return float(divmod(self.np_random.integers(7), 2)[1])  # here
 
 
+class DefaultBesideKey(ExtraEnv):
+    def extra(self) -> Any:
+        return {"a": 1.0}.get("a", self.board[self.cell])  # here: Python raises IndexError
+
+
 class PermutationOfArray(ExtraEnv):
     def extra(self) -> Any:
         self.board[:] = self.np_random.permutation(self.board)  # here
         return 0.0
-
-
-class SharedByOr(ExtraEnv):
-    def reset(self, *, seed=None, options=None):
-        self.first = [1, 2]
-        self.second = None or self.first  # here
-        return super().reset(seed=seed)
-
-    def extra(self) -> Any:
-        self.first[0] += 1
-        return float(self.second[0])
-
-
-class SharedVariable(ExtraEnv):
-    def extra(self) -> Any:
-        first = np.zeros(2)
-        second = None or first
-        first += 1.0  # here
-        return float(second[0])
-
-
-class SharedByGet(ExtraEnv):
-    def reset(self, *, seed=None, options=None):
-        options = options or {}
-        first = [1, 2]
-        self.first = first
-        self.second = options.get("second", first)  # here
-        return super().reset(seed=seed)
-
-    def extra(self) -> Any:
-        self.second[0] += 1
-        return float(self.first[0])
 
 
 REFUSALS = {
@@ -151,9 +124,7 @@ REFUSALS = {
     UnknownLength: "a part of an array whose size is not known is changed in place .*write a loop",
     DivmodOfFloats: "divmod of something other than two integers .*write x // y and x % y",
     DivmodOfDraws: "a call whose result is used several times .*assign it to a variable first",
-    SharedByOr: "self.second shares memory that is changed in place .*write .copy\\(\\)",
-    SharedVariable: "may share its memory with another array",
-    SharedByGet: "shares memory that is changed in place",
+    DefaultBesideKey: "the method get of a dict .*or an index in",
     PermutationOfArray: "permutation of an array .*draw the indices with permutation\\(n\\)",
 }
 

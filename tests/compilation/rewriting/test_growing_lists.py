@@ -93,7 +93,9 @@ class AddsToOwn(ExtraEnv):
         return float(self.board[0])
 
 
-class AddsToOutside(MadeOnce):
+class AddsToOutside(ExtraEnv):
+    path: Any
+
     def __init__(self):
         super().__init__()
         self.path = OUTSIDE
@@ -104,11 +106,22 @@ class AddsToOutside(MadeOnce):
         return float(len(OUTSIDE))
 
 
-class AddsToOutsideOfReset(OfOthers):
-    extra = AddsToOutside.extra
+class AddsToOutsideOfReset(AddsToOutside):
+    def reset(self, *, seed=None, options=None):
+        self.path = OUTSIDE
+        return super().reset(seed=seed)
 
 
-class AddsToTwoNames(MadeOnce):
+class AddsToCopyOfOwn(AddsToOutside):
+    def copy(self):
+        return OUTSIDE
+
+    def reset(self, *, seed=None, options=None):
+        self.path = self.copy()
+        return super().reset(seed=seed)
+
+
+class AddsToTwoNames(AddsToOutside):
     def extra(self):
         cells: list[int]
         self.path = cells = []
@@ -146,7 +159,7 @@ def test_additions_to_own_values_are_left_out() -> None:
     assert_equal_steps(AddsToOwn(), rewritten, 60, 3)
 
 
-ADD_TO_OTHERS = [AddsToOutside, AddsToOutsideOfReset, AddsToTwoNames, AddsToBoard, AddsToBoardOfTuple]
+ADD_TO_OTHERS = [AddsToOutside, AddsToOutsideOfReset, AddsToTwoNames, AddsToBoard, AddsToBoardOfTuple, AddsToCopyOfOwn]
 
 
 @pytest.mark.parametrize("cls", ADD_TO_OTHERS, ids=lambda cls: cls.__name__)

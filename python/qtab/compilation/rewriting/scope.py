@@ -72,8 +72,8 @@ class Scope:
         """The local variables that statements assign which cannot be compiled."""
         self.whole: ast.expr | None = None
         """The expression that is all of a statement, or all of what a statement assigns or returns."""
-        self.is_shared = False
-        """Whether the value that is assigned may be an object with another name."""
+        self.shared: set[str] = set()
+        """The attributes that a statement assigns, and whose values may be objects with other names."""
 
     @property
     def function(self) -> FunctionType:

@@ -11,7 +11,7 @@ from qtab.compilation.rewriting.scope import LOCAL, Scope
 from qtab.compilation.rewriting.source.sources import Source
 from qtab.compilation.rewriting.statements.statements import Statements
 from qtab.compilation.rewriting.statements.variables import kept
-from qtab.compilation.rewriting.values import Array, InfoKind, Scalar, Value, constant
+from qtab.compilation.rewriting.values import InfoKind, Scalar, Value, constant
 
 if TYPE_CHECKING:
     from qtab.compilation.rewriting.expressions.expressions import Expressions
@@ -47,7 +47,7 @@ def called(
         views = result.views
         if compiled.returns_parameter:
             views = views.union(*(value.views for value in given.values()))
-        return Value(result.kind, code, fresh=isinstance(result.kind, Array) and not views, views=views)
+        return Value(result.kind, code, fresh=result.fresh and not views, views=views)
     if result.fixed is None:
         return Value(None, code, fixed=None)
     lifted = scope.lift(constant(result.fixed), node)
@@ -171,8 +171,10 @@ def _finish(rewriter: Statements, parameters: dict[str, Value]) -> None:
         raise rewriter.refuse(
             node, "the function returns None here, and a value elsewhere", "return a value everywhere"
         )
-    compiled.result = rewriter.result()
     compiled.returns_parameter = any(_may_be_parameter(rewriter, value) for value in values)
+    result = rewriter.result()
+    is_named = compiled.returns_parameter or any(rewriter.names.are_shared(node) for _, node, _ in rewriter.returns)
+    compiled.result = replace(result, fresh=result.fresh and not is_named)
     if rewriter.role:
         _note_observations(rewriter)
     always = set.intersection(*rewriter.flows_at_return)

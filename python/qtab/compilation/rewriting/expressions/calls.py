@@ -193,8 +193,6 @@ def _of_constant(scope: "Expressions", node: ast.Call, name: str, value: Any) ->
         key, default = values
         if scope.folded(node, lambda one: one not in value, key.fixed).fixed:
             return default
-        scope.no_effects(default, node)
-        return constant(value[key.fixed])
     raise scope.refuse(
         node, f"the method {name} of a {type(value).__name__}", "use a NumPy array, or an index in [...]"
     )

@@ -50,8 +50,8 @@ class Names:
         return name in self.counts
 
     @cached_property
-    def _mutations(self) -> dict[str, list[int]]:
-        found: dict[str, list[int]] = {}
+    def _mutations(self) -> dict[str, list[tuple[int, int]]]:
+        found: dict[str, list[tuple[int, int]]] = {}
         for one in self._walk():
             targets: list[ast.expr] = []
             if isinstance(one, ast.Assign):
@@ -66,7 +66,7 @@ class Names:
                     base = base.value
                 direct = isinstance(target, ast.Name) and not isinstance(one, ast.AugAssign)
                 if isinstance(base, ast.Name) and not direct:
-                    found.setdefault(base.id, []).append(one.lineno)  # type: ignore[attr-defined]
+                    found.setdefault(base.id, []).append((one.lineno, one.col_offset))  # type: ignore[attr-defined]
         return found
 
     def shared_before_change(self, name: str) -> bool:
@@ -81,16 +81,22 @@ class Names:
             return True
         return min(shared) < max(changes)
 
-    def _escapes(self, name: str) -> Iterator[int]:
+    def are_shared(self, node: ast.stmt) -> bool:
+        """Returns whether another name may refer to one of the local arrays that a statement returns."""
+        value = node.value if isinstance(node, ast.Return) else None
+        names = [part.id for part in _parts(value) if isinstance(part, ast.Name)] if value is not None else []
+        return any(True for name in names for _ in self._escapes(name))
+
+    def _escapes(self, name: str) -> Iterator[tuple[int, int]]:
         for one in self._walk():
             if isinstance(one, ast.Assign | ast.AnnAssign) and one.value is not None:
                 if any(_is_name(part, name) for part in _parts(one.value)):
-                    yield one.lineno
+                    yield one.lineno, one.col_offset
             elif isinstance(one, ast.Call) and not _of_library(one.func):
                 if any(_is_name(part, name) for value in one.args for part in _parts(value)):
-                    yield one.lineno
+                    yield one.lineno, one.col_offset
                 if any(_is_name(keyword.value, name) for keyword in one.keywords):
-                    yield one.lineno
+                    yield one.lineno, one.col_offset
 
 
 def _is_name(node: ast.AST, name: str) -> bool:

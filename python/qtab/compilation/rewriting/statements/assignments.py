@@ -1,6 +1,7 @@
 """Assignments to local variables, attributes and elements."""
 
 import ast
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from qtab.compilation.rewriting import specials
@@ -8,6 +9,7 @@ from qtab.compilation.rewriting.expressions import containers
 from qtab.compilation.rewriting.expressions.operators import SYMBOLS
 from qtab.compilation.rewriting.statements.effects import check_pure
 from qtab.compilation.rewriting.statements.left_out import note_attribute, note_change, note_kind, note_value, number
+from qtab.compilation.rewriting.statements.references import is_new, is_owned, shared_names
 from qtab.compilation.rewriting.statements.stores import changeable, store, store_element
 from qtab.compilation.rewriting.statements.variables import in_variables, is_simple, kept
 from qtab.compilation.rewriting.values import (
@@ -35,7 +37,9 @@ def assign(scope: "Statements", node: ast.stmt, targets: list[ast.expr], value_n
         for target in targets:
             if isinstance(target, ast.Attribute):
                 note_value(scope, node, value_node)
-                note_kind(scope, target.attr, number(scope, value_node), len(targets) == 1 and _is_new(value_node))
+                note_kind(
+                    scope, target.attr, number(scope, value_node), len(targets) == 1 and is_new(scope, value_node)
+                )
                 note_attribute(scope, node, target.attr)
             elif isinstance(target, ast.Subscript):
                 scope.program.changes_infos = True
@@ -43,9 +47,7 @@ def assign(scope: "Statements", node: ast.stmt, targets: list[ast.expr], value_n
                 scope.kinds[scope.version(target.id)] = INFO
                 scope.note_set(target.id)
         return
-    unpacked = isinstance(value_node, ast.Tuple | ast.List) and isinstance(targets[0], ast.Tuple | ast.List)
-    sources = value_node.elts if unpacked else [value_node]  # type: ignore[attr-defined]
-    scope.is_shared = any(map(_is_reference, sources))
+    scope.shared = {name for one in targets for name in shared_names(scope, one, value_node, len(targets) == 1)}
     scope.whole = value_node
     value = scope.expression(value_node)
     if value.is_fixed and scope.has_effects(value):
@@ -56,33 +58,16 @@ def assign(scope: "Statements", node: ast.stmt, targets: list[ast.expr], value_n
     assign_value(scope, node, targets, value)
 
 
-def _is_new(node: ast.expr) -> bool:
-    """Returns whether an expression makes a value, or is a constant."""
-    made = (ast.Constant, ast.JoinedStr, ast.Tuple, ast.List, ast.ListComp, ast.Dict, ast.Set, ast.BinOp, ast.Compare)
-    function = node.func if isinstance(node, ast.Call) else None
-    makes = isinstance(function, ast.Name) and function.id in ("dict", "list", "set")
-    return isinstance(node, made) or makes or (isinstance(function, ast.Attribute) and function.attr == "copy")
-
-
 def assign_value(scope: "Statements", node: ast.stmt, targets: "ast.expr | list[ast.expr]", value: Value) -> None:
     """Assigns a value to targets, and evaluates it once."""
     targets = targets if isinstance(targets, list) else [targets]
     several = len(targets) > 1 or isinstance(targets[0], ast.Tuple | ast.List)
     if several and not value.is_fixed and not is_simple(value):
         value = in_variables(scope, node, value)
+    if len(targets) > 1:
+        value = replace(value, fresh=False)
     for target in targets:
         bind(scope, node, target, value)
-
-
-def _is_reference(node: ast.expr) -> bool:
-    """Returns whether an expression may be an object that has another name."""
-    if isinstance(node, ast.IfExp):
-        return _is_reference(node.body) or _is_reference(node.orelse)
-    if isinstance(node, ast.BoolOp):
-        return any(map(_is_reference, node.values))
-    if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr == "get":  # of a dict
-        return any(map(_is_reference, node.args))
-    return isinstance(node, ast.Name | ast.Attribute | ast.Subscript)
 
 
 def _is_left_out(scope: "Statements", target: ast.expr) -> bool:
@@ -178,6 +163,11 @@ def augmented(scope: "Statements", node: ast.AugAssign) -> None:
                 advice = "write x = x + y, which makes a new array"
                 raise scope.refuse(node, f"{target.id} may share its memory with another array", advice)
             _check_in_place(scope, node, before, result)
+        elif (isinstance(before.kind, TupleKind) or isinstance(before.fixed, list | dict | set)) and not is_owned(
+            scope, target
+        ):
+            advice = "write x = x + y, which makes a new one"
+            raise scope.refuse(node, f"{target.id} may be a list with another name", advice)
         _bind_name(scope, node, target.id, result)
         return
     if _is_unread(scope, target):

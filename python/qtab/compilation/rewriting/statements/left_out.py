@@ -132,9 +132,9 @@ def _is_safe(scope: "Expressions", node: ast.expr) -> bool:
         case ast.Attribute():
             own = next(iter(scope.parameters), None)
             is_constant = constant_of(scope, node, scope.source.function, own) is not MISSING
-            return is_constant or _known(scope, node) is not MISSING
+            return is_constant or known_value(scope, node) is not MISSING
         case ast.Call(func=ast.Attribute(value=value, attr="copy"), args=[], keywords=[]):
-            return isinstance(kind_of(_known(scope, value)), Array)
+            return isinstance(kind_of(known_value(scope, value)), Array)
         case ast.Call(func=ast.Name(id="str"), args=[argument], keywords=[]):
             return _is_builtin(scope, "str") and _is_number(scope, argument)
         case ast.Tuple(elts=parts) | ast.List(elts=parts):
@@ -156,7 +156,9 @@ def _has_truth(scope: "Expressions", node: ast.expr) -> bool:
 def _is_sequence(scope: "Expressions", node: ast.expr) -> bool:
     """Returns whether an expression is a sequence."""
     kind = scope.kind_of_local(node.id) if isinstance(node, ast.Name) else None
-    return isinstance(node, ast.Tuple | ast.List) or isinstance(kind or kind_of(_known(scope, node)), Array | TupleKind)
+    return isinstance(node, ast.Tuple | ast.List) or isinstance(
+        kind or kind_of(known_value(scope, node)), Array | TupleKind
+    )
 
 
 def _is_builtin(scope: "Expressions", name: str) -> bool:
@@ -186,10 +188,10 @@ def number(scope: "Expressions", node: ast.expr) -> Scalar | None:
         case ast.Constant(value=value):
             return _scalar(kind_of(value))
         case ast.Name(id=name):
-            kind = _scalar(scope.kind_of_local(name)) or _scalar(kind_of(_known(scope, node)))
+            kind = _scalar(scope.kind_of_local(name)) or _scalar(kind_of(known_value(scope, node)))
             return kind if _is_safe(scope, node) else None
         case ast.Attribute():
-            return _scalar(kind_of(_known(scope, node)))
+            return _scalar(kind_of(known_value(scope, node)))
         case ast.BinOp(left=left, op=op, right=right):
             return _combined(op, number(scope, left), number(scope, right))
         case ast.UnaryOp(op=op, operand=operand):
@@ -232,7 +234,7 @@ def _is_small(kind: Scalar) -> bool:
     return "int" in kind.name and kind != INT
 
 
-def _known(scope: "Expressions", node: ast.expr) -> Any:
+def known_value(scope: "Expressions", node: ast.expr) -> Any:
     """Returns a constant, or a value that an attribute of the environment may have; ``MISSING`` if there is none."""
     if isinstance(node, ast.Name):
         is_local = node.id not in scope.fixed and scope.names.is_local(node.id)
