@@ -16,7 +16,7 @@ class OfModule(ExtraEnv):
     def step(self, action):
         info = TOTALS  # here
         if self.cell > 5:
-            info["steps"] += 1
+            info["steps"] = 1
         return self.cell, float(TOTALS["steps"]), False, False, info
 
 
@@ -73,6 +73,13 @@ class OfMethodNamedCopy(ExtraEnv):
         return self.cell, float(TOTALS["steps"]), False, False, info
 
 
+class OfMethodOfBase(OfMethodNamedCopy):
+    def step(self, action):
+        info = OfMethodNamedCopy.copy(self)  # here
+        info["steps"] = 1
+        return self.cell, float(TOTALS["steps"]), False, False, info
+
+
 class OfBaseByIndex(ExtraEnv):
     def step(self, action):
         given = super().step(action)[4]  # here
@@ -115,7 +122,7 @@ def refusal(cls: Any) -> NotCompilable:
     return caught.value
 
 
-CHANGED = [OfModule, OfObject, OfHelper, ByOtherName, InHelper, OfMethodNamedCopy, OfBaseByIndex]
+CHANGED = [OfModule, OfObject, OfHelper, ByOtherName, InHelper, OfMethodNamedCopy, OfMethodOfBase, OfBaseByIndex]
 
 
 @pytest.mark.parametrize("cls", CHANGED, ids=lambda cls: cls.__name__)
@@ -133,3 +140,15 @@ def test_nor_those_that_a_base_class_returns() -> None:
 def test_dicts_that_are_made_here_or_not_changed_are_left_out(cls: Any) -> None:
     assert rewrite(cls()).source
     assert TOTALS == {"steps": 0}
+
+
+class ChangesElementInPlace(ExtraEnv):
+    def step(self, action):
+        info = {"board": self.board}
+        info["board"] += 1.0
+        return self.cell, float(self.board[0]), False, False, info
+
+
+def test_elements_that_are_changed_in_place_are_refused() -> None:
+    with pytest.raises(NotCompilable, match=r"an element of an info dict is changed in place .*assign a number"):
+        rewrite(ChangesElementInPlace())

@@ -13,6 +13,11 @@ from support.environments.gym_classes.extra import ExtraEnv
 TOTALS: dict[str, Any] = {"steps": 0, "cells": []}
 
 
+def change(value):
+    TOTALS["cells"].append(value)
+    return 1
+
+
 class Counted(enum.Enum):
     """Has no member yet."""
 
@@ -53,7 +58,18 @@ class Shows(ExtraEnv):
         counts[0] = 1.0
         counts += 1.0
         after += 1
+        total = len(cells) if self.cell else 0
+        total += max(counts.sum(), np.clip(after, 0, 3), key=abs)
+        text = f"{total}"
+        text += "!"
+        more = after
+        more -= getattr(self, "cell", 0)
+        with np.errstate(all="ignore"):
+            info["more"] = sorted([more, after], key=self.sign)
         return info
+
+    def sign(self, value):
+        return -value
 
 
 class ChangesElement(Shows):
@@ -119,6 +135,103 @@ class ReadsProperty(Shows):
         return {"count": self.count}
 
 
+class ChangesInnerInPlace(Shows):
+    def shown(self):
+        made = {"board": self.board}
+        made["board"] += 1.0
+        return made
+
+
+class ChangesWhatItChose(Shows):
+    def shown(self):
+        board = self.board if self.cell else None or self.board
+        board += 1.0
+        return {}
+
+
+class ChangesWhatItTakes(Shows):
+    def shown(self):
+        made = {"board": self.board}
+        board = made["board"]
+        board += 1.0
+        return {}
+
+
+class ChangesResult(Shows):
+    def kept(self):
+        return self.board, []
+
+    def shown(self):
+        board, _ = self.kept()
+        board += 1.0
+        return {}
+
+
+class ChangesFirst(Shows):
+    def shown(self):
+        made = [TOTALS["cells"]]
+        cells, *_ = made
+        cells += [self.cell]
+        return {}
+
+
+class ChangesView(Shows):
+    def shown(self):
+        board = self.board.ravel()
+        board += 1.0
+        return {}
+
+
+class CallsForEach(Shows):
+    def shown(self):
+        return {"cells": list(map(TOTALS["cells"].append, [self.cell]))}
+
+
+class CallsForKey(Shows):
+    def change(self, cell):
+        self.board[0] += 1.0
+        return cell
+
+    def shown(self):
+        return {"cell": max([1, 2], key=self.change)}
+
+
+class CallsOfModule(Shows):
+    def shown(self):
+        function = change
+        return {"cells": sum(map(function, [self.cell]))}
+
+
+class ComputesProperty(ReadsProperty):
+    def shown(self, /):
+        return {"count": getattr(self, "count", 0)}
+
+
+class ChangesArgument(Shows):
+    def shown(self):
+        return {"sum": np.add(self.board, 1.0, self.board)}
+
+
+class ChangesOut(Shows):
+    def shown(self):
+        return {"clipped": np.clip(self.board, 0.0, 1.0, out=self.board)}
+
+
+class Copies(Shows):
+    def shown(self):
+        np.copyto(self.board, 1.0)
+        return {}
+
+
+class Decorates(Shows):
+    def shown(self):
+        @change
+        def nothing():
+            pass
+
+        return {}
+
+
 class Finds(Shows):
     def shown(self):
         return {"kind": Kind(self.cell)}
@@ -133,7 +246,9 @@ class PopsInStep(ExtraEnv):
 
 CHANGES = [
     *(ChangesElement, ChangesArray, ChangesDict, Appends, ChangesInner, ChangesInLoop),
-    *(ChangesPositional, ReadsProperty, Finds, PopsInStep),
+    *(ChangesPositional, ReadsProperty, Finds, PopsInStep, ChangesInnerInPlace, ChangesWhatItChose, ChangesWhatItTakes),
+    *(ChangesResult, ChangesFirst, ChangesView, CallsForEach, CallsForKey, CallsOfModule, ComputesProperty),
+    *(ChangesArgument, ChangesOut, Copies, Decorates),
 ]
 
 

@@ -40,7 +40,7 @@ def is_made(attributes: Attributes, source: Source, node: ast.expr, depth: int =
     if not isinstance(function, ast.Attribute):
         return False
     owner = function.value.id if isinstance(function.value, ast.Name) else None
-    is_copy = function.attr == "copy" and owner != own_name(source.node) and ast.unparse(function.value) != "super()"
+    is_copy = function.attr == "copy" and not isinstance(attributes.find("copy")[0], FunctionType)
     if is_copy or is_step(node):  # of a base class, which is checked as well
         return True
     if owner is None:
@@ -67,7 +67,7 @@ def returned(node: ast.FunctionDef) -> Iterator[ast.expr]:
 
 
 def values_of(source: Source, name: str) -> Iterator[ast.expr]:
-    """Yields the values that are assigned to a variable; the call, if it is unpacked from one."""
+    """Yields the values that are assigned to a variable; the call, if it is the last one that is unpacked from one."""
     for one in ast.walk(source.node):
         targets = one.targets if isinstance(one, ast.Assign) else [one.target] if isinstance(one, ast.AnnAssign) else []
         for target in targets:
@@ -77,7 +77,16 @@ def values_of(source: Source, name: str) -> Iterator[ast.expr]:
             elif isinstance(target, ast.Tuple | ast.List):
                 for i, part in enumerate(target.elts):
                     if isinstance(part, ast.Name) and part.id == name:
-                        yield value.elts[i] if isinstance(value, ast.Tuple | ast.List) else value
+                        yield _element(target, value, i)
+
+
+def _element(target: ast.Tuple | ast.List, value: ast.expr, i: int) -> ast.expr:
+    """Returns the value of an element of a target; of a call, the last one stands for the info dict."""
+    has_star = any(isinstance(part, ast.Starred) for part in target.elts)
+    if isinstance(value, ast.Tuple | ast.List) and not has_star and len(value.elts) == len(target.elts):
+        return value.elts[i]
+    is_last = isinstance(value, ast.Call) and not has_star and i == len(target.elts) - 1
+    return value if is_last else ast.copy_location(ast.Subscript(value, ast.Constant(i), ast.Load()), value)
 
 
 def bindings(source: Source, name: str) -> int:

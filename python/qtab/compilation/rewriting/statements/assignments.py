@@ -183,9 +183,8 @@ def augmented(scope: "Statements", node: ast.AugAssign) -> None:
         bind(scope, node, target, result)
         return
     if isinstance(target.value, ast.Name) and target.value.id in scope.infos:
-        check_pure(scope, node.value)
-        scope.program.changes_infos = True
-        return
+        advice = "assign a number that is computed from attributes"
+        raise scope.refuse(node, "an element of an info dict is changed in place", advice)
     base = changeable(scope, node, target)
     if any(isinstance(one, ast.Call) for one in ast.walk(target.slice)):
         raise scope.refuse(node, "a call in the index of an element that is changed", "assign the index to a variable")

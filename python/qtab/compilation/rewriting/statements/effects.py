@@ -11,9 +11,10 @@ import numpy as np
 
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting.attributes import MISSING
-from qtab.compilation.rewriting.infos.made import bindings, is_made, values_of
+from qtab.compilation.rewriting.infos.made import MOST_NESTED, bindings, is_made, values_of
 from qtab.compilation.rewriting.source.sources import source_of
-from qtab.compilation.rewriting.source.syntax import own_name, parameters_of
+from qtab.compilation.rewriting.source.syntax import CHANGING, own_name, parameters_of
+from qtab.compilation.rewriting.values import is_immutable
 from qtab.compilation.twins.own_code import own_methods, runs_code
 
 if TYPE_CHECKING:
@@ -31,7 +32,15 @@ PURE_METHODS = (
 )
 LOCAL_METHODS = ("add", "append", "extend", "insert", "pop", "sort", "update")
 """Methods that change a list or a dict that the function made."""
-CHANGEABLE = (list, dict, set, np.ndarray)
+NUMBERS_OF_METHODS = ("all", "any", "argmax", "argmin", "count", "index", "item", "max", "mean", "min", "std", "sum")
+NUMBERS_OF_BUILTINS = ("abs", "bool", "float", "int", "len", "round", "str", "sum")
+CHANGES_ARGUMENT = ("copyto", "fill_diagonal", "place", "put", "put_along_axis", "putmask")
+"""Functions of NumPy that change an array."""
+EFFECTIVE = (
+    *(ast.NamedExpr, ast.Yield, ast.YieldFrom, ast.Await, ast.Global, ast.Nonlocal, ast.Delete),
+    *(ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef),
+)
+_IMMUTABLE = (ast.Constant, ast.JoinedStr, ast.Compare, ast.UnaryOp, ast.Tuple)
 ADVICE = "compute it without drawing or changing attributes, or leave it out"
 
 
@@ -52,29 +61,34 @@ def _effect(
 ) -> str | None:
     """Returns the effect of an expression or statement; None if there is none."""
     own, parameters = own_name(definition), set(parameters_of(definition))
+    called = {id(one.func) for one in ast.walk(node) if isinstance(one, ast.Call)}
     for one in ast.walk(node):
-        if isinstance(
-            one, ast.NamedExpr | ast.Yield | ast.YieldFrom | ast.Await | ast.Global | ast.Nonlocal | ast.Delete
-        ):
+        if isinstance(one, EFFECTIVE):
             return f"it contains {type(one).__name__}"
+        if isinstance(one, ast.withitem) and not isinstance(one.context_expr, ast.Call):  # calls are checked
+            return f"it enters {ast.unparse(one.context_expr)}"
         if isinstance(one, ast.Attribute) and one.attr in ("np_random", "_np_random"):
             return "it draws random numbers"
+        if isinstance(one, ast.Attribute) and one.attr in CHANGING and id(one) not in called:
+            return f"it passes on {ast.unparse(one)}"
         is_element = isinstance(one, ast.Subscript) and _is_made(scope, one.value, function, parameters)
         if isinstance(one, ast.Attribute | ast.Subscript) and isinstance(one.ctx, ast.Store) and not is_element:
             return f"it assigns {ast.unparse(one)}"
-        if isinstance(one, ast.AugAssign) and isinstance(one.target, ast.Name):
-            source, name = source_of(function), one.target.id
-            values = list(values_of(source, name))
-            is_given = name in parameters or bindings(source, name) > len(values)
-            if is_given or any(_is_kept(scope, value, function, own) for value in values):
-                return f"it may change the value of {name}"
+        if isinstance(one, ast.AugAssign) and not _is_own(scope, one.target, function, parameters):
+            return f"it may change the value of {ast.unparse(one.target)}"
         if isinstance(one, ast.Attribute) and isinstance(one.value, ast.Name) and one.value.id == own:
             member, _ = scope.program.attributes.find(one.attr)
-            if isinstance(member, property):
-                inner = _of_function(scope, member.fget, seen)
+            method = getattr(member, "__func__", member)
+            if isinstance(member, property) or isinstance(method, FunctionType):
+                inner = _of_function(scope, member.fget if isinstance(member, property) else method, seen)
                 if inner is not None:
                     return inner
         if isinstance(one, ast.Name | ast.Attribute):
+            found = _resolved(one, function)
+            if isinstance(found, FunctionType) and not _is_library(found):  # which may be an argument, such as key=
+                inner = _of_function(scope, found, seen)
+                if inner is not None:
+                    return inner
             found = _of_operators(scope, constant_of(scope, one, function, own), seen)
             if found is not None:
                 return found
@@ -115,15 +129,34 @@ def _is_made(scope: "Expressions", node: ast.expr, function: FunctionType, param
     return is_variable and is_made(scope.program.attributes, source_of(function), node)
 
 
-def _is_kept(scope: "Expressions", node: ast.expr, function: FunctionType, own: str | None) -> bool:
-    """Returns whether a value may be a list, a dict, a set or an array of the environment, or of other code."""
-    found = _resolved(node, function)
-    if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == own:
+def _is_own(scope: "Expressions", node: ast.expr, function: FunctionType, parameters: set[str], depth: int = 0) -> bool:
+    """Returns whether a value is a number or a text, or is made by the function and has no name elsewhere."""
+    source = source_of(function)
+    if depth > MOST_NESTED or isinstance(node, ast.Subscript):
+        return False
+    if isinstance(node, _IMMUTABLE) or (
+        not isinstance(node, ast.Name) and is_made(scope.program.attributes, source, node)
+    ):
+        return True
+    parts: list[ast.expr] = []
+    if isinstance(node, ast.IfExp):
+        parts = [node.body, node.orelse]
+    elif isinstance(node, ast.BoolOp):
+        parts = node.values
+    elif isinstance(node, ast.Name) and node.id not in parameters:
+        parts = list(values_of(source, node.id))
+        if len(parts) != bindings(source, node.id):
+            return False
+    elif isinstance(node, ast.Call):
+        called = node.func
+        is_library = isinstance(called, ast.Attribute) and called.attr in NUMBERS_OF_METHODS
+        return is_library or (isinstance(called, ast.Name) and called.id in NUMBERS_OF_BUILTINS)
+    elif (
+        isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == own_name(source.node)
+    ):
         known = scope.program.attributes
-        found = vars(known.twin).get(node.attr, known.find(node.attr)[0])
-    elif isinstance(node, ast.Attribute | ast.Subscript) and found is MISSING:
-        return _is_kept(scope, node.value, function, own)
-    return isinstance(found, CHANGEABLE)
+        return is_immutable(vars(known.twin).get(node.attr, known.find(node.attr)[0]))
+    return bool(parts) and all(_is_own(scope, one, function, parameters, depth + 1) for one in parts)
 
 
 def _of_function(scope: "Expressions", function: Any, seen: set[Any]) -> str | None:
@@ -160,7 +193,7 @@ def _of_call(
         if is_local and callee.attr in LOCAL_METHODS and _is_made(scope, callee.value, function, parameters):
             return None
         return f"it calls {shown}, whose effects are unknown"
-    if isinstance(found, FunctionType) and not _is_numpy(found):
+    if isinstance(found, FunctionType) and not _is_library(found):
         return _of_function(scope, found, seen)
     if isinstance(found, enum.EnumMeta):
         has_code = any("_missing_" in vars(base) for base in found.__mro__ if base.__module__ != "enum")
@@ -168,18 +201,38 @@ def _of_call(
     if isinstance(found, type) and found.__module__ == "builtins" and issubclass(found, BaseException):
         return None
     name = getattr(found, "__name__", "")
+    is_lookup = found is getattr or found is hasattr
+    if is_lookup and node.args and isinstance(node.args[0], ast.Name) and node.args[0].id == own:
+        key = node.args[1] if len(node.args) > 1 else None
+        member = scope.program.attributes.find(str(key.value))[0] if isinstance(key, ast.Constant) else property()
+        return f"it calls {ast.unparse(node)}, which may compute an attribute" if isinstance(member, property) else None
     if name in PURE_BUILTINS and getattr(builtins, name) is found:
         return None
-    if _is_numpy(found) or getattr(found, "__module__", None) == "math":
+    if _is_library(found) and not _changes_argument(found, node):
         return None
     return f"it calls {shown}, whose effects are unknown"
 
 
-def _is_numpy(value: Any) -> bool:
+def _is_library(value: Any) -> bool:
+    """Returns whether a function is one of NumPy, but not of its random numbers, or of ``math``."""
     module = str(getattr(value, "__module__", None) or "")
     numpy = isinstance(value, np.ufunc) or module.partition(".")[0] == "numpy"
     bound = getattr(value, "__self__", None)
-    return numpy and "random" not in module and not isinstance(bound, np.random.Generator | np.random.RandomState)
+    is_random = "random" in module or isinstance(bound, np.random.Generator | np.random.RandomState)
+    return (numpy and not is_random) or module == "math"
+
+
+def _changes_argument(function: Any, node: ast.Call) -> bool:
+    """Returns whether a call of a function of NumPy may change one of its arguments."""
+    if getattr(function, "__name__", "") in CHANGES_ARGUMENT or any(one.arg in ("out", None) for one in node.keywords):
+        return True
+    if isinstance(function, np.ufunc):
+        return len(node.args) > function.nin
+    try:
+        names = list(inspect.signature(function).parameters)
+    except (TypeError, ValueError):  # a function in C, which takes out= by its name
+        return False
+    return "out" in names[: len(node.args)]
 
 
 def _resolved(node: ast.expr, function: FunctionType) -> Any:
