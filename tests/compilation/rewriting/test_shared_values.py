@@ -24,6 +24,7 @@ class Shares(ExtraEnv):
     def reset(self, *, seed=None, options=None):
         self.first, self.second = [1, 2], [1, 2]
         self.left, self.right = np.zeros(2), np.zeros(2)
+        self.grid = np.zeros((2, 2))
         return super().reset(seed=seed)
 
     def pick(self, value) -> Any:
@@ -135,6 +136,12 @@ class VariablesInOneLine(Shares):
         return float(second[0])
 
 
+class Rows(Shares):
+    def extra(self):
+        self.grid[0], self.grid[1] = self.grid[1], self.grid[0]  # here: both rows are then equal
+        return float(self.grid[1, 0])
+
+
 class Lists(Shares):
     def extra(self):
         first = [self.cell, 2]
@@ -167,7 +174,8 @@ class DictOfClass(Shares):
 SHARED = [
     *(ByTwoTargets, ByFunction, ByOr, ByOrOfFunction, ByGet, ByTuples, ByFunctionOfTwo),
     *(ArraysByTwoTargets, ArraysByFunction, ArraysByKeeping, OfReset),
-    *(Variables, VariablesOfTwoTargets, VariablesInOneLine, Lists, ConstantLists, ListOfClass, DictOfClass),
+    *(Variables, VariablesOfTwoTargets, VariablesInOneLine, Rows, Lists, ConstantLists),
+    *(ListOfClass, DictOfClass),
 ]
 
 
@@ -175,7 +183,9 @@ SHARED = [
 def test_shared_values_that_change_are_refused_with_their_line(cls: Any) -> None:
     lines, first = inspect.getsourcelines(cls)
     (marked,) = [number for number, line in enumerate(lines, first) if "here" in line]
-    with pytest.raises(NotCompilable, match=r"shares memory|may share its memory|with another name") as caught:
+    with pytest.raises(
+        NotCompilable, match=r"shares memory|may share its memory|with another name|changed before it is"
+    ) as caught:
         rewrite(cls())
     assert caught.value.line == marked
 
@@ -198,6 +208,8 @@ class Copies(Shares):
         self.second = [0 for _ in range(2)]
         self.right = self.made()
         self.left, self.right = self.right.copy(), self.left + 1.0
+        self.grid[0], self.grid[1] = self.grid[1].copy(), self.grid[0].copy()
+        self.grid[0, 0], self.grid[1, 0] = self.grid[1, 0], self.grid[0, 0]
         more = [1]
         pair: tuple[int, ...] = (self.cell,)
         more += [2]

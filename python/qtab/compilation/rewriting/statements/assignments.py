@@ -1,6 +1,7 @@
 """Assignments to local variables, attributes and elements."""
 
 import ast
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -66,8 +67,19 @@ def assign_value(scope: "Statements", node: ast.stmt, targets: "ast.expr | list[
         value = in_variables(scope, node, value)
     if len(targets) > 1:
         value = replace(value, fresh=False)
+    shown = value.views & {one.attr for target in targets for one in _changed(target)} if several else set()
+    if shown:
+        reason = f"a part of self.{min(shown)} is read, and changed before it is assigned,"
+        raise scope.refuse(node, reason, "write .copy() after each part that is read")
     for target in targets:
         bind(scope, node, target, value)
+
+
+def _changed(target: ast.expr) -> Iterator[ast.Attribute]:
+    """Yields the attributes whose elements are assigned."""
+    for one in ast.walk(target):
+        if isinstance(one, ast.Subscript) and isinstance(one.ctx, ast.Store) and isinstance(one.value, ast.Attribute):
+            yield one.value
 
 
 def _is_left_out(scope: "Statements", target: ast.expr) -> bool:
