@@ -81,7 +81,7 @@ def process_pool(workers: int, task: bytes | None = None) -> Iterator[ProcessPoo
             ) from error
         finally:
             ours.send_bytes(b"stop")
-            ours.close()  # which wakes them, too
+            ours.close()  # also wakes workers that the message has not woken
             executor.shutdown(cancel_futures=True)
 
 

@@ -29,7 +29,7 @@ MATH_ADVICE = {
     "dist": "write math.sqrt(x * x + y * y)",
     "radians": "write x * (math.pi / 180.0)",
     "degrees": "write x * (180.0 / math.pi)",
-    "isclose": "write abs(x - y) <= 1e-9 * abs(y), or with another tolerance",
+    "isclose": "write abs(x - y) <= 1e-9 * max(abs(x), abs(y))",
 }
 """What to write instead of other functions of ``math``."""
 OTHER_MATH = "use sin, cos, tan, exp, log, sqrt, floor, ceil or their like"
