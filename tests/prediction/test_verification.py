@@ -44,6 +44,18 @@ def test_a_wrapped_environment_is_verified_with_its_wrapper(discretizer: Any) ->
         estimates.verify(env="MountainCar-v0")  # type: ignore[arg-type]
 
 
+def test_an_environment_that_ends_episodes_earlier_is_refused() -> None:
+    long = gym.make("MountainCar-v0", max_episode_steps=300)
+    options: dict[str, Any] = {"discretizer": "tiles", "episodes": 1, "progress": False}
+    estimates, run = qtab.estimate_values(long, "random", **options), qtab.train(long, seed=0, preset=None, **options)
+    assert estimates.verify(env=long).equal
+    assert qtab.verify(run, env=gym.make("MountainCar-v0").unwrapped).equal
+    for owner, verify in (("estimates", estimates.verify), ("run", lambda env: qtab.verify(run, env=env))):
+        message = f"^env must have the time limit of the {owner}, 300 steps, or none, got 200$"
+        with pytest.raises(ValueError, match=message):
+            verify(env=gym.make("MountainCar-v0"))
+
+
 def test_a_wrapper_that_can_be_made_again_is() -> None:
     env = gym.wrappers.ClipReward(gym.make("MountainCar-v0"), -0.5, 0.0)
     estimates = qtab.estimate_values(env, "random", episodes=1, discretizer="tiles", max_episode_steps=40)

@@ -13,7 +13,7 @@ from qtab._utils.fields import with_fields
 from qtab._utils.shown import counted, shown
 from qtab.config.config import replace_checked
 from qtab.prediction.reference import estimate
-from qtab.training.setup.run_env import check_described, make_run_env
+from qtab.training.setup.run_env import check_described, limited, make_run_env
 
 if TYPE_CHECKING:
     from qtab.prediction.estimates import ValueEstimates
@@ -65,8 +65,7 @@ def verify_values(
         if not isinstance(env, gym.Env):
             raise TypeError(f"env must be an environment, got {shown(env)}")
         check_described(config, env, "estimates")
-        limit = checks.required("max_episode_steps", config.max_episode_steps)
-        opened = nullcontext(gym.wrappers.TimeLimit(env, limit))
+        opened = nullcontext(limited(config, env, "estimates"))
     with opened as made:
         weights = estimate(made, replace_checked(config, seed=number), estimates, count)
     ours = estimates.weights[estimates.seeds.index(number), found[0]]

@@ -24,7 +24,7 @@ from qtab.results.rates import ONLY_FIRST, repeatable
 from qtab.results.run import Run
 from qtab.training.repetition import repeats_itself, wrapper_with_statistics
 from qtab.training.setup.resolve import resolve
-from qtab.training.setup.run_env import check_env, check_same, make_run_env, resolve_run
+from qtab.training.setup.run_env import check_env, check_same, limited, make_run_env, resolve_run
 
 
 @with_fields
@@ -231,7 +231,7 @@ def verify(
 def _environment(config: Config, env: gym.Env | None) -> gym.Env:
     """Returns Gymnasium's own environment, even if the id names qtab's."""
     if env is not None:
-        return gym.wrappers.TimeLimit(env, checks.required("max_episode_steps", config.max_episode_steps))
+        return limited(config, env, "run")
     return make_run_env(config, of="gymnasium")
 
 

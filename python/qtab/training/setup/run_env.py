@@ -18,6 +18,7 @@ from qtab.config.merge import Base, over
 from qtab.config.options import is_set
 from qtab.config.origin import copied, trained_on
 from qtab.envs.actions import choose_actions
+from qtab.envs.in_rust.matching import time_limit
 from qtab.envs.origin.again import cannot_be_made, make_again, needs_object
 from qtab.envs.origin.describe import describe
 from qtab.envs.origin.description import EnvironmentDescription, differences
@@ -246,6 +247,23 @@ def check_described(config: Config, env: gym.Env, owner: str) -> None:
     description = trained_on(config)
     if description is not None and (found := differences(description, describe(env))):
         raise ValueError(f"env must be that of the {owner}, got another one: {'; '.join(found)}")
+
+
+def limited(config: Config, env: gym.Env, owner: str) -> gym.Env:
+    """Returns an environment with the time limit of a config.
+
+    Args:
+        config: The config.
+        env: The environment.
+        owner: The word for what has the config, for messages.
+
+    Raises:
+        ValueError: if the environment ends episodes earlier.
+    """
+    limit, own = checks.required("max_episode_steps", config.max_episode_steps), time_limit(env)
+    if own is not None and own < limit:
+        raise ValueError(f"env must have the time limit of the {owner}, {limit:,} steps, or none, got {own:,}")
+    return gym.wrappers.TimeLimit(env, limit)
 
 
 def check_env(env: Any) -> None:
