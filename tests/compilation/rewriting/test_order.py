@@ -126,6 +126,36 @@ class ReturnsInner(Bumps):
         return values[1] + number
 
 
+class LoopsOverBoth(Bumps):
+    def extra(self):
+        total = 0.0
+        for values in (self.ones(), self.board):  # here
+            total += values[1] + self.index()
+        return total
+
+
+class LoopsOverPairs(Bumps):
+    def extra(self):
+        total = 0.0
+        for number, other in zip(self.board.copy(), self.board, strict=True):  # here
+            self.board[3] += 1.0
+            total += number + other
+        return total
+
+
+class LoopsOverList(Bumps):
+    def reset(self, *, seed=None, options=None):
+        self.places = [1, 2, 3]
+        return super().reset(seed=seed)
+
+    def extra(self):
+        total = self.board[0]
+        for place in self.places:  # here: Python reads the places in each round
+            self.places[2] = 7
+            total += place
+        return total
+
+
 class ReadsNumbers(Bumps):
     def extra(self):
         total = self.board[1] * self.bump() + self.board[1] + self.board[self.cell % 4]
@@ -134,7 +164,7 @@ class ReadsNumbers(Bumps):
 
 REFUSED = [
     *(Indexes, IndexesByProperty, Passes, Compares, RepeatsWhile, CountsTo, LoopsOver, Enumerates),
-    *(Adds, Multiplies, Clips, ReturnsBoth, ReturnsInner),
+    *(Adds, Multiplies, Clips, ReturnsBoth, ReturnsInner, LoopsOverBoth, LoopsOverPairs, LoopsOverList),
 ]
 
 
@@ -145,7 +175,7 @@ def test_an_array_that_a_later_call_changes_is_refused(cls: Any) -> None:
     with pytest.raises(NotCompilable) as caught:
         rewrite(cls())
     assert caught.value.line == marked
-    assert "self.board" in caught.value.reason
+    assert ("self.places" if cls is LoopsOverList else "self.board") in caught.value.reason
 
 
 def test_numbers_are_read_in_pythons_order() -> None:

@@ -1,6 +1,7 @@
 """Loops: unrolled over constants, or kept."""
 
 import ast
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from qtab.compilation.rewriting import specials
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
 
 MAX_UNROLLED = 32
 """The most rounds of a loop over a constant that are written one after the other."""
+LAZY = ("enumerate", "filter", "map", "reversed", "zip")
+"""The functions that read their arguments while a loop runs."""
 
 
 def while_loop(scope: "Statements", node: ast.While) -> bool:
@@ -108,6 +111,9 @@ def _head(
 
 def _each(scope: "Statements", node: ast.For, iterable: Value, counted: bool) -> bool:
     check_order(scope, node.iter)
+    shown = replace(iterable, views=iterable.views | _passed_on(scope, node.iter))
+    if calls_own_functions(ast.Module(node.body, [])) or shown.views & changed_attributes(node.body):
+        scope.note_alias(shown, node.iter)
     scope.copies_state = True
     if iterable.is_fixed and not specials.is_special(iterable.fixed):
         items = containers.elements(scope, node.iter, iterable)
@@ -133,6 +139,14 @@ def _each(scope: "Statements", node: ast.For, iterable: Value, counted: bool) ->
     return False
 
 
+def _passed_on(scope: "Statements", iterable: ast.expr) -> frozenset[str]:
+    """Returns the attributes whose elements functions such as ``zip`` give one after the other."""
+    if not (isinstance(iterable, ast.Call) and isinstance(iterable.func, ast.Name) and iterable.func.id in LAZY):
+        return frozenset()
+    read = [views for node, views in scope.references if any(node is one for one in iterable.args)]
+    return frozenset().union(*read, *[_passed_on(scope, one) for one in iterable.args])
+
+
 def _indexed(scope: "Statements", node: ast.For, items: list[Value], counted: bool) -> bool:
     """Writes a loop over a constant as a loop over the indices of its elements."""
     if not items:
@@ -151,8 +165,6 @@ def _indexed(scope: "Statements", node: ast.For, items: list[Value], counted: bo
 def _array(scope: "Statements", node: ast.For, iterable: Value, counted: bool) -> bool:
     if iterable.kind.ndim != 1:
         raise scope.refuse(node.iter, f"a loop over {in_words(iterable.kind)}", "loop over the indices with range")
-    if calls_own_functions(ast.Module(node.body, [])) or iterable.views & changed_attributes(node.body):
-        scope.note_alias(iterable, node.iter)
     array = in_variables(scope, node, iterable)
     scalar = scalar_of(iterable.kind.dtype)
     element = converted(f"{array.code}[{{i}}]", scalar)
