@@ -55,7 +55,9 @@ def store(scope: "Statements", node: ast.stmt, name: str, value: Value) -> None:
     scope.program.stored.add(name)
     can_change = isinstance(kind, Array) or isinstance(getattr(known.twin, name), list)
     is_new = value.fresh and not (isinstance(value.kind, Array) and value.views)
-    if can_change and not is_new and (value.parts is None or name in scope.shared or value.views):
+    may_share = value.parts is None or name in scope.shared or bool(value.views)
+    has_inner = isinstance(kind, TupleKind) and bool(value.views)  # a list that an element of the tuple shows
+    if (can_change and not is_new and may_share) or has_inner:
         reason, advice = f"self.{name} shares memory that is changed in place", "write .copy() where it is assigned"
         known.shared.append(({name, *value.views}, lambda: scope.refuse(node, reason, advice)))
     _store_field(scope, node, name, kind, value)

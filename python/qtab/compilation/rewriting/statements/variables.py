@@ -24,7 +24,8 @@ def in_variables(scope: "Statements", node: ast.stmt, value: Value) -> Value:
         for part in value.parts:
             fixed = part.is_fixed or part.kind == INFO
             parts.append(part if fixed else in_variables(scope, node, kept(part)))
-        return _like(value, tuple_value(tuple(parts)))
+        made = tuple_value(tuple(parts))
+        return _like(value, replace(made, views=made.views | value.views))
     scope.temporaries += 1
     name = f"x_{scope.temporaries}"
     scope.emit(f"{name} = {kept(value).code}", node)
