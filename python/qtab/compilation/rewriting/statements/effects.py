@@ -34,12 +34,14 @@ LOCAL_METHODS = ("add", "append", "extend", "insert", "pop", "sort", "update")
 """Methods that change a list or a dict that the function made."""
 NUMBERS_OF_METHODS = ("all", "any", "argmax", "argmin", "count", "index", "item", "max", "mean", "min", "std", "sum")
 NUMBERS_OF_BUILTINS = ("abs", "bool", "float", "int", "len", "round", "str", "sum")
+"""Methods and functions whose results have no other name."""
 CHANGES_ARGUMENT = ("copyto", "fill_diagonal", "place", "put", "put_along_axis", "putmask")
 """Functions of NumPy that change an array."""
 EFFECTIVE = (
     *(ast.NamedExpr, ast.Yield, ast.YieldFrom, ast.Await, ast.Global, ast.Nonlocal, ast.Delete),
     *(ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef),
 )
+"""Statements and expressions that are not left out."""
 _IMMUTABLE = (ast.Constant, ast.JoinedStr, ast.Compare, ast.UnaryOp, ast.Tuple)
 ADVICE = "compute it without drawing or changing attributes, or leave it out"
 
