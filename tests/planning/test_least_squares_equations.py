@@ -56,7 +56,9 @@ def test_matrices_that_do_not_fit_into_memory_are_refused(epsilon: float, monkey
     ):
         lspi(batch, np.ones((2, 10**6)), 0.9, epsilon=epsilon)
     monkeypatch.setattr("qtab._utils.memory.memory_limit", lambda _: 8 * 5 * 2 * 10**2)
-    with pytest.raises(MemoryError, match=r"^matrices of 20 x 20 numbers for 10 features of 2 actions need 15.6 KiB"):
+    with pytest.raises(
+        MemoryError, match=r"^matrices of 20 x 20 numbers for 10 features of 2 actions would take 15.6 KiB"
+    ):
         lstdq(batch, np.ones((2, 10)), [0, 1], 0.9, epsilon=epsilon)  # the blocks of the actions fit, all of A does not
 
 

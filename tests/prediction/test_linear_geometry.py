@@ -224,7 +224,7 @@ def test_a_singular_update_is_refused() -> None:
         (
             {"features": np.arange(19) // 18 * 10**6},
             MemoryError,
-            "numbers for 1,000,001 features need .* TiB, more than",
+            "numbers for 1,000,001 features would take .* TiB, more than",
         ),
         ({"distribution": np.full(19, 0.1)}, ValueError, "distribution must sum to 1, got 1.9"),
         ({"distribution": np.ones(3)}, ValueError, r"distribution must have the shape \(19,\), got \(3,\)"),

@@ -118,7 +118,11 @@ def test_the_exact_weights_of_boyans_chain_are_found() -> None:
     ("call", "error", "message"),
     [
         (lambda: LSTD(0), ValueError, "n_features must be an integer of at least 1"),
-        (lambda: LSTD(10**6), MemoryError, "matrices of 1,000,000 x 1,000,000 numbers for 1,000,000 features need"),
+        (
+            lambda: LSTD(10**6),
+            MemoryError,
+            "matrices of 1,000,000 x 1,000,000 numbers for 1,000,000 features would take",
+        ),
         (lambda: LSTD(3, epsilon=0.0), ValueError, "epsilon must be above 0, got 0"),
         (lambda: LSTD(3, epsilon=1e-309), ValueError, "epsilon must have a finite reciprocal if recursive, got 1e-309"),
         (lambda: LSTD(3, trace_decay=2), ValueError, r"trace_decay must lie in \[0, 1\]"),

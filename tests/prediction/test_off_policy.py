@@ -151,7 +151,11 @@ def test_the_weight_of_two_states_with_the_values_w_and_2w_grows_as_in_the_book(
         ({"method": "dp"}, ValueError, r"method must be one of 'td', 'gtd2', 'tdc', 'emphatic_td', got 'dp'"),
         ({"second_learning_rate": 0.1}, ValueError, "second_learning_rate must be None for method 'td'"),
         ({"method": "tdc"}, ValueError, "second_learning_rate must be given for method 'tdc'"),
-        ({"updates": 10**12}, MemoryError, "the weights of 1,000,000,000,000 updates need .* TiB, more than half"),
+        (
+            {"updates": 10**12},
+            MemoryError,
+            "the weights of 1,000,000,000,000 updates would take .* TiB, more than half",
+        ),
         ({"updates": -1}, ValueError, "updates must be"),
         ({"learning_rate": np.nan}, ValueError, "learning_rate must be finite"),
         ({"initial_weights": np.ones(3)}, ValueError, r"initial_weights must have 4 numbers, .* got shape \(3,\)"),
