@@ -1,5 +1,5 @@
 """Makes the links of the README absolute, so that pictures show on PyPI and pages are found from there, adds links that
-open its notebooks in Google Colab and Binder, and writes the repository into the manifest of the crate.
+open its notebooks in Google Colab and Binder, and writes the repository into the manifests of the crates.
 
     python .ci/links.py https://github.com/OWNER/NAME v1.2.3
 
@@ -13,12 +13,12 @@ from pathlib import Path
 from launch import launch
 
 README = Path(__file__).parents[1] / "README.md"
-MANIFEST = Path(__file__).parents[1] / "rust" / "core" / "Cargo.toml"
+MANIFESTS = [Path(__file__).parents[1] / "rust" / crate / "Cargo.toml" for crate in ("core", "env")]
 LINK = re.compile(r"(!?)\[([^\]]*)\]\((?!https?:|#)([^)\s]+)\)")
 
 
 def main(repository: str, tag: str) -> None:
-    """Rewrites the README and the manifest."""
+    """Rewrites the README and the manifests."""
     if not re.fullmatch(r"https://[\w.-]+/[\w.-]+/[\w.-]+", repository):
         sys.exit(f"the repository must be like https://github.com/OWNER/NAME, got {repository!r}")
 
@@ -31,10 +31,11 @@ def main(repository: str, tag: str) -> None:
     text, count = LINK.subn(absolute, README.read_text(encoding="utf-8"))
     README.write_text(text, encoding="utf-8", newline="\n")
     print(f"{count} links of README.md lead to {repository}")
-    manifest = MANIFEST.read_text(encoding="utf-8")
-    if "\nrepository = " not in manifest:
-        manifest = manifest.replace("\ndocumentation = ", f'\nrepository = "{repository}"\ndocumentation = ', 1)
-        MANIFEST.write_text(manifest, encoding="utf-8", newline="\n")
+    for path in MANIFESTS:
+        manifest = path.read_text(encoding="utf-8")
+        if "\nrepository = " not in manifest:
+            manifest = manifest.replace("\ndocumentation = ", f'\nrepository = "{repository}"\ndocumentation = ', 1)
+            path.write_text(manifest, encoding="utf-8", newline="\n")
 
 
 if __name__ == "__main__":

@@ -112,14 +112,15 @@ def test_a_tag_without_a_version_or_without_a_section_of_the_changelog_is_refuse
     assert (tmp_path / "Cargo.lock").read_bytes() == (ROOT / "Cargo.lock").read_bytes()
 
 
-def test_the_links_of_the_readme_become_absolute_and_the_crate_knows_its_repository(tmp_path: Path) -> None:
+def test_the_links_of_the_readme_become_absolute_and_the_crates_know_their_repository(tmp_path: Path) -> None:
     (tmp_path / ".ci").mkdir()
     for name in ("links.py", "launch.py"):
         (tmp_path / ".ci" / name).write_bytes((ROOT / ".ci" / name).read_bytes())
     (tmp_path / "README.md").write_bytes((ROOT / "README.md").read_bytes())
-    manifest = tmp_path / "rust" / "core" / "Cargo.toml"
-    manifest.parent.mkdir(parents=True)
-    manifest.write_bytes((ROOT / "rust" / "core" / "Cargo.toml").read_bytes())
+    manifests = [Path("rust") / crate / "Cargo.toml" for crate in ("core", "env")]
+    for manifest in manifests:
+        (tmp_path / manifest).parent.mkdir(parents=True)
+        (tmp_path / manifest).write_bytes((ROOT / manifest).read_bytes())
     address = "https://github.com/someone/qtab"
     command = [sys.executable, ".ci/links.py", address, "v3.4.5"]
     assert subprocess.run(command, cwd=tmp_path, capture_output=True, check=False).returncode == 0
@@ -130,7 +131,8 @@ def test_the_links_of_the_readme_become_absolute_and_the_crate_knows_its_reposit
     notebook = "examples/study.ipynb"
     assert f"]({address}/blob/v3.4.5/{notebook}) [Colab](https://colab.research.google.com/github/someone/" in text
     assert "[Binder](https://mybinder.org/v2/gh/someone/qtab/v3.4.5?labpath=examples%2Fstudy.ipynb)" in text
-    assert manifest.read_text(encoding="utf-8").count(f'\nrepository = "{address}"\n') == 1
+    for manifest in manifests:
+        assert (tmp_path / manifest).read_text(encoding="utf-8").count(f'\nrepository = "{address}"\n') == 1
     refused = subprocess.run(
         [*command[:2], "x; y", "v3.4.5"], cwd=tmp_path, capture_output=True, text=True, check=False
     )
