@@ -80,7 +80,7 @@ class ChangesItsList(Base):
 class ChangesShape(Base):
     def transition(self, state: Any, action: int, rng: np.random.Generator) -> Any:
         if action == 1:
-            return (state, state), 0.0, False
+            return (state, state), 0.0, False  # here, or below: Numba names one of them
         return state, 0.0, False  # here
 
 
@@ -167,7 +167,7 @@ REFUSED: list[tuple[type[Base], str]] = [
     (ChangesItself, "self.count changes the environment; keep in the state what changes"),
     (ChangesAnArray, "Numba: an array of the state, or of self, is changed; copy the array first, and return the copy"),
     (ChangesItsList, r"self.visits\[action\] changes the environment; keep in the state what changes"),
-    (ChangesShape, "its returns have different types; return the same number of values everywhere, each of one type"),
+    (ChangesShape, "its returns have different types; return equally many values everywhere, each always of one type"),
     (ReadsADict, "self.rewards contains a value of type dict"),
     (DrawsUnknown, "Unknown attribute 'bytes' of type NumPyRandomGeneratorType"),
     (Clips, r"Numba: clip\(float64, float64, float64\) is not available; write min\(max\(x, low\), high\)"),

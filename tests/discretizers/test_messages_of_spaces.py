@@ -116,7 +116,7 @@ def test_62_axes_are_served() -> None:
 
 def test_a_table_that_takes_too_much_memory_is_named_with_its_space(monkeypatch: pytest.MonkeyPatch) -> None:
     space = spaces.Discrete(10**6)
-    message = r"with a table of 1,000,000 rows of 2 actions for Discrete\(1000000\) need .* max_rows= assigns rows only"
+    message = r"with a table of 1,000,000 rows of 2 actions for Discrete\(1000000\) would take .* max_rows= assigns"
     with pytest.raises(MemoryError, match=message) as caught:
         qtab.train(Still(space, 0), memory_limit=10**6, **SHORT)
     assert "by default" not in str(caught.value)

@@ -67,8 +67,8 @@ def test_a_discretizer_and_its_rows_are_not_feature_vectors() -> None:
     settings: dict[str, Any] = {"algorithm": "sarsa", "preset": None, "learning_rate": 0.001, "episodes": 1, "seed": 0}
     basis: Any = qtab.train("MountainCar-v0", discretizer="fourier", order=3, **settings).discretizer
     tiles: Any = qtab.train("MountainCar-v0", discretizer="tiles", **settings).discretizer
-    as_vector = "a vector is 1 at the active_rows and 0 elsewhere"
-    for given, hint in ((basis, "its feature_values does"), (tiles, as_vector), (tiles.active_rows, as_vector)):
+    as_vector = "return a vector that is 1 at its active_rows and 0 elsewhere"
+    for given, hint in ((basis, "pass its method feature_values"), (tiles, as_vector), (tiles.active_rows, as_vector)):
         expected = f"^features must be an array or a function that returns vectors, got <.*>; {hint}$"
         with pytest.raises(TypeError, match=expected):
             lspi(batch, given)

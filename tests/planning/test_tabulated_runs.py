@@ -176,6 +176,9 @@ def test_a_run_that_takes_unavailable_actions_is_refused() -> None:
     masked = qtab.train(limited(OneWay()), action_mask=True, **settings)
     [played] = qtab.evaluate(masked, 1, seed=0, env=limited(OneWay())).returns
     assert best.gap(masked).greedy_return == pytest.approx(played)
+    several = qtab.train_many(lambda: limited(OneWay()), seeds=2, episodes=300, action_mask=True, **SETTINGS)
+    assert several.action_masks is None  # they are kept with the tables only
+    assert best.gap(several).optimum == best.gap(masked).optimum
     run = qtab.train(limited(OneWay()), **settings)
     expected = "^run must have action_mask=True, as the table leaves out unavailable actions, got False$"
     for call in (best.gap, lambda run: qtab.policy_values(table, run), lambda run: qtab.diagnose(run, best)):

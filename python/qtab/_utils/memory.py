@@ -96,7 +96,8 @@ def check_arrays(what: str, needed: int) -> None:
     """
     if needed > memory_limit(None) or (needed > ALWAYS_FREE and needed > free_memory()):
         raise MemoryError(
-            f"{what} would take {readable_size(needed)}, more than half of the machine's memory or than is free"
+            f"{what} would take {readable_size(needed)}, more than half of the machine's memory, or more than is free; "
+            "request less"
         )
 
 

@@ -1,7 +1,7 @@
 /* qtab_env.h: an environment as a table of C functions, version 1.
  *
  * A library exports one function, `const qtab_env *qtab_env_1(void)`, and `qtab.NativeEnv("libmy_env.so")` trains on it.
- * Its other functions are static: the system may have others of the same names, as glibc has a function `step`.
+ * Make its other functions static: other libraries may have functions of the same names; glibc has one called `step`.
  * The functions keep nothing between calls: the state is memory of the caller, and random numbers come from the
  * generator that the caller passes. Several threads call them at the same time. `observation` and `action_mask` are never
  * NULL; their bytes may be those of an earlier state. A terminal state needs no action mask. A step that returns both

@@ -53,7 +53,7 @@ def on_table(run: AnyRun, table: TabulatedEnv) -> AnyRun:
     rows = np.array([run.discretizer.active_features(observation) for observation in table.observations])
     changes: dict[str, Any] = {"tables": None if run.tables is None else _of_states(run, run.tables, rows)}
     masks = _masks(run, table, rows)
-    if masks is None and _leaves_out_actions(table):
+    if config.action_mask is False and _leaves_out_actions(table):
         raise ValueError("run must have action_mask=True, as the table leaves out unavailable actions, got False")
     if isinstance(run.discretizer, TimeAware):
         cells = TimeAware(cells.low, cells.high, cells, run.discretizer.max_episode_steps)
@@ -107,9 +107,13 @@ def _masks(run: Run | Runs, table: TabulatedEnv, rows: NDArray[Any]) -> NDArray[
 
 
 def _leaves_out_actions(table: TabulatedEnv) -> bool:
-    """Returns whether the table does not have the outcomes of unavailable actions: they end the episode there."""
+    """Returns whether the table lacks the outcomes of unavailable actions, each of which ends the episode instead."""
     unavailable = [] if table.masks is None else np.argwhere(~table.masks).tolist()
-    return bool(unavailable) and all(table.P[state][action][0][3] for state, action in unavailable)
+    left_out = (
+        len(table.P[state][action]) == 1 and table.P[state][action][0][1::2] == (state, True)
+        for state, action in unavailable
+    )
+    return bool(unavailable) and all(left_out)
 
 
 def _entered(table: TabulatedEnv) -> set[int]:

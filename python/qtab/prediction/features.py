@@ -12,6 +12,7 @@ from qtab._utils.arrays import numbers
 from qtab._utils.shown import counted, shown
 from qtab.discretizers import Discretizer
 from qtab.discretizers.weighted.polynomial import OF_FUNCTION
+from qtab.planning.least_squares.lstdq import check_vectors
 from qtab.planning.policies import discrete_observations
 
 Rows = NDArray[np.uint32]
@@ -129,9 +130,10 @@ def features_of_function(function: Callable[[Any], Any], cells: Discretizer, spa
         space: The observation space.
 
     Raises:
-        TypeError: if the function does not return numbers.
+        TypeError: if the function does not return numbers, or returns the row numbers of a discretizer.
         ValueError: for another shape, a number that is not finite, or observations that are not discrete.
     """
+    check_vectors(function)
     if not isinstance(space, gym.spaces.Discrete | gym.spaces.MultiDiscrete | gym.spaces.Tuple):
         raise ValueError(
             f"features must be an array for observations that are not discrete, got a function; {OF_FUNCTION}"

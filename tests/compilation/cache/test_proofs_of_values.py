@@ -160,6 +160,6 @@ def test_changed_parameters_are_found_without_a_change_of_the_environment(proofs
     env = Counting()
     with pytest.raises(NotCompilable, match=r"is changed.*copy the array first") as refused:
         compiled_env(env)
-    # Numba 0.61 refuses the function itself; later ones take its array for a new one.
+    # Older versions of Numba refuse the function themselves; the newest take its array for a new one.
     assert len(proofs) == ("an array of self is changed" in str(refused.value))
     assert not env.counts.any()

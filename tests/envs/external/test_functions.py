@@ -148,7 +148,7 @@ def test_a_library_of_other_content_is_reported(lander: Path, tmp_path: Path, ca
     run = stopped(qtab.NativeEnv(lander), 13, seed=2, **BINS)
     with caplog.at_level(logging.WARNING, "qtab"):
         qtab.resume(run, env=qtab.NativeEnv(heavier))
-    assert "the code of NativeEnv was edited: its numbers may differ from those before" in caplog.text
+    assert "the code of NativeEnv was edited: its numbers may differ from earlier ones" in caplog.text
 
 
 def test_discretizers_in_python_are_stepped_in_python(lander: Path) -> None:

@@ -28,7 +28,8 @@ def run(options: Namespace) -> int:
         saved = load_run_and_env(options)
         problem = display_problem()
         if problem is not None:
-            advice = f"qtab record {options.run} agent.mp4 writes a video without one"
+            given = "" if options.env is None else f" --env {options.env}"
+            advice = f"qtab record {options.run} agent.mp4{given} writes a video without one"
             raise UsageError(f"a window needs a display ({problem}); {advice}")
         played = played_by(saved, options, window=True)
     print_above(played.summary)

@@ -32,7 +32,7 @@ _ADVICE = (
     (">>> clip(float64", "write min(max(x, low), high)"),
     ("Unknown attribute", "use numbers, tuples and arrays, and functions of math and NumPy"),
     ("Cannot modify readonly array", "copy the array first, and return the copy"),
-    ("Can't unify return type", "return the same number of values everywhere, each of one type"),
+    ("Can't unify return type", "return equally many values everywhere, each always of one type"),
     ("Cannot unify", "give the variable values of one type"),
     ("Untyped global name", "use numbers, tuples, arrays and functions"),
 )

@@ -167,7 +167,7 @@ def differences(trained_on: EnvironmentDescription, given: EnvironmentDescriptio
         given: The environment to compare with it.
     """
     for name in _edited(trained_on, given):
-        _log_once(f"the code of {name} was edited: its numbers may differ from those before")
+        _log_once(f"the code of {name} was edited: its numbers may differ from earlier ones")
     return list(_all(trained_on, given))
 
 
@@ -230,7 +230,7 @@ def _values(what: str, ours: Mapping[str, Any], theirs: Mapping[str, Any], missi
 
 
 def _replaced(ours: EnvironmentDescription | WrapperDescription) -> str:
-    return "have been replaced since" if ours.code == LIBRARY else "were replaced, and are not now"
+    return "have been replaced since" if ours.code == LIBRARY else "were replaced then, and are not now"
 
 
 def _class_name(description: EnvironmentDescription | WrapperDescription) -> str:

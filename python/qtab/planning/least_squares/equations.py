@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from qtab._utils.linear_algebra import dependent_columns
 from qtab._utils.memory import check_arrays
+from qtab._utils.shown import counted
 from qtab.planning.least_squares.transitions import Transitions
 
 FloatArray: TypeAlias = NDArray[np.float64]
@@ -41,7 +42,7 @@ class Batch:
         feature for each state, w = D⁻¹(b + γPw) is first solved for the weights that P uses, and the others follow.
 
         Raises:
-            MemoryError: if the matrices would take more than half of the machine's memory.
+            MemoryError: if the matrices would take more than half of the machine's memory, or more than is free.
             ValueError: if A is singular up to rounding errors, or numbers overflowed.
         """
         d, k = self.x.shape[1], self.transitions.n_actions
@@ -89,7 +90,7 @@ class Batch:
     def _check_memory(self, size: int, blocks: int = 1) -> None:
         """Raises an error if matrices that consist of so many square blocks do not fit into memory."""
         d, k = self.x.shape[1], self.transitions.n_actions
-        what = f"matrices of {size:,} x {size:,} numbers for {d:,} features of {k:,} actions"
+        what = f"matrices of {size:,} x {size:,} numbers for {counted(d, 'feature')} of {counted(k, 'action')}"
         check_arrays(what, 8 * MATRICES * blocks * size**2)
 
     def _solved_at_once(self, next_actions: NDArray[np.int64]) -> FloatArray:

@@ -132,7 +132,7 @@ def lspi(
             a run with action masks need it.
 
     Raises:
-        MemoryError: if the matrices would take more than half of the machine's memory.
+        MemoryError: if the matrices would take more than half of the machine's memory, or more than is free.
         TypeError: for an argument of the wrong type, or a mask that does not hold booleans or integers.
         ValueError: for an argument out of range, features, a policy or masks that do not fit the observations or the
             actions, no masks for the episodes of a run that had some, or if A is singular, with the features whose

@@ -50,7 +50,7 @@ def lstdq(
             not determine near zero.
 
     Raises:
-        MemoryError: if the matrices would take more than half of the machine's memory.
+        MemoryError: if the matrices would take more than half of the machine's memory, or more than is free.
         TypeError: for an argument of the wrong type.
         ValueError: for an argument out of range, features or a policy that do not fit the observations, or if A is
             singular, with the features whose weights are not determined.
@@ -100,7 +100,7 @@ def feature_vectors(features: GivenFeatures, observations: NDArray[Any]) -> Floa
             discretizer or its rows are given.
         ValueError: for another shape, or a number that is not finite.
     """
-    _check_vectors(features)
+    check_vectors(features)
     if callable(features):
         try:
             given: Any = np.array([features(one) for one in each(observations)])
@@ -116,8 +116,8 @@ def feature_vectors(features: GivenFeatures, observations: NDArray[Any]) -> Floa
     return np.ascontiguousarray(vectors)
 
 
-def _check_vectors(features: Any) -> None:
-    """Checks that features are not a discretizer, or its row numbers, which would count as feature vectors.
+def check_vectors(features: Any) -> None:
+    """Checks that features are not a discretizer, or its row numbers, which would be taken for feature vectors.
 
     Raises:
         TypeError: if they are.
@@ -127,7 +127,11 @@ def _check_vectors(features: Any) -> None:
         return
     is_weighted = hasattr(owner, "feature_values")
     if features is owner or not is_weighted:
-        hint = "its feature_values does" if is_weighted else "a vector is 1 at the active_rows and 0 elsewhere"
+        hint = (
+            "pass its method feature_values"
+            if is_weighted
+            else "return a vector that is 1 at its active_rows and 0 elsewhere"
+        )
         raise TypeError(f"features must be an array or a function that returns vectors, got {owner!r}; {hint}")
 
 

@@ -118,7 +118,7 @@ def chain_of(
         initial: (states,): the distribution of the first state of an episode.
 
     Raises:
-        MemoryError: if matrices of all states would take more than half of the machine's memory.
+        MemoryError: if matrices of all states would take more than half of the machine's memory, or more than is free.
     """
     states, actions = policy.shape
     check_arrays(f"matrices of {states:,} x {states:,} numbers for {states:,} states", 8 * MATRICES * states**2)

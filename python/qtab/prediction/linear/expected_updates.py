@@ -46,7 +46,7 @@ def expected_updates(
         initial_weights: (d,): the weights before the first update; None means zero.
 
     Raises:
-        MemoryError: if the weights of all updates would take more than half of the machine's memory.
+        MemoryError: if the weights would take more than half of the machine's memory, or more than is free.
         OverflowError: if the weights exceed the range of float64.
         TypeError: for an argument of the wrong type.
         ValueError: for an argument out of range or that does not apply to the method.

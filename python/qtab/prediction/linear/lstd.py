@@ -35,7 +35,7 @@ class LSTD:
             to rounding errors, which grow in the first case as ε becomes smaller.
 
     Raises:
-        MemoryError: if the matrices would take more than half of the machine's memory.
+        MemoryError: if the matrices would take more than half of the machine's memory, or more than is free.
         TypeError: for an argument of the wrong type.
         ValueError: for an argument out of range.
     """

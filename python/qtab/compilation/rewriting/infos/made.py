@@ -4,7 +4,7 @@ import ast
 from collections.abc import Iterator
 from types import FunctionType
 
-from qtab.compilation.rewriting.attributes import Attributes
+from qtab.compilation.rewriting.attributes import MISSING, Attributes
 from qtab.compilation.rewriting.infos.dicts import LENGTHS, returns_of
 from qtab.compilation.rewriting.source.sources import Source, source_of
 from qtab.compilation.rewriting.source.syntax import own_name
@@ -40,7 +40,7 @@ def is_made(attributes: Attributes, source: Source, node: ast.expr, depth: int =
     if not isinstance(function, ast.Attribute):
         return False
     owner = function.value.id if isinstance(function.value, ast.Name) else None
-    is_copy = function.attr == "copy" and not isinstance(attributes.find("copy")[0], FunctionType)
+    is_copy = function.attr == "copy" and attributes.find("copy")[0] is MISSING
     if is_copy or is_step(node):  # of a base class, which is checked as well
         return True
     if owner is None:

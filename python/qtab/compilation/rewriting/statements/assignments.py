@@ -178,8 +178,8 @@ def augmented(scope: "Statements", node: ast.AugAssign) -> None:
         elif (isinstance(before.kind, TupleKind) or isinstance(before.fixed, list | dict | set)) and not is_owned(
             scope, target
         ):
-            advice = "write x = x + y, which makes a new one"
-            raise scope.refuse(node, f"{target.id} may be a list with another name", advice)
+            advice = "write x = x + y, which makes a new list or tuple"
+            raise scope.refuse(node, f"{target.id} may be a list that has another name", advice)
         _bind_name(scope, node, target.id, result)
         return
     if _is_unread(scope, target):
@@ -195,8 +195,8 @@ def augmented(scope: "Statements", node: ast.AugAssign) -> None:
         bind(scope, node, target, result)
         return
     if isinstance(target.value, ast.Name) and target.value.id in scope.infos:
-        advice = "assign a number that is computed from attributes"
-        raise scope.refuse(node, "an element of an info dict is changed in place", advice)
+        advice = 'write info["x"] = ... with the new value'
+        raise scope.refuse(node, "an element of an info dict is changed by an operator", advice)
     base = changeable(scope, node, target)
     if any(isinstance(one, ast.Call) for one in ast.walk(target.slice)):
         raise scope.refuse(node, "a call in the index of an element that is changed", "assign the index to a variable")

@@ -35,7 +35,7 @@ LOCAL_METHODS = ("add", "append", "extend", "insert", "pop", "sort", "update")
 NUMBERS_OF_METHODS = ("all", "any", "argmax", "argmin", "count", "index", "item", "max", "mean", "min", "std", "sum")
 NUMBERS_OF_BUILTINS = ("abs", "bool", "float", "int", "len", "round", "str", "sum")
 """Methods and functions whose results have no other name."""
-CHANGES_ARGUMENT = ("copyto", "fill_diagonal", "place", "put", "put_along_axis", "putmask")
+CHANGES_ARGUMENT = ("copyto", "fill_diagonal", "nan_to_num", "place", "put", "put_along_axis", "putmask")
 """Functions of NumPy that change an array."""
 EFFECTIVE = (
     *(ast.NamedExpr, ast.Yield, ast.YieldFrom, ast.Await, ast.Global, ast.Nonlocal, ast.Delete),
@@ -226,15 +226,18 @@ def _is_library(value: Any) -> bool:
 
 def _changes_argument(function: Any, node: ast.Call) -> bool:
     """Returns whether a call of a function of NumPy may change one of its arguments."""
-    if getattr(function, "__name__", "") in CHANGES_ARGUMENT or any(one.arg in ("out", None) for one in node.keywords):
+    name = getattr(function, "__name__", "")
+    if name in CHANGES_ARGUMENT or any(one.arg in ("out", None) for one in node.keywords):
+        return True
+    if any(isinstance(one, ast.Starred) for one in node.args):
         return True
     if isinstance(function, np.ufunc):
         return len(node.args) > function.nin
     try:
-        names = list(inspect.signature(function).parameters)
-    except (TypeError, ValueError):  # a function in C, which takes out= by its name
-        return False
-    return "out" in names[: len(node.args)]
+        given = list(inspect.signature(function).parameters)[: len(node.args)]
+    except (TypeError, ValueError):  # a function in C, of which these take out= by position
+        return name in ("concat", "concatenate", "dot") and len(node.args) > 2
+    return "out" in given
 
 
 def _resolved(node: ast.expr, function: FunctionType) -> Any:
