@@ -178,8 +178,8 @@ def augmented(scope: "Statements", node: ast.AugAssign) -> None:
         elif (isinstance(before.kind, TupleKind) or isinstance(before.fixed, list | dict | set)) and not is_owned(
             scope, target
         ):
-            advice = "write x = x + y, which makes a new list or tuple"
-            raise scope.refuse(node, f"{target.id} may be a list that has another name", advice)
+            advice = f"write x = x {SYMBOLS[type(node.op)][0]} y, which makes a new object"
+            raise scope.refuse(node, f"{target.id} may have another name, which would show the change,", advice)
         _bind_name(scope, node, target.id, result)
         return
     if _is_unread(scope, target):
