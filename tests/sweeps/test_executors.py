@@ -95,11 +95,25 @@ def test_a_closed_executor_says_how_to_resume():
         qtab.sweep(CAR, GRID, executor=executor, **SMALL)
 
 
+class Blocked(ProcessPoolExecutor):
+    """Has one worker, which waits before the fifth task, so that some tasks are always left."""
+
+    def __init__(self) -> None:
+        super().__init__(1, get_context("spawn"))
+        self.submitted = 0
+
+    def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> "Future[Any]":
+        self.submitted += 1
+        if self.submitted == 5:
+            super().submit(time.sleep, 600)
+        return super().submit(fn, *args, **kwargs)
+
+
 @pytest.mark.slow
 @pytest.mark.skipif(os.name != "posix", reason="kills a process")
 def test_a_killed_worker_of_a_process_pool_says_how_to_resume(small_chunks, tmp_path):
     path = tmp_path / "study.db"
-    with ProcessPoolExecutor(1, get_context("spawn")) as executor:
+    with Blocked() as executor:
         worker = executor.submit(os.getpid).result()
         killed: list[int] = []
 
