@@ -133,7 +133,10 @@ def refusal(cls: Any) -> NotCompilable:
     return caught.value
 
 
-CHANGED = [OfModule, OfObject, OfHelper, ByOtherName, InHelper, OfMethodNamedCopy, OfMethodOfBase, OfBaseByIndex]
+CHANGED = [
+    *(OfModule, OfObject, OfHelper, ByOtherName, InHelper, OfStaticMethodNamedCopy, OfMethodNamedCopy, OfMethodOfBase),
+    OfBaseByIndex,
+]
 
 
 @pytest.mark.parametrize("cls", CHANGED, ids=lambda cls: cls.__name__)

@@ -217,6 +217,22 @@ class ChangesOut(Shows):
         return {"clipped": np.clip(self.board, 0.0, 1.0, out=self.board)}
 
 
+class ReplacesNaN(Shows):
+    def shown(self):
+        return {"board": np.nan_to_num(self.board, copy=False)}
+
+
+class HidesOut(Shows):
+    def shown(self):
+        arguments = (self.board, 1.0, self.board)
+        return {"sum": np.add(*arguments)}
+
+
+class ChangesThird(Shows):
+    def shown(self):
+        return {"joined": np.concatenate([self.board], 0, self.board)}
+
+
 class Copies(Shows):
     def shown(self):
         np.copyto(self.board, 1.0)
@@ -248,7 +264,7 @@ CHANGES = [
     *(ChangesElement, ChangesArray, ChangesDict, Appends, ChangesInner, ChangesInLoop),
     *(ChangesPositional, ReadsProperty, Finds, PopsInStep, ChangesInnerInPlace, ChangesWhatItChose, ChangesWhatItTakes),
     *(ChangesResult, ChangesFirst, ChangesView, CallsForEach, CallsForKey, CallsOfModule, ComputesProperty),
-    *(ChangesArgument, ChangesOut, Copies, Decorates),
+    *(ChangesArgument, ChangesOut, ReplacesNaN, HidesOut, ChangesThird, Copies, Decorates),
 ]
 
 
