@@ -165,9 +165,10 @@ def test_the_checks_compare_other_methods_with_random_actions(algorithm: Any) ->
 def test_more_seeds_than_fit_into_memory_are_refused_before_there_is_a_list_of_them(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("qtab.diagnosis.facts.memory_limit", lambda _: 1000)
+    run = qtab.train(LAKE, seed=0, episodes=10)
+    monkeypatch.setattr("qtab._utils.memory.memory_limit", lambda _: 20_000)
     with pytest.raises(MemoryError, match=r"^101 runs would take "):
-        qtab.diagnose(qtab.train(LAKE, seed=0, episodes=10), seeds=100)
+        qtab.diagnose(run, seeds=100)
 
 
 def test_other_seeds_give_the_rank() -> None:

@@ -119,8 +119,8 @@ def test_a_table_that_takes_too_much_memory_is_named_with_its_space(monkeypatch:
     message = r"with a table of 1,000,000 rows of 2 actions for Discrete\(1000000\) would take .* max_rows= assigns"
     with pytest.raises(MemoryError, match=message) as caught:
         qtab.train(Still(space, 0), memory_limit=10**6, **SHORT)
-    assert "by default" not in str(caught.value)
+    assert "half of" not in str(caught.value)
     monkeypatch.setattr("os.sysconf", lambda _: 1000)
-    with pytest.raises(MemoryError, match=r"memory_limit=500000 \(.*, by default half of the machine's memory\)"):
+    with pytest.raises(MemoryError, match=r"more than half of the machine's memory \(488 KiB\)"):
         qtab.train(Still(space, 0), **SHORT)
     assert qtab.train(Still(space, 0), max_rows=10, **SHORT).completed

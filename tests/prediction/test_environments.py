@@ -30,10 +30,9 @@ def test_a_policy_on_a_bandit_has_the_value_of_its_action(features: Any) -> None
         assert found.verify(episodes=20).equal
 
 
-def test_memory_of_runs_in_progress_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_memory_of_runs_in_progress_is_counted() -> None:
     """Batch TD keeps four sums for each state beside its value, and each run its features."""
-    monkeypatch.setattr("qtab.prediction.estimate.memory_limit", lambda _: 500)
-    settings: dict[str, Any] = {"episodes": 2, "seeds": [0], "record": 2}
+    settings: dict[str, Any] = {"episodes": 2, "seeds": [0], "record": 2, "memory_limit": 500}
     qtab.estimate_values("FrozenLake-v1", "random", method="td", **settings)
     with pytest.raises(MemoryError, match=r"^1 run of 'batch_td' with 1 recorded episode .* would take 896 bytes"):
         qtab.estimate_values("FrozenLake-v1", "random", method="batch_td", **settings)

@@ -45,7 +45,9 @@ PAIRS: dict[str, tuple[tuple[Any, Any], dict[str, Any]]] = {
 }
 NEUTRAL = {
     **dict.fromkeys(("env", "method"), "every pair of values has one"),
-    **dict.fromkeys(("backend", "threads", "progress", "record"), "they say how to compute and what to keep"),
+    **dict.fromkeys(
+        ("backend", "threads", "progress", "record", "memory_limit"), "they say how to compute and what to keep"
+    ),
     **dict.fromkeys(OF_OBSERVATIONS, "they are for a Box of observations, and have two values below"),
 }
 RADIAL: dict[str, Any] = {"discretizer": "radial", "learning_rate": 0.1}

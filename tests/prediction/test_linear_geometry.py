@@ -226,6 +226,13 @@ def test_a_singular_update_is_refused() -> None:
             MemoryError,
             "numbers for 1,000,001 features would take .* TiB, more than",
         ),
+        (
+            {"features": np.arange(19) // 18 * (2**31 - 1)},
+            MemoryError,
+            "^a matrix of 19 x 2,147,483,648 numbers for 2,147,483,648 features would take 304 GiB, more than half",
+        ),
+        ({"features": [10**30] * 19}, ValueError, "features must hold numbers from 0 to 2147483647, got 10{30}$"),
+        ({"features": [-(10**30)] * 19}, ValueError, "features must hold numbers from 0 to 2147483647, got -10{30}$"),
         ({"distribution": np.full(19, 0.1)}, ValueError, "distribution must sum to 1, got 1.9"),
         ({"distribution": np.ones(3)}, ValueError, r"distribution must have the shape \(19,\), got \(3,\)"),
         ({"distribution": np.r_[-1.0, 2.0, np.zeros(17)]}, ValueError, "distribution must hold probabilities"),

@@ -151,7 +151,7 @@ def test_a_run_that_diverges_is_recorded():
         (
             {"episodes": 10**11},
             MemoryError,
-            "runs of 100,000,000,000 episodes would take 3.09 TiB, more than memory_limit",
+            "runs of 100,000,000,000 episodes would take 3.09 TiB, more than half",
         ),
         ({"memory_limit": 1000}, MemoryError, "more than memory_limit=1000"),
         ({"memory_limit": "much"}, TypeError, "memory_limit must be"),

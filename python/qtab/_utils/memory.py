@@ -61,54 +61,44 @@ def free_memory() -> int:
     return max(min(free), 0)
 
 
-def check_memory(what: str, needed: int, limit: int, instead: str = "") -> None:
-    """Checks that data fit into the memory limit and, if that is the default, into the free memory.
+def check_memory(what: str, needed: int, limit: int | None = None, instead: str = "") -> None:
+    """Checks that data fit into a given ``memory_limit``, or else into half of the machine's memory and what is free.
 
     Args:
         what: The name of the data, for the message.
         needed: The number of bytes needed.
-        limit: The limit in bytes.
+        limit: The ``memory_limit`` that the user gave; None if there is none, or if the call has no such argument.
         instead: A setting that would help, to be added to the message.
 
     Raises:
         MemoryError: if the data do not fit.
+        TypeError: if ``limit`` is not an integer.
+        ValueError: if ``limit`` is less than one.
     """
-    size = f"{what} would take {readable_size(needed)}"
-    if needed > limit:
-        default = ", by default half of the machine's memory" if limit == memory_limit(None) else ""
+    size, most = f"{what} would take {readable_size(needed)}", memory_limit(limit)
+    if limit is not None:
+        if needed > most:
+            raise MemoryError(
+                f"{size}, more than memory_limit={limit} ({readable_size(most)}); request less, or increase "
+                f"memory_limit{instead}"
+            )
+    elif needed > most:
         raise MemoryError(
-            f"{size}, more than memory_limit={limit} ({readable_size(limit)}{default}); request less, or increase "
-            f"memory_limit{instead}"
+            f"{size}, more than half of the machine's memory ({readable_size(most)}); request less{instead}"
         )
-    if needed > ALWAYS_FREE and limit == memory_limit(None) and needed > (free := free_memory()):
+    elif needed > ALWAYS_FREE and needed > (free := free_memory()):
         raise MemoryError(f"{size}, more than the {readable_size(free)} of memory that are free; request less{instead}")
 
 
-def check_arrays(what: str, needed: int) -> None:
-    """Checks that arrays fit into half of the machine's memory and into what is free, where no setting limits them.
-
-    Args:
-        what: The name of the arrays, for the message.
-        needed: The number of bytes needed.
-
-    Raises:
-        MemoryError: if the arrays do not fit.
-    """
-    if needed > memory_limit(None) or (needed > ALWAYS_FREE and needed > free_memory()):
-        raise MemoryError(
-            f"{what} would take {readable_size(needed)}, more than half of the machine's memory, or more than is free; "
-            "request less"
-        )
-
-
-def memory_left(needed: int, limit: int) -> tuple[int, int]:
+def memory_left(needed: int, limit: int | None) -> tuple[int, int]:
     """Returns the limit and the bytes left of it, which the extension takes for data that grows during runs.
 
     Args:
         needed: The number of bytes that the runs need in any case.
-        limit: The limit in bytes.
+        limit: The ``memory_limit`` that the user gave, or None.
     """
-    return min(limit, checks.LARGEST_COUNT), min(max(limit - needed, 0), checks.LARGEST_COUNT)
+    most = memory_limit(limit)
+    return min(most, checks.LARGEST_COUNT), min(max(most - needed, 0), checks.LARGEST_COUNT)
 
 
 def readable_size(count: int) -> str:

@@ -7,7 +7,6 @@ from typing import Any, TypeAlias
 import gymnasium as gym
 import numpy as np
 
-from qtab._utils.memory import memory_limit
 from qtab.book.measured_experiment import Measured, MeasuredExperiment
 from qtab.book.runner import FloatArray
 from qtab.book.setting import LineSetting
@@ -64,10 +63,10 @@ def _estimate(
     options = dict(arguments)
     behavior, features, record = (options.pop(name, None) for name in ("behavior", "features", "record"))
     settings = PredictionSettings(**options)
-    points, limit = recorded_episodes(record, settings.episodes), memory_limit(None)
+    points = recorded_episodes(record, settings.episodes)
     resolved, space = resolve_prediction(task.env, task.policy, settings, seeds[0], {})
     estimates, failed = run_prediction(
-        resolved, space, settings, task.policy, behavior, features, seeds, points, threads, limit
+        resolved, space, settings, task.policy, behavior, features, seeds, points, threads
     )
     for _, error in failed:
         if not isinstance(error, OverflowError):

@@ -7,7 +7,6 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab._utils.memory import memory_limit
 from qtab.training.train_many import MakeEnv, allocate_results, resolve_template, train_in_threads
 
 FloatArray: TypeAlias = NDArray[np.float64]
@@ -35,9 +34,7 @@ def train_runs(env: str | MakeEnv, config: Mapping[str, Any], seeds: Sequence[in
     """
     resolved = resolve_template(env, {**config, "seed": seeds[0]})
     max_steps = resolved.max_episode_steps
-    results, memory = allocate_results(
-        resolved, len(seeds), min(threads, len(seeds)), keep_tables=False, limit=memory_limit(None)
-    )
+    results, memory = allocate_results(resolved, len(seeds), min(threads, len(seeds)), keep_tables=False)
     diverged = np.zeros(len(seeds), np.bool_)
     for index, error in train_in_threads(resolved, seeds, results, threads, memory, keep_going=True):
         if not isinstance(error, OverflowError):

@@ -7,7 +7,6 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab._utils.memory import memory_limit
 from qtab.config import Config
 from qtab.config.choices import IN_PYTHON
 from qtab.config.options import AVERAGE_REWARD, MONTE_CARLO, PREFERENCES
@@ -230,7 +229,7 @@ class Facts:
         count = self._other_seeds()
         if not self.can_repeat or count == 0 or not self.run.completed:
             return None
-        numbers = seed_sequence(count + 1, memory_limit(None))  # raises for too many before making a list of them
+        numbers = seed_sequence(count + 1)  # raises for too many before making a list of them
         seeds = [seed for seed in numbers if seed != self.config.seed][:count]
         return train_many(config=self.config, seeds=seeds, tables=True)
 

@@ -8,7 +8,6 @@ import gymnasium as gym
 from gymnasium.envs.registration import EnvSpec
 from numpy.typing import ArrayLike
 
-from qtab._utils.memory import memory_limit
 from qtab._utils.progress import check_progress
 from qtab.config.choices import Backend, DiscretizerName, LearningRateSchedule
 from qtab.config.unknown import suggesting
@@ -76,6 +75,7 @@ def estimate_values(
     env_kwargs: Mapping[str, Any] | None = None,
     threads: int | None = None,
     progress: bool | None = None,
+    memory_limit: int | None = None,
 ) -> ValueEstimates:
     """Estimates the values of a policy from episodes that follow it. This is prediction; :func:`qtab.train` is control.
 
@@ -167,10 +167,13 @@ def estimate_values(
         threads: The number of threads; None means one per core. It does not change the results.
         progress: Whether to show a progress bar. None shows one on a terminal or in a notebook if the episodes take
             more than a second and tqdm is installed.
+        memory_limit: The number of bytes that the estimates may take; None means half of the machine's memory, but no
+            more than is free.
 
     Raises:
         gymnasium.error.Error: from Gymnasium, for an unknown id.
-        MemoryError: if the recorded weights would take more than half of the machine's memory.
+        MemoryError: if the recorded weights would take more than ``memory_limit``, or the steps that a method stores
+            exceed it.
         OverflowError: if the values of a run overflow, because ``learning_rate`` or ``trace_decay`` is too large, or
             the method is not stable off policy.
         ModuleNotFoundError: if ``progress`` is True and tqdm is not installed.
@@ -184,9 +187,8 @@ def estimate_values(
     of_task = (*OF_OBSERVATIONS, "max_episode_steps", "backend", "env_kwargs")
     given = {name: arguments[name] for name in of_task if arguments[name] is not None}
     check_progress(progress)
-    limit = memory_limit(None)
-    numbers = seed_sequence(seeds, limit)
-    points = recorded_episodes(record, settings.episodes)
+    numbers = seed_sequence(seeds, memory_limit)
+    points = recorded_episodes(record, settings.episodes, memory_limit)
     resolved, space = resolve_prediction(env, policy, settings, numbers[0], given, reads_space=callable(features))
     log_default_limit(resolved)
     log_python_stepping(resolved)
@@ -200,7 +202,7 @@ def estimate_values(
         numbers,
         points,
         thread_count(threads),
-        limit,
+        memory_limit,
         progress,
         initial_weights,
     )

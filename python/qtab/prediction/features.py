@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from qtab._utils import checks
 from qtab._utils.arrays import numbers
+from qtab._utils.memory import check_memory
 from qtab._utils.shown import counted, shown
 from qtab.discretizers import Discretizer
 from qtab.discretizers.weighted.polynomial import OF_FUNCTION
@@ -84,7 +85,8 @@ def feature_rows(features: ArrayLike | None, states: int) -> tuple[Rows, int]:
         given: NDArray[Any] = np.asarray(features)
     except ValueError:  # rows of different lengths
         given = np.asarray(None)
-    if given.dtype.kind not in "iu":
+    too_large = given.dtype.kind == "O" and all(type(number) is int for number in given.flat)  # for 64 bits
+    if given.dtype.kind not in "iu" and not too_large:
         raise TypeError(
             "features must be None or an array of integers, or of floats with a vector for each state, got "
             f"{shown(features)}"
@@ -162,11 +164,13 @@ def feature_matrix(features: ArrayLike | None, states: int, shape: tuple[int, ..
         shape: The shape of the states, which may replace the first axis of the feature vectors; None means one axis.
 
     Raises:
+        MemoryError: if the matrix would take more than half of the machine's memory, or more than is free.
         TypeError: if the features are not numbers.
         ValueError: for another shape, or a number that is not finite.
     """
     if features is None or not are_floats(features):
         rows, count = feature_rows(features, states)
+        check_memory(f"a matrix of {states:,} x {count:,} numbers for {count:,} features", 8 * states * count)
         matrix = np.zeros((states, count))
         # A feature that is listed twice counts twice, as in the sum of the weights.
         np.add.at(matrix, (np.arange(states)[:, None], rows), 1.0)

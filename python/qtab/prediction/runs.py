@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from qtab import _core
 from qtab._utils import checks
-from qtab._utils.memory import check_memory, memory_left, memory_limit
+from qtab._utils.memory import check_memory, memory_left
 from qtab._utils.progress import ProgressBar
 from qtab._utils.shown import counted, listed, shown
 from qtab.discretizers import Discretizer
@@ -53,7 +53,7 @@ def run_prediction(
     seeds: Sequence[int],
     points: NDArray[np.uint64],
     threads: int,
-    limit: int,
+    limit: int | None = None,
     progress: bool | None = False,
     weights_before: ArrayLike | None = None,
 ) -> tuple[ValueEstimates, list[tuple[int, Exception]]]:
@@ -72,7 +72,7 @@ def run_prediction(
             followed = as_followed(probabilities("behavior", behavior, space, cells, actions))
         _check_covered(target, followed)
     found = state_features(features, cells, space, settings)
-    n_weights, initial = found.n_weights, initial_weights(weights_before, found, settings)
+    n_weights = found.n_weights
     if not resolved.is_native and len(seeds) > 1:
         raise ValueError(f"seeds must be one seed for an environment that is stepped in Python, got {len(seeds)}")
     in_progress = n_weights * (BYTES_PER_WEIGHT + BYTES_OF_METHOD.get(settings.method, 0))
@@ -80,6 +80,7 @@ def run_prediction(
     size = n_weights * len(seeds) * len(points) * 8 + min(threads, len(seeds)) * in_progress
     runs, recorded = counted(len(seeds), "run"), counted(len(points), "recorded episode")
     check_memory(f"{runs} of {settings.method!r} with {recorded} (record= keeps fewer)", size, limit)
+    initial = initial_weights(weights_before, found, settings)
     weights = np.full((len(seeds), len(points), n_weights), np.nan)
     began = time.perf_counter()
     spec: Any = resolved.spec()
@@ -147,7 +148,7 @@ def _by_cell(table: NDArray[np.float64] | None, cells: Discretizer) -> NDArray[n
     return None if table is None else table.reshape(*cells.shape, -1)
 
 
-def recorded_episodes(record: Any, episodes: int) -> NDArray[np.uint64]:
+def recorded_episodes(record: Any, episodes: int, limit: int | None = None) -> NDArray[np.uint64]:
     """Returns (points,) uint64: the ascending numbers of episodes after which the weights are kept, including the last.
 
     Raises:
@@ -159,7 +160,7 @@ def recorded_episodes(record: Any, episodes: int) -> NDArray[np.uint64]:
     if not checks.is_sequence(record):
         every = checks.count("record", record, least=1)
         count = math.ceil(episodes / every)
-        check_memory(f"{counted(count, 'recorded episode')} (record= keeps fewer)", 8 * count, memory_limit(None))
+        check_memory(f"{counted(count, 'recorded episode')} (record= keeps fewer)", 8 * count, limit)
         points = np.arange(1, count + 1, dtype=np.uint64) * np.uint64(every)
         points[-1] = episodes
         return points

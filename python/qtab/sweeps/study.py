@@ -12,7 +12,6 @@ import numpy as np
 
 from qtab._utils import checks
 from qtab._utils.memory import check_memory
-from qtab._utils.memory import memory_limit as memory_limit_in_bytes
 from qtab._utils.shown import counted
 from qtab.config import DEFAULTS
 from qtab.config.functions import function_name
@@ -100,9 +99,9 @@ class Study:
         Raises:
             MemoryError: if it does not; the message states the memory needed.
         """
-        limit = memory_limit_in_bytes(self.memory_limit)
         for resolved in self.resolved:
-            check_memory(f"runs of {counted(resolved.config.episodes, 'episode')}", bytes_of_run(resolved), limit)
+            what = f"runs of {counted(resolved.config.episodes, 'episode')}"
+            check_memory(what, bytes_of_run(resolved), self.memory_limit)
 
     @cached_property
     def stored(self) -> StoredStudy:
@@ -161,12 +160,13 @@ def plan_study(
     block: int,
     shared: Mapping[str, Any],
     base: Base | None = None,
-    memory_limit: int = 2**63,
+    memory_limit: int | None = None,
 ) -> Study:
     """Returns the study of a grid of settings, after resolving the config of each.
 
     Raises:
-        MemoryError: if the settings and the results need more than ``memory_limit`` bytes.
+        MemoryError: if the settings and the results need more than ``memory_limit`` bytes (None: half of the
+            machine's memory).
         gymnasium.error.Error: from Gymnasium, for an unknown id.
         TypeError: for an argument of the wrong type, or an unknown setting.
         ValueError: for an argument out of range.
@@ -194,7 +194,7 @@ def plan_study(
     return Study(env, settings, overrides, numbers, resolved, block)
 
 
-def _check_runs(settings: int, seeds: Any, limit: int) -> None:
+def _check_runs(settings: int, seeds: Any, limit: int | None) -> None:
     """Checks that the results fit into memory, before making a list of the seeds."""
     is_number = hasattr(seeds, "__index__") and not np.ndim(seeds)
     if is_number:
@@ -207,11 +207,11 @@ def _check_runs(settings: int, seeds: Any, limit: int) -> None:
     check_memory(f"the results of {counted(runs, 'run')}", runs * BYTES_PER_STORED_RUN, limit)
 
 
-def settings_of(grid: Any, limit: int = 2**63) -> list[dict[str, Any]]:
+def settings_of(grid: Any, limit: int | None = None) -> list[dict[str, Any]]:
     """Returns the settings of a grid, all of which have the same names in the same order.
 
     Raises:
-        MemoryError: if the settings need more than ``limit`` bytes.
+        MemoryError: if the settings need more than ``limit`` bytes; None means half of the machine's memory.
         TypeError: if ``grid`` is neither a mapping nor a list of mappings.
         ValueError: if ``grid`` has no settings, the same one twice, or settings with different names.
     """

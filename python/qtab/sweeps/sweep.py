@@ -11,7 +11,7 @@ import numpy as np
 from gymnasium.envs.registration import EnvSpec
 from typing_extensions import Unpack
 
-from qtab._utils import checks, memory
+from qtab._utils import checks
 from qtab._utils.attach import attach
 from qtab.config import Config
 from qtab.config.config import replace_checked
@@ -99,8 +99,7 @@ def sweep(
             base = base if isinstance(env, str) else replace_checked(base, env_kwargs={})
         if isinstance(env, str):
             env = spec_of(env)  # a worker process may not have imported the package that registers the id
-        limit = memory.memory_limit(memory_limit)
-        study = plan_study(env, grid, seeds, block, settings, base, limit)
+        study = plan_study(env, grid, seeds, block, settings, base, memory_limit)
         for resolved in study.resolved:
             log_default_limit(resolved)
         return run_study(

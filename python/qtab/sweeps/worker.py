@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from qtab._utils.memory import memory_left
-from qtab._utils.memory import memory_limit as bytes_limit
 from qtab._utils.versions import versions
 from qtab.results.summary import block_means, summarize
 from qtab.sweeps.run_records import RunRecord
@@ -148,7 +147,7 @@ def train_setting(
 
     A run fails only if it needs more than ``memory_limit`` alone, so that results do not depend on ``threads``.
     """
-    memory = memory_left(bytes_of_run(resolved), bytes_limit(memory_limit))
+    memory = memory_left(bytes_of_run(resolved), memory_limit)
     if not resolved.is_native:
         return [_train_in_python(env, overrides, seed, block, memory) for seed in seeds]
     results, _ = allocate_results(resolved, len(seeds), threads, keep_tables=False, limit=2**63)

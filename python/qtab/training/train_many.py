@@ -18,7 +18,6 @@ from qtab._spec import Results
 from qtab._utils import checks
 from qtab._utils.attach import attach
 from qtab._utils.memory import BYTES_PER_EPISODE, BYTES_PER_RUN, check_memory, memory_left
-from qtab._utils.memory import memory_limit as bytes_limit
 from qtab._utils.shown import counted, shown
 from qtab._utils.versions import versions
 from qtab.config import Config
@@ -88,8 +87,7 @@ def train_many(
     """
     reporter = RunsReporter(callback, callback_every, progress)
     tables = checks.boolean("tables", tables)
-    limit = bytes_limit(memory_limit)
-    numbers = seed_sequence(seeds, limit)
+    numbers = seed_sequence(seeds, memory_limit)
     workers = thread_count(threads)
     env, base = collect(train_many, env, config, settings)
     # The bit generator may reject the largest seed.
@@ -105,7 +103,7 @@ def train_many(
     def make_runs(finished: NDArray[np.bool_]) -> Runs:
         return _runs(resolved, numbers, results, finished, tables, began)
 
-    results, memory = allocate_results(resolved, len(numbers), min(workers, len(numbers)), tables, limit)
+    results, memory = allocate_results(resolved, len(numbers), min(workers, len(numbers)), tables, memory_limit)
     try:
         with reporter.start(numbers, results, make_runs):
             if not resolved.is_native:
@@ -128,12 +126,12 @@ def train_many(
     return make_runs(results["finished"])
 
 
-def seed_sequence(seeds: Any, limit: int) -> Sequence[int]:
+def seed_sequence(seeds: Any, limit: int | None = None) -> Sequence[int]:
     """Returns the seeds as Python integers; an integer N becomes ``range(N)``.
 
     Args:
         seeds: The seeds, as given by the user.
-        limit: The number of bytes that all runs may take.
+        limit: The ``memory_limit`` that the user gave for all runs, or None.
 
     Raises:
         MemoryError: if even the shortest runs of so many seeds would exceed the limit.
@@ -160,7 +158,7 @@ def seed_sequence(seeds: Any, limit: int) -> Sequence[int]:
 
 def seed_numbers(seeds: Any) -> tuple[int, ...]:
     """Returns a tuple of the seeds; see :func:`seed_sequence`."""
-    return tuple(seed_sequence(seeds, bytes_limit(None)))
+    return tuple(seed_sequence(seeds))
 
 
 def thread_count(threads: int | None) -> int:
@@ -211,7 +209,7 @@ def _makes_equals(make_env: MakeEnv, made: gym.Env) -> bool:
 
 
 def allocate_results(
-    resolved: ResolvedRun, runs: int, at_once: int, keep_tables: bool, limit: int
+    resolved: ResolvedRun, runs: int, at_once: int, keep_tables: bool, limit: int | None = None
 ) -> tuple[Results, tuple[int, int]]:
     """Returns arrays for the results of many runs, the limit, and the bytes left for data that grows during the runs.
 
@@ -220,7 +218,7 @@ def allocate_results(
         runs: The number of runs.
         at_once: The number of runs trained at the same time.
         keep_tables: Whether to keep the Q tables.
-        limit: The number of bytes that the results and the runs in progress may take.
+        limit: The ``memory_limit`` that the user gave for the results and the runs in progress, or None.
 
     Raises:
         MemoryError: if the results and the runs in progress would exceed the limit.

@@ -14,7 +14,7 @@ from qtab import _core
 from qtab._utils import checks, html
 from qtab._utils.arrays import same_bytes
 from qtab._utils.fields import with_fields
-from qtab._utils.memory import check_memory, memory_limit
+from qtab._utils.memory import check_memory
 from qtab._utils.shown import counted, shown
 from qtab._utils.versions import versions
 from qtab.config import Config
@@ -182,7 +182,7 @@ def verify(
     elif env is not None:
         with closing(gym.make(env)) as made:
             return verify(run, episodes, made, progress)
-    check_memory("the tables of the reference", 2 * run.tables.nbytes, memory_limit(None))
+    check_memory("the tables of the reference", 2 * run.tables.nbytes)
     recorder = _Recorder(_environment(config, env), count, progress)
     try:
         table, returns, lengths = LEARNERS[config.algorithm](recorder, config, stop_after=count)

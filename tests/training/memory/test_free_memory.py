@@ -77,7 +77,7 @@ def test_a_limit_that_is_given_is_the_users_decision(monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(memory, "free_memory", lambda: 0)
     memory.check_memory("this", 2**40, 2**41)
     with pytest.raises(MemoryError, match=r"^this would take 128 MiB, more than the 0 bytes of memory that are free"):
-        memory.check_memory("this", 2**27, memory.memory_limit(None))
+        memory.check_memory("this", 2**27)
 
 
 @pytest.mark.parametrize(("limit", "expected"), [("3000\n", 2000), ("max\n", None), ("900\n", 0)])

@@ -66,7 +66,7 @@ def _run(options: Namespace, report: Report) -> None:
         study = read_study(options.study)
         store = options.store or options.study.parent / (study.store or options.study.with_suffix(".db").name)
         with _names_file(options.study):
-            grid = settings_of(study.grid)
+            grid = settings_of(study.grid, study.options.get("memory_limit"))
         _check_confirmation(options, grid, store)
         given = {"seeds": DEFAULT_SEEDS, **study.options}
         if options.threads is not None:

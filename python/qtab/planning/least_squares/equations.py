@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from qtab._utils.linear_algebra import dependent_columns
-from qtab._utils.memory import check_arrays
+from qtab._utils.memory import check_memory
 from qtab._utils.shown import counted
 from qtab.planning.least_squares.transitions import Transitions
 
@@ -91,7 +91,7 @@ class Batch:
         """Raises an error if matrices that consist of so many square blocks do not fit into memory."""
         d, k = self.x.shape[1], self.transitions.n_actions
         what = f"matrices of {size:,} x {size:,} numbers for {counted(d, 'feature')} of {counted(k, 'action')}"
-        check_arrays(what, 8 * MATRICES * blocks * size**2)
+        check_memory(what, 8 * MATRICES * blocks * size**2)
 
     def _solved_at_once(self, next_actions: NDArray[np.int64]) -> FloatArray:
         """Returns w from the whole of A, (actions * d,)."""

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab._utils.memory import check_arrays
+from qtab._utils.memory import check_memory
 
 FloatArray = NDArray[np.float64]
 MATRICES = 6
@@ -121,7 +121,7 @@ def chain_of(
         MemoryError: if matrices of all states would take more than half of the machine's memory, or more than is free.
     """
     states, actions = policy.shape
-    check_arrays(f"matrices of {states:,} x {states:,} numbers for {states:,} states", 8 * MATRICES * states**2)
+    check_memory(f"matrices of {states:,} x {states:,} numbers for {states:,} states", 8 * MATRICES * states**2)
     chosen = [
         (pair // actions, weight * probability, next_state, reward, not terminated)
         for pair, weight in enumerate(policy.ravel().tolist())

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from qtab._utils import checks
 from qtab._utils.arrays import numbers
-from qtab._utils.memory import check_arrays
+from qtab._utils.memory import check_memory
 from qtab._utils.shown import counted
 from qtab.prediction.linear.chain import FloatArray
 from qtab.prediction.linear.geometry import LinearGeometry
@@ -64,7 +64,7 @@ def expected_updates(
     w = np.zeros(count) if initial_weights is None else numbers("initial_weights", initial_weights).copy()
     if w.shape != (count,):
         raise ValueError(f"initial_weights must have {count} numbers, one for each feature, got shape {w.shape}")
-    check_arrays(f"the weights of {counted(updates, 'update')}", 8 * (updates + 1) * count)
+    check_memory(f"the weights of {counted(updates, 'update')}", 8 * (updates + 1) * count)
     weights = np.empty((updates + 1, count))
     weights[0] = w
     step = _STEPS[method](geometry, alpha, beta)

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from qtab._utils import checks
 from qtab._utils.arrays import numbers
-from qtab._utils.memory import check_arrays
+from qtab._utils.memory import check_memory
 from qtab.config.unknown import suggesting
 from qtab.planning.least_squares.lstdq import GivenFeatures
 from qtab.planning.policies import SUM_TOLERANCE, GivenPolicy, probabilities
@@ -74,7 +74,7 @@ def linear_geometry(
             features = features_of_function(features, cells, table.env.observation_space)
         matrix = feature_matrix(features, states, cells.shape)
         d = matrix.shape[1]
-        check_arrays(f"matrices of {d:,} x {d:,} numbers for {d:,} features", 8 * MATRICES * d**2)
+        check_memory(f"matrices of {d:,} x {d:,} numbers for {d:,} features", 8 * MATRICES * d**2)
         weights = None if distribution is None else _distribution(distribution, cells.shape)
         exact = policy_values(table.env, policy, discount)
         transitions, initial = solver.transitions(), solver.initial_distribution

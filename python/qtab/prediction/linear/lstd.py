@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from qtab._utils import checks
 from qtab._utils.arrays import numbers
-from qtab._utils.memory import check_arrays
+from qtab._utils.memory import check_memory
 from qtab._utils.shown import counted
 
 FloatArray = NDArray[np.float64]
@@ -54,7 +54,7 @@ class LSTD:
         self.trace_decay = checks.real("trace_decay", trace_decay, 0.0, 1.0)
         self.recursive = checks.boolean("recursive", recursive)
         self.epsilon = checked_epsilon("epsilon", epsilon, recursive=self.recursive)
-        check_arrays(f"matrices of {count:,} x {count:,} numbers for {count:,} features", 8 * MATRICES * count**2)
+        check_memory(f"matrices of {count:,} x {count:,} numbers for {count:,} features", 8 * MATRICES * count**2)
         scale = 1.0 / self.epsilon if self.recursive else self.epsilon
         self._matrix = scale * np.eye(count)  # A⁻¹ if recursive, else A
         self._b, self._trace = np.zeros(count), np.zeros(count)

@@ -3,7 +3,6 @@
 import math
 
 from qtab._utils.memory import BYTES_PER_EPISODE, check_memory, memory_left
-from qtab._utils.memory import memory_limit as bytes_limit
 from qtab._utils.shown import counted, shown
 from qtab.config.options import n_tables
 from qtab.results.run import Run
@@ -92,7 +91,6 @@ def check_run_memory(
         MemoryError: if the run does not fit.
     """
     episodes = resolved.config.episodes
-    limit = bytes_limit(options.memory_limit)
     copies = 8 * math.prod(tables_shape(resolved, 1 + snapshots + 2 * bool(options.visits)))
     recordings = min(int(options.record), episodes)
     state = 0 if earlier is None or earlier.state is None else RESTORED * len(earlier.state.checkpoint)
@@ -100,5 +98,5 @@ def check_run_memory(
     extras = [counted(number, noun) for number, noun in ((recordings, "recording"), (snapshots, "snapshot")) if number]
     what = counted(episodes, "episode") + (f" with {' and '.join(extras)}" if extras else "")
     table, instead = table_words(resolved, needed)
-    check_memory(what + table, needed, limit, instead)
-    return memory_left(needed, limit)
+    check_memory(what + table, needed, options.memory_limit, instead)
+    return memory_left(needed, options.memory_limit)
