@@ -1,6 +1,7 @@
 """Names in the figures stay inside their axes and cover no line; lines can be told apart by their colors and widths."""
 
 import dataclasses
+import itertools
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from qtab.book.drawing.colors import line_colors
 from qtab.book.drawing.end_labels import BRIGHTEST, label_ends, text_shade
 from qtab.book.drawing.minimum_labels import label_minima
 from qtab.book.line import Line
+from qtab.book.result import Result
 from qtab.plots.parts.colors import brightness, sequential
 
 plt: Any = pytest.importorskip("matplotlib.pyplot")
@@ -147,3 +149,19 @@ def test_rounding_is_no_standard_error_and_diverged_runs_do_not_widen_the_table(
     )
     rows = [row.split()[1:4] for row in str(dataclasses.replace(result, lines=(odd,))).splitlines()[-3:]]
     assert rows == [["1", "0.1", "0"], ["10", "1e+200", "1e+200"], ["25", "2.00", "0.50"]]
+
+
+@pytest.mark.parametrize("name", ["section-9.5.2", "figure-10.2"])
+def test_the_numbers_beside_a_logarithmic_axis_do_not_touch(name: str) -> None:
+    experiment = qtab.book.find(name)
+    figure, ax = plt.subplots(figsize=(8, 3.6))
+    lines = [line(name, [1200.0, 120.0]) for name in experiment.line_names]
+    draw_lines(Result(experiment, tuple(lines), 1, 0, 0.0, draw_lines), ax)
+    figure.canvas.draw()
+    labels = [*ax.get_yticklabels(), *ax.get_yticklabels(minor=True)]
+    low, high = ax.get_ylim()
+    shown = [label for label in labels if label.get_text() and low <= label.get_position()[1] <= high]
+    assert {"100", "200", "300", "400", "500", "600", "800", "1,000"} == {label.get_text() for label in shown}
+    boxes = sorted((label.get_window_extent() for label in shown), key=lambda box: box.y0)
+    assert all(below.y1 < above.y0 for below, above in itertools.pairwise(boxes))
+    plt.close(figure)

@@ -48,16 +48,17 @@ def draw_lines(result: Result, ax: "Axes | None") -> "Axes":
         words = [experiment.x_words.get(tick, f"{tick:g}") for tick in experiment.x_ticks]
         ax.set_xticks(experiment.x_ticks, experiment.x_tick_labels or words)
         ax.set_xticks([], minor=True)
+    if experiment.y_range is not None:
+        ax.set_ylim(*experiment.y_range)
     if experiment.log_y:
         ax.set_yscale("log")
         ax.yaxis.set_major_formatter("{x:,.0f}")
         lowest, highest = ax.get_ylim()
         if highest < MOST_LABELED * lowest:
-            ax.yaxis.set_minor_formatter("{x:,.0f}")
+            # Those of 7 and 9 would touch their neighbors.
+            ax.yaxis.set_minor_formatter(lambda y, _: "" if f"{y:.0e}"[0] in "79" else f"{y:,.0f}")
     if experiment.x_range is not None:
         ax.set_xlim(*experiment.x_range)
-    if experiment.y_range is not None:
-        ax.set_ylim(*experiment.y_range)
     for text, height in experiment.y_marks.items():
         across = ax.get_yaxis_transform()
         ax.hlines(height, 0, 1, transform=across, color="0.45", linewidth=1, linestyle=":")

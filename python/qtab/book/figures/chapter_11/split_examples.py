@@ -62,7 +62,7 @@ def _example(
 
 EXAMPLE_11_2 = _example(
     "11.2",
-    "A-split, and the values of the naive residual-gradient algorithm",
+    "A-split, and the naive residual-gradient algorithm",
     "from A to B or C with equal probability, then a reward of 1 from B and 0 from C, and the end; the smallest TD "
     "error is at the values 1/2, 3/4 and 1/4",
     a_split,
