@@ -16,7 +16,7 @@ from qtab.compilation.rewriting.attributes import MISSING, Attributes
 from qtab.compilation.rewriting.expressions.calls import MODULE_ADVICE, SIDE_EFFECTS
 from qtab.compilation.rewriting.source.sources import Source, source_of
 from qtab.compilation.rewriting.source.syntax import CHANGING
-from qtab.compilation.rewriting.statements.effects import PURE_BUILTINS, PURE_METHODS
+from qtab.compilation.rewriting.statements.effects import PURE_BUILTINS, PURE_METHODS, UNSAFE_NUMPY
 from qtab.compilation.twins.known_values import KnownValues
 from qtab.compilation.twins.plain_data import is_plain, mutable_parts
 
@@ -31,8 +31,6 @@ SAFE_METHODS = {
     *("transpose", "union", "var"),
 }
 """The methods of numbers, texts, arrays and collections."""
-UNSAFE_NUMPY = ("save", "load", "fromfile", "memmap", "open", "set", "genfromtxt", "fromregex", "DataSource", "test")
-"""The beginnings of the names of NumPy's functions that use files or change NumPy."""
 REFUSED: tuple[type[ast.AST], ...] = (
     *(ast.With, ast.AsyncWith, ast.AsyncFor, ast.Await, ast.Yield, ast.YieldFrom, ast.Try, ast.ClassDef),
     *(ast.Global, ast.Nonlocal, ast.Delete, ast.FunctionDef, ast.AsyncFunctionDef, getattr(ast, "TryStar", ast.Try)),

@@ -7,7 +7,7 @@ from types import FunctionType
 from qtab.compilation.rewriting.attributes import MISSING, Attributes
 from qtab.compilation.rewriting.infos.dicts import LENGTHS, returns_of
 from qtab.compilation.rewriting.source.sources import Source, source_of
-from qtab.compilation.rewriting.source.syntax import own_name
+from qtab.compilation.rewriting.source.syntax import own_name, parameters_of
 
 MOST_NESTED = 4
 _DISPLAYS = (ast.Dict, ast.DictComp, ast.List, ast.ListComp, ast.Set, ast.SetComp, ast.BinOp)
@@ -30,6 +30,8 @@ def is_made(attributes: Attributes, source: Source, node: ast.expr, depth: int =
     if isinstance(node, ast.Name):
         if source.node.args.kwarg is not None and node.id == source.node.args.kwarg.arg:
             return True
+        if node.id in parameters_of(source.node):
+            return False
         values = list(values_of(source, node.id))
         return bool(values) and len(values) == bindings(source, node.id) and all(map(made, values))
     if not isinstance(node, ast.Call):
@@ -67,7 +69,7 @@ def returned(node: ast.FunctionDef) -> Iterator[ast.expr]:
 
 
 def values_of(source: Source, name: str) -> Iterator[ast.expr]:
-    """Yields the values that are assigned to a variable; the call, if it is the last one that is unpacked from one."""
+    """Yields the values that are assigned to a variable; the call, for the info dict of ``step`` or ``reset``."""
     for one in ast.walk(source.node):
         targets = one.targets if isinstance(one, ast.Assign) else [one.target] if isinstance(one, ast.AnnAssign) else []
         for target in targets:
@@ -81,16 +83,18 @@ def values_of(source: Source, name: str) -> Iterator[ast.expr]:
 
 
 def _element(target: ast.Tuple | ast.List, value: ast.expr, i: int) -> ast.expr:
-    """Returns the value of an element of a target; of a call, the last one stands for the info dict."""
+    """Returns the value of an element of a target; of a call of ``step`` or ``reset``, the call for the last."""
     has_star = any(isinstance(part, ast.Starred) for part in target.elts)
     if isinstance(value, ast.Tuple | ast.List) and not has_star and len(value.elts) == len(target.elts):
         return value.elts[i]
-    is_last = isinstance(value, ast.Call) and not has_star and i == len(target.elts) - 1
+    is_last = is_step(value) and not has_star and i == len(target.elts) - 1
     return value if is_last else ast.copy_location(ast.Subscript(value, ast.Constant(i), ast.Load()), value)
 
 
 def bindings(source: Source, name: str) -> int:
-    """Returns how often a variable gets a value, also by a loop; ``+=`` does not count."""
+    """Returns how often a variable gets a value, also by a loop or a pattern; ``+=`` does not count."""
     changed = {id(one.target) for one in ast.walk(source.node) if isinstance(one, ast.AugAssign)}
     names = [one for one in ast.walk(source.node) if isinstance(one, ast.Name) and id(one) not in changed]
-    return sum(one.id == name and isinstance(one.ctx, ast.Store) for one in names)
+    patterns = [one for one in ast.walk(source.node) if isinstance(one, ast.MatchAs | ast.MatchStar | ast.MatchMapping)]
+    captured = [one.rest if isinstance(one, ast.MatchMapping) else one.name for one in patterns]
+    return sum(one.id == name and isinstance(one.ctx, ast.Store) for one in names) + captured.count(name)

@@ -89,14 +89,21 @@ class Names:
 
     def _escapes(self, name: str) -> Iterator[tuple[int, int]]:
         for one in self._walk():
-            if isinstance(one, ast.Assign | ast.AnnAssign) and one.value is not None:
-                if any(_is_name(part, name) for part in _parts(one.value)):
-                    yield one.lineno, one.col_offset
+            kept: list[ast.expr] = []
+            if isinstance(one, ast.Assign | ast.AnnAssign | ast.AugAssign):
+                keeps = isinstance(one.value, _DISPLAYS) or not isinstance(one, ast.AugAssign)
+                kept = [one.value] if keeps and one.value is not None else []
+            elif isinstance(one, ast.For) and not isinstance(one.iter, ast.Name):
+                kept = [one.iter]
             elif isinstance(one, ast.Call) and not _of_library(one.func):
-                if any(_is_name(part, name) for value in one.args for part in _parts(value)):
-                    yield one.lineno, one.col_offset
-                if any(_is_name(keyword.value, name) for keyword in one.keywords):
-                    yield one.lineno, one.col_offset
+                kept = [*one.args, *(keyword.value for keyword in one.keywords)]
+            if any(_is_name(part, name) for value in kept for part in _parts(value)):
+                yield one.lineno, one.col_offset  # type: ignore[attr-defined]
+
+
+_DISPLAYS = (ast.Tuple, ast.List, ast.ListComp)
+_VIEWS = ("asarray", "ravel")
+"""The functions of NumPy, and methods of arrays, that may return the array itself."""
 
 
 def _is_name(node: ast.AST, name: str) -> bool:
@@ -119,6 +126,17 @@ def _parts(node: ast.expr) -> Iterator[ast.expr]:
             yield from _parts(part)
     elif isinstance(node, (ast.Subscript, ast.Starred)):
         yield from _parts(node.value)
+    elif isinstance(node, ast.ListComp):
+        yield from _parts(node.elt)
+    elif isinstance(node, ast.BinOp):  # of lists and tuples, which keep their elements
+        for side in (node.left, node.right):
+            if isinstance(side, (*_DISPLAYS, ast.BinOp)):
+                yield from _parts(side)
+    elif isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in ("max", "min"):
+        yield from (part for part in node.args if isinstance(part, ast.Name))
+    elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in _VIEWS:
+        for part in (node.func.value, *node.args[:1]):
+            yield from _parts(part)
     else:
         yield node
 

@@ -37,6 +37,8 @@ NUMBERS_OF_BUILTINS = ("abs", "bool", "float", "int", "len", "round", "str", "su
 """Methods and functions whose results have no other name."""
 CHANGES_ARGUMENT = ("copyto", "fill_diagonal", "nan_to_num", "place", "put", "put_along_axis", "putmask")
 """Functions of NumPy that change an array."""
+UNSAFE_NUMPY = ("save", "load", "fromfile", "memmap", "open", "set", "genfromtxt", "fromregex", "DataSource", "test")
+"""The beginnings of the names of NumPy's functions that use files or change NumPy."""
 EFFECTIVE = (
     *(ast.NamedExpr, ast.Yield, ast.YieldFrom, ast.Await, ast.Global, ast.Nonlocal, ast.Delete),
     *(ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef),
@@ -151,8 +153,10 @@ def _is_own(scope: "Expressions", node: ast.expr, function: FunctionType, parame
             return False
     elif isinstance(node, ast.Call):
         called = node.func
-        is_library = isinstance(called, ast.Attribute) and called.attr in NUMBERS_OF_METHODS
-        return is_library or (isinstance(called, ast.Name) and called.id in NUMBERS_OF_BUILTINS)
+        if isinstance(called, ast.Attribute):
+            return called.attr in NUMBERS_OF_METHODS and scope.program.attributes.find(called.attr)[0] is MISSING
+        is_known = isinstance(called, ast.Name) and called.id in NUMBERS_OF_BUILTINS and len(node.args) == 1
+        return is_known and _resolved(called, function) is getattr(builtins, ast.unparse(called))
     elif (
         isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == own_name(source.node)
     ):
@@ -189,7 +193,7 @@ def _of_call(
     if isinstance(callee, ast.Attribute) and found is MISSING:
         owner = _resolved(callee.value, function)
         simple = owner is MISSING or isinstance(owner, np.ndarray | str | dict | list | tuple)
-        if simple and callee.attr in PURE_METHODS:
+        if simple and callee.attr in PURE_METHODS and scope.program.attributes.find(callee.attr)[0] is MISSING:
             return None
         is_local = owner is MISSING and function is not scope.source.function
         if is_local and callee.attr in LOCAL_METHODS and _is_made(scope, callee.value, function, parameters):
@@ -225,9 +229,13 @@ def _is_library(value: Any) -> bool:
 
 
 def _changes_argument(function: Any, node: ast.Call) -> bool:
-    """Returns whether a call of a function of NumPy may change one of its arguments."""
+    """Returns whether a call of a function of NumPy may change one of its arguments, a file or NumPy itself."""
     name = getattr(function, "__name__", "")
-    if name in CHANGES_ARGUMENT or any(one.arg in ("out", None) for one in node.keywords):
+    if (
+        name in CHANGES_ARGUMENT
+        or name.startswith(UNSAFE_NUMPY)
+        or any(one.arg in ("out", None) for one in node.keywords)
+    ):
         return True
     if any(isinstance(one, ast.Starred) for one in node.args):
         return True

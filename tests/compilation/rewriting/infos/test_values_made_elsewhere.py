@@ -1,0 +1,106 @@
+"""Info dicts whose code changes a value that only seems to be made there: they are refused, as they are left out."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from qtab.compilation.not_compilable import NotCompilable
+from qtab.compilation.rewriting import rewrite
+from support.environments.gym_classes.extra import ExtraEnv
+
+
+class Shows(ExtraEnv):
+    def reset(self, *, seed=None, options=None):
+        self.left, self.right = np.zeros(3), np.zeros(3)
+        return super().reset(seed=seed)
+
+    def pair(self):
+        return [self.left, self.right]
+
+    def made(self, rows=None):
+        if rows is None:
+            rows = np.zeros(3)
+        return rows
+
+    def count(self):
+        self.left[0] += 1.0
+        return self.left
+
+    def shown(self) -> Any:
+        return {}
+
+    def step(self, action):
+        observation, reward, terminated, truncated, _ = super().step(action)
+        return observation, reward + self.left[0] + self.right[0], terminated, truncated, self.shown()
+
+
+class UnpacksResult(Shows):
+    def shown(self):
+        _, right = self.pair()
+        right[0] = 5.0
+        return {}
+
+
+class UnpacksCopy(Shows):
+    def shown(self):
+        _, right = [self.left, self.right].copy()
+        right[0] = 5.0
+        return {}
+
+
+class TakesDefault(Shows):
+    def shown(self):
+        mine = self.made(self.left)
+        mine[0] = 4.0
+        return {}
+
+
+class CountsItself(Shows):
+    def shown(self):
+        number = self.count()
+        number += 1.0
+        return {}
+
+
+class SumsFromStart(Shows):
+    def shown(self):
+        total = sum([], self.left)
+        total += 1.0
+        return {}
+
+
+class CallsUnwrapped(Shows):
+    def shown(self):
+        return {"count": self.unwrapped.count()[0]}  # type: ignore[attr-defined]
+
+
+class Matches(Shows):
+    def shown(self):
+        rows = np.zeros(3)
+        match [self.left]:
+            case [rows]:
+                pass
+        rows[0] = 5.0
+        return {}
+
+
+class ChangesNumPy(Shows):
+    def shown(self):
+        np.seterr(all="ignore")
+        return {}
+
+
+CHANGES = [
+    *(UnpacksResult, UnpacksCopy, TakesDefault, CountsItself, SumsFromStart, CallsUnwrapped, Matches, ChangesNumPy),
+]
+
+
+@pytest.mark.parametrize("cls", CHANGES, ids=lambda cls: cls.__name__)
+def test_changes_of_values_that_are_made_elsewhere_are_refused(cls: Any) -> None:
+    with pytest.raises(NotCompilable):
+        rewrite(cls())
+
+
+def test_an_info_dict_without_changes_is_left_out() -> None:
+    assert rewrite(Shows()).source

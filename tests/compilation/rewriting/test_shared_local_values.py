@@ -1,0 +1,121 @@
+"""Local lists and arrays with two names: where one changes and the other would show it, they are refused."""
+
+import inspect
+from typing import Any
+
+import numpy as np
+import pytest
+
+from qtab.compilation.not_compilable import NotCompilable
+from qtab.compilation.rewriting import rewrite
+from support.environments.gym_classes.extra import ExtraEnv
+from support.lockstep.rewriting import assert_equal_steps
+
+
+class Ravels(ExtraEnv):
+    def extra(self):
+        grid = np.zeros((2, 2))
+        flat = grid.ravel()
+        grid[0, 0] = 5.0  # here
+        return float(flat[0])
+
+
+class TakesAsArray(ExtraEnv):
+    def extra(self):
+        first = np.zeros(2)
+        second = np.asarray(first)
+        first[0] = 5.0  # here
+        return float(second[0])
+
+
+class LoopsOverPart(ExtraEnv):
+    def extra(self):
+        values, total = np.zeros(4), 0.0
+        for value in values[1:]:
+            values[3] = 7.0  # here
+            total += value
+        return total
+
+
+class LoopsOverParts(ExtraEnv):
+    def extra(self):
+        values, total = np.zeros(4), 0.0
+        for part in (values[:2], values[1:3]):
+            values[2] += 7.0  # here
+            total += part[1]
+        return total
+
+
+class AddsToPair(ExtraEnv):
+    def extra(self):
+        first = [self.cell, 2]
+        pair: Any = ()
+        pair += (first,)
+        first += [3]  # here
+        return float(len(pair[0]))
+
+
+class AddsPairs(ExtraEnv):
+    def extra(self):
+        first = [1, 2]
+        pair = (first,) + (1,)  # noqa: RUF005 - the operator is tested
+        first += [3]  # here
+        return float(len(pair[0]))
+
+
+class RepeatsList(ExtraEnv):
+    def extra(self):
+        first = [1, 2]
+        pair = [first] * 2
+        first += [3]  # here
+        return float(len(pair[0]))
+
+
+class ListsParts(ExtraEnv):
+    def extra(self):
+        values = np.zeros(4)
+        pair = [values[:2] for _ in range(2)]
+        values[0] = 5.0  # here
+        return float(pair[1][0])
+
+
+class TakesLarger(ExtraEnv):
+    def extra(self):
+        first = [1, 2]
+        larger = max(first, [0])
+        first += [3]  # here
+        return float(len(larger))
+
+
+SHARED = [
+    *(Ravels, TakesAsArray, LoopsOverPart, LoopsOverParts, AddsToPair, AddsPairs, RepeatsList, ListsParts),
+    TakesLarger,
+]
+
+
+@pytest.mark.parametrize("cls", SHARED, ids=lambda cls: cls.__name__)
+def test_local_values_with_two_names_are_refused_where_one_changes(cls: Any) -> None:
+    lines, first = inspect.getsourcelines(cls)
+    (marked,) = [number for number, line in enumerate(lines, first) if "here" in line]
+    with pytest.raises(NotCompilable, match=r"shares? (the |its )?memory|may have another name") as caught:
+        rewrite(cls())
+    assert caught.value.line == marked
+
+
+class Copies(ExtraEnv):
+    """Changes values that have no other name."""
+
+    def extra(self):
+        grid, total = np.zeros((2, 2)), 0.0
+        flat = grid.ravel().copy()
+        grid[0, 0] = 5.0
+        scaled = 2.0 * grid + 1.0
+        grid[0, 1] = scaled[0, 0]
+        larger = max(grid[0, 0], 1.0)
+        for value in scaled[1:, 0]:
+            total += value
+        return float(flat[0] + grid[0, 1] + larger + total)
+
+
+def test_copies_are_compiled() -> None:
+    assert_equal_steps(Copies(), rewrite(Copies()), 60, 3)
