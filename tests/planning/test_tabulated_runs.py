@@ -186,6 +186,26 @@ def test_a_run_that_takes_unavailable_actions_is_refused() -> None:
             call(run)
 
 
+class Placed(OneWay):
+    """Observes its place as numbers of a Box, which tile coding takes."""
+
+    observation_space: Any = gym.spaces.Box(0.0, 8.0, (3,), np.float32)
+
+    def observe(self, state: Any) -> Any:
+        return np.array(state, np.float32)
+
+
+def test_masks_are_those_of_the_table_where_a_discretizer_keeps_none() -> None:
+    settings: dict[str, Any] = {"discretizer": "tiles", "tilings": 4, "tiles": 5, "episodes": 600, "preset": None}
+    best = qtab.optimum(qtab.tabulate(limited(Placed())))
+    run = qtab.train(limited(Placed()), action_mask=True, seed=0, **settings)
+    assert run.action_masks is None
+    [played] = qtab.evaluate(run, 1, seed=0, env=limited(Placed())).returns
+    assert best.gap(run).greedy_return == pytest.approx(played)
+    several = qtab.train_many(lambda: limited(Placed()), seeds=[0, 1], action_mask=True, tables=True, **settings)
+    assert best.gap(several).greedy_return[0] == best.gap(run).greedy_return
+
+
 def test_the_table_of_toy_text_has_the_outcomes_of_unavailable_actions() -> None:
     env = gym.make("Taxi-v4")
     run = qtab.train(env, seed=0, episodes=20)

@@ -50,6 +50,7 @@ def test_an_environment_that_ends_episodes_earlier_is_refused() -> None:
     estimates, run = qtab.estimate_values(long, "random", **options), qtab.train(long, seed=0, preset=None, **options)
     assert estimates.verify(env=long).equal
     assert qtab.verify(run, env=gym.make("MountainCar-v0").unwrapped).equal
+    assert qtab.verify(run, env="MountainCar-v0").equal  # made with the time limit of the run
     for owner, verify in (("estimates", estimates.verify), ("run", lambda env: qtab.verify(run, env=env))):
         message = f"^env must have the time limit of the {owner}, 300 steps, or none, got 200$"
         with pytest.raises(ValueError, match=message):

@@ -89,10 +89,14 @@ def _of_states(run: Run | Runs, tables: NDArray[np.float64], rows: NDArray[Any])
 def _masks(run: Run | Runs, table: TabulatedEnv, rows: NDArray[Any]) -> NDArray[np.bool_] | None:
     """Returns (..., states, actions): the mask of each state; None without masks."""
     function, count = run.config.action_mask, len(run.actions)
+    known = None
     if callable(function):
         known = np.ones((len(table.observations), count), np.bool_)
         for state in sorted(_entered(table)):
             known[state] = checked_mask("action_mask", function(table.observations[state]), count)
+    elif function and run.action_masks is None and run.tables is not None:
+        known = table.masks  # a discretizer without cells, such as tile coding, keeps none
+    if known is not None:
         steps = run.discretizer.max_episode_steps if isinstance(run.discretizer, TimeAware) else 1
         repeated = np.tile(known, (steps, 1))
         return repeated if isinstance(run, Run) else np.broadcast_to(repeated, (len(run), *repeated.shape))

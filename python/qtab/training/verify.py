@@ -180,7 +180,7 @@ def verify(
     if isinstance(env, gym.Env):
         check_same(run, env)
     elif env is not None:
-        with closing(gym.make(env)) as made:
+        with closing(gym.make(env, max_episode_steps=run.config.max_episode_steps)) as made:
             return verify(run, episodes, made, progress)
     check_memory("the tables of the reference", 2 * run.tables.nbytes)
     recorder = _Recorder(_environment(config, env), count, progress)
