@@ -1,6 +1,7 @@
 """Training on compiled environments gives what training in Python gives, to the last bit."""
 
 import logging
+import math
 from pathlib import Path
 from typing import Any
 
@@ -136,10 +137,18 @@ class Breaking(own.RandomWalk):
         return state + 1, 0.0, False
 
 
+class NotFinite(own.RandomWalk):
+    """Has a reward that is no number in one state."""
+
+    def transition(self, state: int, action: int, rng: np.random.Generator) -> Any:
+        return state + 1, math.nan if state == 15 else 0.0, False
+
+
 @pytest.mark.parametrize("backend", ["numba", "python"])
 @pytest.mark.parametrize(
     ("made", "error", "message"),
     [
+        (NotFinite, ValueError, "^transition of NotFinite must return a finite number as the reward, got nan$"),
         (Spilling, ValueError, "observe of Spilling must return an element of"),
         (Breaking, RuntimeError, "the walk is over"),
     ],

@@ -220,6 +220,11 @@ IN_A_STEP: list[tuple[Any, dict[str, Any], str]] = [
     (Counter, {"transition": ([1], 0.0, False)}, "must return a number, as before, got a list"),
     (Counter, {"transition": (np.zeros(2), 0.0, False)}, r"a number, as before, got an array of shape \(2,\)"),
     (Counter, {"transition": (1, "a", False)}, "must return a number as the reward, got 'a'"),
+    (
+        Counter,
+        {"transition": (1, -np.inf, False)},
+        "transition of Counter must return a finite number as the reward, got",
+    ),
     (Counter, {"transition": (1, 0.0, 1)}, "must return a boolean as terminated, got 1"),
     (Counter, {"transition": (12, 0.0, False)}, r"must return an element of Discrete\(11\), got 12"),
 ]

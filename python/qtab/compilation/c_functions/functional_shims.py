@@ -1,5 +1,6 @@
 """The functions of ``qtab_env.h`` around the functions of a functional environment."""
 
+import math
 from typing import Any
 
 import numpy as np
@@ -53,6 +54,7 @@ def compile_functional(
     scope: dict[str, Any] = {
         **functions,
         "np": np,
+        "isfinite": math.isfinite,
         "generator_at": generator_at,
         "self_at": self_at(given),
         "read_state": reader(state),
@@ -69,10 +71,11 @@ def compile_functional(
         mask = returned_type(functions["action_mask"], (given, of_state))
         scope["write_mask"] = mask_writer(int(env.action_space.n), mask)
     report()
-    moved = returned_type(functions["transition"], (given, of_state, types.int64, GENERATOR)).types[0]
+    moved, reward, _ = returned_type(functions["transition"], (given, of_state, types.int64, GENERATOR)).types
     # Numbers that the transition returned need not be read again, for which the processor would wait.
     following = "following" if moved == of_state and not _has_arrays(state) else "read_state(next_address)"
-    return c_functions(_source("action_mask" in functions, following), scope, report), state
+    source = _source("action_mask" in functions, following, isinstance(types.unliteral(reward), types.Float))
+    return c_functions(source, scope, report), state
 
 
 def _has_arrays(layout: Layout) -> bool:
@@ -117,7 +120,7 @@ def _check_transition(returned: Any) -> None:
         raise NotCompilable(f"transition returns {terminated} as terminated, not a boolean")
 
 
-def _source(masked: bool, following: str) -> str:
+def _source(masked: bool, following: str, checks_reward: bool) -> str:
     mask = (
         """
     if not write_mask(mask_address, action_mask(self, state), {terminated}):
@@ -125,6 +128,8 @@ def _source(masked: bool, following: str) -> str:
         if masked
         else ""
     )
+    # Python then raises an error that names the function.
+    finite = "    if not isfinite(reward):\n        return np.int32(FAILED)\n" if checks_reward else ""
     return f"""
 def qtab_reset(parameters, rng, state_address, observation_address, mask_address):
     self = self_at(parameters)
@@ -141,7 +146,7 @@ def qtab_step(parameters, rng, state_address, action, next_address, observation_
     following, reward, terminated = transition(self, read_state(state_address), action + start, generator_at(rng))
     check_next(following)
     write_state(next_address, following)
-    write_reward(reward_address, reward)
+{finite}    write_reward(reward_address, reward)
     state = {following}
     if not write_observation(observation_address, observe(self, state)):
         return np.int32(FAILED){mask.format(terminated="terminated")}

@@ -1,6 +1,7 @@
 """A functional environment that is stepped in Python, to compare it with compiled code."""
 
 import copy
+import math
 from typing import Any
 
 import numpy as np
@@ -32,8 +33,11 @@ class FunctionalTwin:
     def step(self, action: int, rng: np.random.Generator) -> dict[str, Any]:
         """Takes an action, counted from 0, and returns the numbers by their names."""
         state, reward, terminated = self._env.transition(self._state, self._first + action, rng)
+        number = float(reward)
+        if not math.isfinite(number):  # compiled code fails, so that the step is repeated
+            raise ValueError(f"the reward is {number}")
         self._state = state
-        return {"reward": float(reward), "terminated": bool(terminated), **self._numbers(bool(terminated))}
+        return {"reward": number, "terminated": bool(terminated), **self._numbers(bool(terminated))}
 
     def _numbers(self, terminated: bool) -> dict[str, Any]:
         numbers = {

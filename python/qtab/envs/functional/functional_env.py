@@ -1,5 +1,6 @@
 """``qtab.FunctionalEnv``: a Gymnasium environment written as functions of its state."""
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from functools import wraps
@@ -164,8 +165,8 @@ class FunctionalEnv(gym.Env[Any, Any], ABC):
             gymnasium.error.InvalidAction: if the action is not in the action space.
             gymnasium.error.ResetNeeded: before the first reset.
             TypeError: if ``transition``, ``observe`` or ``action_mask`` returns values of other types than it should.
-            ValueError: if the state, the observation or the mask has another shape than it should, the observation lies
-                outside its space, or no action is available.
+            ValueError: if the state, the observation or the mask has another shape than it should, the reward is not
+                finite, the observation lies outside its space, or no action is available.
         """
         if not self.action_space.contains(action):
             raise gym.error.InvalidAction(f"action must be in {self.action_space}, got {shown(action)}")
@@ -234,6 +235,8 @@ class FunctionalEnv(gym.Env[Any, Any], ABC):
             number = float(reward)
         except (TypeError, ValueError):
             raise TypeError(f"{name} must return a number as the reward, got {shown(reward)}") from None
+        if not math.isfinite(number):
+            raise ValueError(f"{name} must return a finite number as the reward, got {shown(reward)}")
         if not isinstance(terminated, bool | np.bool_):
             raise TypeError(f"{name} must return a boolean as terminated, got {shown(terminated)}")
         return state, number, bool(terminated)
