@@ -8,7 +8,7 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 import pytest
-from gymnasium.wrappers import RecordEpisodeStatistics, TimeLimit
+from gymnasium.wrappers import RecordEpisodeStatistics, TimeLimit, TransformObservation
 
 import qtab
 from qtab.envs.registry import ENTRIES, EXTRA
@@ -140,6 +140,10 @@ TOUCHED: dict[str, tuple[Any, str]] = {
     "a wrapper": (
         lambda: RecordEpisodeStatistics(gym.make("MountainCar-v0")),
         "Rust does not implement its wrapper RecordEpisodeStatistics; pass the environment without this wrapper",
+    ),
+    "features as observations": (
+        lambda: TransformObservation(gym.make("MountainCar-v0"), lambda one: one, None),
+        "TransformObservation; compute its observations in the environment itself, such as a qtab.FunctionalEnv",
     ),
     "a render mode": (
         lambda: gym.make("MountainCar-v0", render_mode="rgb_array"),

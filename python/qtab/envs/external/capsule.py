@@ -8,7 +8,7 @@ import gymnasium as gym
 
 from qtab import _core
 from qtab.envs.external.positions import FailedCall, generator_at
-from qtab.envs.in_rust.matching import NotInRustError, layers, overridden, unknown_wrapper
+from qtab.envs.in_rust.matching import NotInRustError, check_known_wrappers, layers, overridden
 from qtab.envs.origin.class_code import is_of_library
 
 if TYPE_CHECKING:
@@ -116,10 +116,7 @@ def _name_of(env: gym.Env) -> str:
 def _unwrapped(env: gym.Env) -> Any:
     """Returns the environment without its wrappers, which must not change it."""
     unwrapped: Any = env.unwrapped
-    if (wrapper := unknown_wrapper(env)) is not None:
-        raise NotInRustError(
-            f"Rust does not implement its wrapper {wrapper}", "pass the environment without this wrapper"
-        )
+    check_known_wrappers(env)
     for layer in layers(env):
         for name in vars(layer):
             if callable(getattr(type(layer), name, None)):

@@ -14,6 +14,13 @@ from qtab.envs.registry import TABULAR, TABULATED, EnvEntry, entry_for_id
 # The wrappers of gymnasium.make, none of which changes an observation or a reward.
 _HARMLESS_WRAPPERS = (OrderEnforcing, PassiveEnvChecker, TimeLimit)
 
+_CHANGING_WRAPPERS = {
+    gym.ObservationWrapper: "observations",
+    gym.RewardWrapper: "rewards",
+    gym.ActionWrapper: "actions",
+}
+"""What the wrappers of each kind change. A run without them would be another one."""
+
 # The attributes that a subclass of TabularEnv may define without changing its resets and steps.
 _NOT_STEPPING = {
     *("__init__", "__repr__", "__str__", "metadata", "render", "render_mode", "close"),
@@ -68,12 +75,7 @@ def entry_for_env(env: gym.Env) -> EnvEntry:
     entry = _entry_for_class(unwrapped)
     if (changed := changed_library_code(type(unwrapped))) is not None:
         raise NotInRustError(f"{changed} was replaced", "Gymnasium's own code is stepped in Rust")
-    wrapper = unknown_wrapper(env)
-    if wrapper is not None:
-        raise NotInRustError(
-            f"Rust does not implement its wrapper {wrapper}",
-            "pass the environment without this wrapper, as gymnasium.make returns it",
-        )
+    check_known_wrappers(env, "as gymnasium.make returns it")
     for layer in layers(env):
         for name in vars(layer):
             if callable(getattr(type(layer), name, None)):
@@ -169,8 +171,34 @@ def overridden(cls: type, owner: type) -> tuple[type, str] | None:
 
 def unknown_wrapper(env: gym.Env) -> str | None:
     """Returns the class name of the outermost wrapper that may change a number; None if there is none."""
+    wrapper = _unknown_wrapper(env)
+    return None if wrapper is None else type(wrapper).__name__
+
+
+def check_known_wrappers(env: gym.Env, how: str = "") -> None:
+    """Checks that no wrapper of an environment may change a number.
+
+    Args:
+        env: The environment.
+        how: How to pass it without its wrapper, for the message.
+
+    Raises:
+        NotInRustError: if one may; it names the wrapper.
+    """
+    wrapper = _unknown_wrapper(env)
+    if wrapper is None:
+        return
+    changed = next((what for kind, what in _CHANGING_WRAPPERS.items() if isinstance(wrapper, kind)), None)
+    if changed is None:
+        remedy = "pass the environment without this wrapper" + (f", {how}" if how else "")
+    else:
+        remedy = f"compute its {changed} in the environment itself, such as a qtab.FunctionalEnv"
+    raise NotInRustError(f"Rust does not implement its wrapper {type(wrapper).__name__}", remedy)
+
+
+def _unknown_wrapper(env: gym.Env) -> Any:
     *wrappers, _ = layers(env)
-    return next((type(wrapper).__name__ for wrapper in wrappers if type(wrapper) not in _HARMLESS_WRAPPERS), None)
+    return next((wrapper for wrapper in wrappers if type(wrapper) not in _HARMLESS_WRAPPERS), None)
 
 
 def time_limit(env: gym.Env) -> int | None:
@@ -216,4 +244,12 @@ def _entry_point(env: gym.Env) -> str:
     return f"{type(env).__module__}:{type(env).__qualname__}"
 
 
-__all__ = ["NotInRustError", "entry_for_env", "equal_environments", "rust_unavailable", "time_limit", "unknown_wrapper"]
+__all__ = [
+    "NotInRustError",
+    "check_known_wrappers",
+    "entry_for_env",
+    "equal_environments",
+    "rust_unavailable",
+    "time_limit",
+    "unknown_wrapper",
+]
