@@ -80,6 +80,21 @@ def test_policy_values_take_a_run_on_the_environment(table: qtab.TabulatedEnv) -
     assert values.expected_return == pytest.approx(-sum(0.95**step for step in range(15)))
 
 
+def test_an_id_with_its_package_is_that_environment() -> None:
+    gym.register("tests/Errand-v0", "support.environments.errand:Errand", max_episode_steps=LIMIT)
+    try:
+        run = qtab.train("support.environments.errand:tests/Errand-v0", seed=1, episodes=300, **SETTINGS)
+        table = qtab.tabulate(gym.make("tests/Errand-v0"))
+        of_object = qtab.train(gym.make("tests/Errand-v0"), seed=1, episodes=300, **SETTINGS)
+        values = [qtab.policy_values(table, one, discount=0.95).values for one in (run, of_object)]
+        assert values[0].tobytes() == values[1].tobytes()
+        best = qtab.optimum(table)
+        assert best.gap(run).greedy_return == best.gap(of_object).greedy_return
+        assert qtab.plots.difference(run, best) is not None
+    finally:
+        del gym.registry["tests/Errand-v0"]
+
+
 def test_the_picture_of_the_difference_has_the_costs_of_the_run(best: qtab.Optimum) -> None:
     pytest.importorskip("matplotlib")
     from matplotlib import pyplot as plt

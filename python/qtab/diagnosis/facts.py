@@ -13,7 +13,7 @@ from qtab.config.options import AVERAGE_REWARD, MONTE_CARLO, PREFERENCES
 from qtab.diagnosis.greedy import GreedyEpisodes, play_greedily
 from qtab.diagnosis.sample import Sample, repeat, sample_steps, shortest_best_episode
 from qtab.envs.metadata.goals import BEST_KNOWN_MOUNTAIN_CAR, is_usual_mountain_car
-from qtab.envs.registry import gymnasium_id
+from qtab.envs.registry import bare_id
 from qtab.planning.optimum import Optimum
 from qtab.planning.solve import quick_optimum
 from qtab.results.action_values import are_finite, initial_tables
@@ -164,7 +164,7 @@ class Facts:
         if self.reached is not None and (run.terminated & self.reached).any():
             return int(run.episode_lengths[run.terminated & self.reached].min())
         # The optimum of a table does not act by the observations of the environment that was tabulated.
-        same = self.optimum is not None and gymnasium_id(self.optimum.env) == gymnasium_id(run.config.env)
+        same = self.optimum is not None and bare_id(self.optimum.env) == bare_id(run.config.env)
         if self.optimum is not None and same and self.optimum.exact and self.can_repeat:
             return shortest_best_episode(self.config, self.optimum)
         return None

@@ -144,6 +144,11 @@ def gymnasium_id(env: str) -> str:
     return env.removeprefix(f"{PACKAGE}:").removeprefix(PREFIX)
 
 
+def bare_id(env: str) -> str:
+    """Returns an id as Gymnasium's registry has it, without its package and the prefix ``qtab/``, for comparisons."""
+    return gymnasium_id(env.rpartition(":")[2])
+
+
 def entry_for_id(env: str) -> EnvEntry | None:
     """Returns the entry of an id, Gymnasium's or this package's; None if Rust does not implement it."""
     return ENTRIES.get(gymnasium_id(env)) or EXTRA.get(env.removeprefix(f"{PACKAGE}:"))

@@ -15,7 +15,7 @@ from qtab._utils.shown import shown
 from qtab.config import Config
 from qtab.config.origin import Origin, copied, trained_on
 from qtab.envs.origin.description import EnvironmentDescription, differences
-from qtab.envs.registry import gymnasium_id, spec_of
+from qtab.envs.registry import bare_id, spec_of
 from qtab.planning.classic_control import GridSolver
 from qtab.planning.gap import Gap
 from qtab.planning.search import Search
@@ -188,8 +188,8 @@ class Optimum:
         """
         run = as_solved(self, run)
         config = run.config
-        expected = gymnasium_id(self.env), _all_kwargs(self.env, self.env_kwargs), self.max_episode_steps
-        actual = gymnasium_id(config.env), _all_kwargs(config.env, config.env_kwargs), config.max_episode_steps
+        expected = bare_id(self.env), _all_kwargs(self.env, self.env_kwargs), self.max_episode_steps
+        actual = bare_id(config.env), _all_kwargs(config.env, config.env_kwargs), config.max_episode_steps
         for name, ours, theirs in zip(("env", "env_kwargs", "max_episode_steps"), expected, actual, strict=True):
             if repr(ours) != repr(theirs) and (with_limit or name != "max_episode_steps"):
                 raise ValueError(f"run must have {name} {ours!r} as this optimum has, got {theirs!r}")

@@ -16,7 +16,7 @@ from qtab.discretizers.identity import Identity
 from qtab.discretizers.time_aware import TimeAware
 from qtab.envs.origin.describe import describe
 from qtab.envs.origin.description import differences
-from qtab.envs.registry import gymnasium_id
+from qtab.envs.registry import bare_id
 from qtab.envs.tabulation.tabulated_env import TabulatedEnv
 from qtab.results.action_values import weighted_sum
 from qtab.results.run import Run
@@ -43,7 +43,7 @@ def on_table(run: AnyRun, table: TabulatedEnv) -> AnyRun:
             run takes actions that are unavailable in the table.
     """
     made_of, config = table.made_of, run.config
-    if made_of is None or gymnasium_id(config.env) != gymnasium_id(made_of.name):
+    if made_of is None or bare_id(config.env) != bare_id(made_of.name):
         return run
     description = trained_on(config)
     found = [] if description is None else differences(made_of, description)

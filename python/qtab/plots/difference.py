@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab.envs.registry import gymnasium_id
+from qtab.envs.registry import bare_id
 from qtab.planning.optimum import Optimum, as_solved
 from qtab.plots.arrangements import Raster, arrange
 from qtab.plots.arrangements.grid_map import Layout
@@ -155,7 +155,7 @@ def costs(subject: Subject, best: Subject, raster: Raster) -> NDArray[np.float64
 
 
 def _check_same(subject: Subject, best: Subject) -> None:
-    ours, theirs = gymnasium_id(subject.env), gymnasium_id(best.env)
+    ours, theirs = bare_id(subject.env), bare_id(best.env)
     if ours != theirs:
         raise ValueError(f"optimum must be that of {ours!r}, the run's environment, got that of {theirs!r}")
     if isinstance(best.source, Optimum) and isinstance(subject.source, Run | Runs):

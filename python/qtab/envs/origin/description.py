@@ -11,7 +11,7 @@ from gymnasium.envs.registration import EnvSpec
 from qtab._core import parameter_names
 from qtab.envs.origin.class_code import LIBRARY
 from qtab.envs.origin.values import are_comparable, describe_values, in_words, same, space_text, without_digest
-from qtab.envs.registry import EnvEntry, gymnasium_id
+from qtab.envs.registry import EnvEntry, bare_id
 
 UNIMPORTANT = ("render_mode", "spec", "metadata")
 """Attributes of environments that change no number."""
@@ -185,7 +185,7 @@ def _log_once(message: str) -> None:
 
 
 def _all(ours: EnvironmentDescription, theirs: EnvironmentDescription) -> Iterator[str]:
-    if _bare(ours.name) != _bare(theirs.name):
+    if bare_id(ours.name) != bare_id(theirs.name):
         yield f"it was {ours.name}, and is now {theirs.name}"
         return
     if not (ours.code == theirs.code == LIBRARY):
@@ -235,7 +235,3 @@ def _replaced(ours: EnvironmentDescription | WrapperDescription) -> str:
 
 def _class_name(description: EnvironmentDescription | WrapperDescription) -> str:
     return description.cls.rpartition(":")[2].rpartition(".")[2]
-
-
-def _bare(name: str) -> str:
-    return gymnasium_id(name.rpartition(":")[2])

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from qtab.envs.registry import gymnasium_id
+from qtab.envs.registry import bare_id
 from qtab.plots.arrangements import Raster, arrange
 from qtab.plots.arrangements.grid_map import Layout
 from qtab.plots.arrangements.raster import DARK, LIGHT
@@ -54,7 +54,7 @@ def arranged(
         subjects = [subject_of(f"run[{index}]", one, step) for index, one in enumerate(run)]
     else:
         raise ValueError(f"run must hold at least one run, got an empty {type(run).__name__}")
-    names = {gymnasium_id(subject.env) for subject in subjects}
+    names = {bare_id(subject.env) for subject in subjects}
     if len(names) > 1:
         raise ValueError(f"run must hold runs of one environment, got {', '.join(sorted(map(repr, names)))}")
     return [(subject, arrange(subject, at, layout)) for subject in subjects]
