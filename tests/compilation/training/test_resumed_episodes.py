@@ -12,7 +12,7 @@ import qtab
 from support.environments.gym_classes import grids
 from support.environments.gym_classes.grids import CliffEnv, MaskedGridEnv
 from support.lockstep.compiled_runs import LONG, Grows, stopped, trained_until, windy
-from support.parity import assert_same_run
+from support.parity import assert_same_run, run_of
 from support.processes.posix import posix_only
 
 pytest.importorskip("numba")
@@ -123,9 +123,11 @@ class Wandering(CliffEnv):
         return observation, reward, terminated, truncated, info
 
 
-@posix_only
 def test_an_edited_class_says_what_to_do(monkeypatch: pytest.MonkeyPatch) -> None:
-    part = stopped(0.02, Wandering, **{**LONG, "episodes": 1, "max_episode_steps": 10**7})
+    settings = {**LONG, "algorithm": "monte_carlo", "episodes": 1, "max_episode_steps": 20_000}
+    with pytest.raises(MemoryError, match="memory_limit=150000") as caught:  # within the episode, at the same step
+        qtab.train(Wandering(), memory_limit=150_000, **settings)
+    part = run_of(caught.value)
     assert len(part.episode_returns) == 0
     monkeypatch.setattr(grids, "MOVES", {action: grids.MOVES[3 - action] for action in range(4)})
     with pytest.raises(ValueError, match=r"^run must be resumed in the environment as it was: .* within episode \d+"):
