@@ -1,6 +1,5 @@
 """Parts of arrays that are assigned, ``divmod`` and options with defaults, as classes on the internet have them."""
 
-import inspect
 from typing import Any
 
 import gymnasium as gym
@@ -10,6 +9,7 @@ import pytest
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting import rewrite
 from support.environments.gym_classes.extra import ExtraEnv
+from support.environments.marked import marked_line
 from support.lockstep.rewriting import assert_equal_steps, assert_nothing_refused, compiled_with_checks
 
 
@@ -131,8 +131,6 @@ REFUSALS = {
 
 @pytest.mark.parametrize("cls", REFUSALS, ids=lambda cls: cls.__name__)
 def test_others_are_refused_with_their_line(cls: Any) -> None:
-    lines, first = inspect.getsourcelines(cls)
-    (marked,) = [number for number, line in enumerate(lines, first) if "# here" in line]
     with pytest.raises(NotCompilable, match=REFUSALS[cls]) as caught:
         rewrite(cls())
-    assert caught.value.line == marked
+    assert caught.value.line == marked_line(cls)

@@ -8,6 +8,7 @@ import pytest
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting import rewrite
 from support.environments.gym_classes import left_out
+from support.environments.marked import marked_line
 from support.lockstep.rewriting import assert_equal_steps
 
 REFUSED = [
@@ -19,11 +20,9 @@ REFUSED = [
 
 @pytest.mark.parametrize("cls", REFUSED, ids=lambda cls: cls.__name__)
 def test_a_call_whose_result_is_left_out_is_refused(cls: Any) -> None:
-    lines, first = inspect.getsourcelines(cls)
-    (marked,) = [number for number, line in enumerate(lines, first) if "# here" in line]
     with pytest.raises(NotCompilable, match="a call ") as caught:
         rewrite(cls())
-    assert caught.value.line == marked
+    assert caught.value.line == marked_line(cls)
     assert caught.value.advice == "assign it to a variable first"
 
 

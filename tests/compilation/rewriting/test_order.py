@@ -1,6 +1,5 @@
 """An array that a later call in the same statement changes: Python shows the change, so that it is refused."""
 
-import inspect
 from typing import Any
 
 import numpy as np
@@ -9,6 +8,7 @@ import pytest
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting import rewrite
 from support.environments.gym_classes.extra import ExtraEnv
+from support.environments.marked import marked_line
 
 
 class Bumps(ExtraEnv):
@@ -170,11 +170,9 @@ REFUSED = [
 
 @pytest.mark.parametrize("cls", REFUSED, ids=lambda cls: cls.__name__)
 def test_an_array_that_a_later_call_changes_is_refused(cls: Any) -> None:
-    lines, first = inspect.getsourcelines(cls)
-    (marked,) = [number for number, line in enumerate(lines, first) if "# here" in line]
     with pytest.raises(NotCompilable) as caught:
         rewrite(cls())
-    assert caught.value.line == marked
+    assert caught.value.line == marked_line(cls)
     assert ("self.places" if cls is LoopsOverList else "self.board") in caught.value.reason
 
 

@@ -1,7 +1,6 @@
 """Code of the user that compiled code would not run, or would run once: it is refused with its line."""
 
 import enum
-import inspect
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,6 +9,7 @@ import pytest
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting import rewrite
 from support.environments.gym_classes.extra import ExtraEnv
+from support.environments.marked import marked_line
 
 
 class Heading(enum.IntEnum):
@@ -123,11 +123,9 @@ OPERATORS = [
 
 def refusal(cls: Any) -> NotCompilable:
     """Returns the refusal of a class, which names the line with the mark."""
-    lines, first = inspect.getsourcelines(cls)
-    (marked,) = [number for number, line in enumerate(lines, first) if "# here" in line]
     with pytest.raises(NotCompilable) as caught:
         rewrite(cls())
-    assert caught.value.line == marked
+    assert caught.value.line == marked_line(cls)
     return caught.value
 
 

@@ -2,7 +2,6 @@
 
 import copy
 import enum
-import inspect
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +12,7 @@ import pytest
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting import rewrite
 from support.environments.gym_classes import control, games, grids, refused, shared, walk
+from support.environments.marked import marked_line
 from support.lockstep.rewriting import assert_equal_steps
 
 REFUSALS = {
@@ -60,16 +60,14 @@ REFUSALS = {
 
 @pytest.mark.parametrize("cls", REFUSALS, ids=lambda cls: cls.__name__)
 def test_the_refusal_names_the_line_and_what_to_write_instead(cls: Any) -> None:
-    lines, first = inspect.getsourcelines(cls)
-    (marked,) = [number for number, line in enumerate(lines, first) if "# here" in line]
     with pytest.raises(NotCompilable) as caught:
         rewrite(cls())
     reason, advice = REFUSALS[cls]
     assert Path(str(caught.value.file)).name == "refused.py"
-    assert caught.value.line == marked
+    assert caught.value.line == marked_line(cls)
     assert reason in caught.value.reason
     assert advice in caught.value.advice
-    assert str(caught.value).startswith(f"{caught.value.file}:{marked}: ")
+    assert str(caught.value).startswith(f"{caught.value.file}:{marked_line(cls)}: ")
 
 
 SHARED = [
@@ -85,11 +83,9 @@ SHARED = [
 
 @pytest.mark.parametrize("cls", SHARED, ids=lambda cls: cls.__name__)
 def test_names_of_memory_that_is_changed_in_place_are_refused(cls: Any) -> None:
-    lines, first = inspect.getsourcelines(cls)
-    (marked,) = [number for number, line in enumerate(lines, first) if "# here" in line]
     with pytest.raises(NotCompilable, match=r"shares? .*memory.*changed in place.*\.copy\(\)") as caught:
         rewrite(cls())
-    assert caught.value.line == marked
+    assert caught.value.line == marked_line(cls)
 
 
 def test_attributes_that_share_memory_from_the_beginning_are_refused() -> None:

@@ -1,6 +1,5 @@
 """Lists and arrays with two names, one of which shows a change by the other: they are refused, as copies would not."""
 
-import inspect
 from typing import Any, ClassVar
 
 import numpy as np
@@ -9,6 +8,7 @@ import pytest
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting import rewrite
 from support.environments.gym_classes.extra import ExtraEnv
+from support.environments.marked import marked_line
 from support.lockstep.rewriting import assert_equal_steps
 
 
@@ -200,12 +200,10 @@ SHARED = [
 
 @pytest.mark.parametrize("cls", SHARED, ids=lambda cls: cls.__name__)
 def test_shared_values_that_change_are_refused_with_their_line(cls: Any) -> None:
-    lines, first = inspect.getsourcelines(cls)
-    (marked,) = [number for number, line in enumerate(lines, first) if "here" in line]
     reasons = r"shares (the )?memory|may share its memory|may have another name.* x = x [+|*] y|changed before it is"
     with pytest.raises(NotCompilable, match=reasons) as caught:
         rewrite(cls())
-    assert caught.value.line == marked
+    assert caught.value.line == marked_line(cls)
 
 
 class Copies(Shares):

@@ -1,7 +1,6 @@
 """Data whose class has code of its own: none of it is run before the environment is refused with its line."""
 
 import enum
-import inspect
 import types
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -13,6 +12,7 @@ from qtab.compilation.rewriting import rewrite
 from qtab.compilation.twins.plain_data import is_plain
 from qtab.compilation.twins.side_effects import refuse_effects
 from support.environments.gym_classes.extra import ExtraEnv
+from support.environments.marked import marked_line
 
 COUNT = [0]
 
@@ -212,12 +212,10 @@ REFUSED = [
 
 @pytest.mark.parametrize("cls", REFUSED, ids=lambda cls: cls.__name__)
 def test_code_of_data_is_not_run(cls: Any) -> None:
-    lines, first = inspect.getsourcelines(cls)
-    (marked,) = [number for number, line in enumerate(lines, first) if "# here" in line]
     env, before = cls(), COUNT[0]
     with pytest.raises(NotCompilable) as caught:
         checked_and_rewritten(env)
-    assert caught.value.line == marked
+    assert caught.value.line == marked_line(cls)
     assert caught.value.advice
     assert COUNT[0] == before
 

@@ -1,6 +1,5 @@
 """Environments whose methods may have effects outside of them are refused before anything of them is run."""
 
-import inspect
 import os
 import re
 from collections.abc import Callable
@@ -24,12 +23,7 @@ from support.environments.gym_classes.effects import (
     Quiet,
     StepPrints,
 )
-
-
-def line_of(cls: type) -> int:
-    """The line of a class that is marked with ``# here``."""
-    lines, first = inspect.getsourcelines(cls)
-    return first + next(number for number, line in enumerate(lines) if line.rstrip().endswith("# here"))
+from support.environments.marked import marked_line
 
 
 @pytest.mark.parametrize("cls", [one for one in REFUSED if one not in CHANGING_DATA], ids=lambda one: one.__name__)
@@ -41,7 +35,7 @@ def test_effects_are_refused_and_never_happen(
     with pytest.raises(NotCompilable) as caught:
         refuse_effects(env)
     if cls is not CallsAttribute:
-        assert (caught.value.file, caught.value.line) == (effects.__file__, line_of(cls))  # type: ignore[arg-type]
+        assert (caught.value.file, caught.value.line) == (effects.__file__, marked_line(cls))  # type: ignore[arg-type]
     assert caught.value.advice
     assert not RAN
     assert effects.COUNT == effects.SCORES["steps"] == 0
@@ -131,6 +125,6 @@ def test_training_steps_such_a_class_in_python_or_names_the_line(capsys: pytest.
     run = qtab.train(StepPrints(), episodes=2, max_episode_steps=10, seed=0, progress=False)
     assert run.config.backend == "gymnasium"
     assert capsys.readouterr().out.count("step") == run.episode_lengths.sum()
-    place = f"{effects.__file__}:{line_of(StepPrints)}: print is called; log in a wrapper or a callback"
+    place = f"{effects.__file__}:{marked_line(StepPrints)}: print is called; log in a wrapper or a callback"
     with pytest.raises(ValueError, match=re.escape(place)):
         qtab.train(StepPrints(), episodes=2, max_episode_steps=10, seed=0, backend="numba")

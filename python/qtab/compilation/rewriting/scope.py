@@ -68,6 +68,8 @@ class Scope:
         """The arrays and lists that the statement reads, which are references in Python, with their attributes."""
         self.changing: list[ast.AST] = []
         """The calls in the statement that change the state."""
+        self.called: list[Compiled] = []
+        """The user's functions that are called in the function."""
         self.unknown: set[str] = set()
         """The local variables that statements assign which cannot be compiled."""
         self.whole: ast.expr | None = None

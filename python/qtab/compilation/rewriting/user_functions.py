@@ -9,9 +9,10 @@ from qtab.compilation.rewriting import specials
 from qtab.compilation.rewriting.program import Compiled, Flow, Program
 from qtab.compilation.rewriting.scope import LOCAL, Scope
 from qtab.compilation.rewriting.source.sources import Source
+from qtab.compilation.rewriting.statements.references import is_new
 from qtab.compilation.rewriting.statements.statements import Statements
 from qtab.compilation.rewriting.statements.variables import kept
-from qtab.compilation.rewriting.values import InfoKind, Scalar, Value, constant
+from qtab.compilation.rewriting.values import InfoKind, Scalar, TupleKind, Value, constant
 
 if TYPE_CHECKING:
     from qtab.compilation.rewriting.expressions.expressions import Expressions
@@ -31,6 +32,7 @@ def called(
         scope.note_alias(value, node, compiled)
     if compiled.draws and program.phase == "mask":
         raise scope.refuse(node, "an action mask draws random numbers", "draw in step, and keep the result in self")
+    scope.called.append(compiled)
     scope.compiled.uses.add(compiled.name)
     scope.compiled.draws |= compiled.draws
     scope.compiled.changes |= compiled.changes
@@ -51,7 +53,7 @@ def called(
     if result.fixed is None:
         return Value(None, code, fixed=None)
     lifted = scope.lift(constant(result.fixed), node)
-    return Value(lifted.kind, f"({code}, {lifted.code})[1]", fresh=True)
+    return Value(lifted.kind, f"({code}, {lifted.code})[1]", fresh=result.fresh)
 
 
 def _argument(scope: "Expressions", node: ast.AST, value: Value) -> Value:
@@ -151,6 +153,13 @@ def _may_be_parameter(rewriter: Statements, value: Value) -> bool:
     return not is_known and not isinstance(value.kind, Scalar | InfoKind)
 
 
+def _makes_lists(rewriter: Statements, result: Value) -> bool:
+    """Returns whether the result is a list or a tuple that every return statement makes."""
+    is_list = isinstance(result.kind, TupleKind) or isinstance(result.fixed, list)
+    nodes = [node.value if isinstance(node, ast.Return) else None for _, node, _ in rewriter.returns]
+    return is_list and all(node is not None and is_new(rewriter, node) for node in nodes)
+
+
 def _note_observations(rewriter: Statements) -> None:
     """Notes the attributes whose memory the observations share that ``reset`` or ``step`` returns."""
     for value, node, _ in rewriter.returns:
@@ -174,7 +183,8 @@ def _finish(rewriter: Statements, parameters: dict[str, Value]) -> None:
     compiled.returns_parameter = any(_may_be_parameter(rewriter, value) for value in values)
     result = rewriter.result()
     is_named = compiled.returns_parameter or any(rewriter.names.are_shared(node) for _, node, _ in rewriter.returns)
-    compiled.result = replace(result, fresh=result.fresh and not is_named)
+    is_fresh = result.fresh or _makes_lists(rewriter, result)
+    compiled.result = replace(result, fresh=is_fresh and not is_named)
     if rewriter.role:
         _note_observations(rewriter)
     always = set.intersection(*rewriter.flows_at_return)

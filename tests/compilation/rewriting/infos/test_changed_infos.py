@@ -1,6 +1,5 @@
 """Info dicts that a step changes, and that it has not made: other code reads them, so that they are refused."""
 
-import inspect
 from typing import Any
 
 import pytest
@@ -8,6 +7,7 @@ import pytest
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting import rewrite
 from support.environments.gym_classes.extra import ExtraEnv
+from support.environments.marked import marked_line
 
 TOTALS = {"steps": 0}
 
@@ -141,9 +141,7 @@ CHANGED = [
 
 @pytest.mark.parametrize("cls", CHANGED, ids=lambda cls: cls.__name__)
 def test_dicts_of_others_are_not_changed(cls: Any) -> None:
-    lines, first = inspect.getsourcelines(cls)
-    (marked,) = [number for number, line in enumerate(lines, first) if "# here" in line]
-    assert refusal(cls).line == marked
+    assert refusal(cls).line == marked_line(cls)
 
 
 def test_nor_those_that_a_base_class_returns() -> None:

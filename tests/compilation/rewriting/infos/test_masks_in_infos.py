@@ -1,6 +1,5 @@
 """Action masks in info dicts: one that depends on where or when the dict is made is refused with its line."""
 
-import inspect
 from typing import Any
 
 import gymnasium as gym
@@ -9,6 +8,7 @@ import pytest
 from gymnasium import spaces
 
 from qtab.compilation.rewriting import rewrite
+from support.environments.marked import marked_line
 
 
 class Masked(gym.Env):
@@ -92,11 +92,9 @@ REFUSED = [OtherMaskFirst, NoMaskFirst, OtherDtypeFirst, Updates, ChangesLater, 
 
 @pytest.mark.parametrize("cls", REFUSED, ids=lambda cls: cls.__name__)
 def test_masks_that_depend_on_where_the_info_dict_is_made_are_refused(cls: Any) -> None:
-    lines, first = inspect.getsourcelines(cls)
-    (marked,) = [number for number, line in enumerate(lines, first) if "# here" in line]
     refusal = rewrite(cls()).mask_refusal
     assert refusal is not None
-    assert refusal.line == marked
+    assert refusal.line == marked_line(cls)
     assert "the action mask" in refusal.reason
     assert refusal.advice == "write a method action_masks(self)"
 

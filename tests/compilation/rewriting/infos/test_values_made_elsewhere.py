@@ -8,6 +8,7 @@ import pytest
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting import rewrite
 from support.environments.gym_classes.extra import ExtraEnv
+from support.lockstep.rewriting import assert_equal_steps
 
 
 class Shows(ExtraEnv):
@@ -91,7 +92,39 @@ class ChangesNumPy(Shows):
         return {}
 
 
+class CountsInObjects(Shows):
+    def shown(self):
+        rows = np.zeros(3, object)
+        rows[0] = self.left
+        rows[0] += 1.0
+        return {}
+
+
+class TakesPart(Shows):
+    def shown(self):
+        part = self.left[None]
+        part += 1.0
+        return {}
+
+
+class TakesGreatest(Shows):
+    def shown(self):
+        greatest = max([self.left])
+        greatest += 1.0
+        return {}
+
+
+class PassesOn(Shows):
+    def __init__(self):
+        super().__init__()
+        self.cells = []
+
+    def shown(self):
+        return {"added": list(map(self.cells.append, (1, 2)))}
+
+
 CHANGES = [
+    *(CountsInObjects, TakesPart, TakesGreatest, PassesOn),
     *(UnpacksResult, UnpacksCopy, TakesDefault, CountsItself, SumsFromStart, CallsUnwrapped, Matches, ChangesNumPy),
 ]
 
@@ -102,5 +135,29 @@ def test_changes_of_values_that_are_made_elsewhere_are_refused(cls: Any) -> None
         rewrite(cls())
 
 
-def test_an_info_dict_without_changes_is_left_out() -> None:
-    assert rewrite(Shows()).source
+class ShowsNumbers(Shows):
+    """Changes only numbers and what its method makes, and reads numbers with the names of methods."""
+
+    def __init__(self):
+        super().__init__()
+        self.fill, self.pop, self.place = 0.5, 3, (1, 2)
+
+    def shown(self):
+        counts, speed = np.zeros(3, int), np.linalg.norm(self.left)
+        for i in range(3):
+            counts[i] += 1
+        row, column = divmod(self.cell, 3)
+        x, y = self.place
+        least, first, clipped = min(self.cell, 3), self.left[0], np.clip(self.left, 0.0, 1.0)
+        speed += 1.0
+        least += 1
+        row += 1
+        x -= 1
+        first += 1.0
+        clipped += 1.0
+        return {"fill": self.fill, "pop": self.pop, "counts": counts, "rest": (speed, least, row, column, x, y)}
+
+
+@pytest.mark.parametrize("cls", [Shows, ShowsNumbers])
+def test_info_dicts_without_other_changes_are_left_out(cls: type[Shows]) -> None:
+    assert_equal_steps(cls(), rewrite(cls()), 60, 3)

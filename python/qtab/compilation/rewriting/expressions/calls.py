@@ -16,7 +16,7 @@ from qtab.compilation.rewriting.library import arrays, builtin_functions, draws,
 from qtab.compilation.rewriting.source.sources import source_of
 from qtab.compilation.rewriting.source.syntax import CHANGING
 from qtab.compilation.rewriting.statements.effects import check_pure
-from qtab.compilation.rewriting.statements.left_out import note_message
+from qtab.compilation.rewriting.statements.left_out import known_value, note_message
 from qtab.compilation.rewriting.values import Array, DictKind, InfoKind, TupleKind, Value, constant, in_words
 
 if TYPE_CHECKING:
@@ -63,6 +63,9 @@ def call(scope: "Expressions", node: ast.Call) -> Value:
             return _space(scope, node, name, base.fixed)
         if isinstance(base.fixed, dict | list | tuple | str | set | frozenset | range):
             return _of_constant(scope, node, name, base.fixed)
+        is_list = isinstance(base.kind, TupleKind) and isinstance(known_value(scope, node.func.value), list)
+        if is_list and name == "copy" and not (node.args or node.keywords):
+            return containers.copied(base)
         if isinstance(base.kind, DictKind | InfoKind) or (base.kind is not None and not base.is_fixed):
             if isinstance(base.kind, TupleKind) and name in CHANGING:
                 unread = "a list that nothing reads is left out if reset makes it, as in self.path = []"

@@ -1,6 +1,7 @@
 """Elements of constants, tuples and arrays."""
 
 import ast
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -168,6 +169,12 @@ def as_tuple(scope: "Expressions", node: ast.AST, value: Value) -> Value:
     name = scope.program.elements(kind.shape[0], scalar)
     scope.compiled.uses.add(name)
     return Value(TupleKind((scalar,) * kind.shape[0]), f"{name}({value.code})")
+
+
+def copied(value: Value) -> Value:
+    """Returns a new tuple or list with the same elements, which may be lists or arrays with other names."""
+    are_numbers = all(isinstance(item, Scalar) for item in value.kind.items)
+    return replace(value, fresh=True, views=frozenset() if are_numbers else value.views)
 
 
 def lookup(scope: "Expressions", node: ast.AST, container: Any, index: Value) -> Value:

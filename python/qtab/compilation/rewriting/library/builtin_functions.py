@@ -2,7 +2,6 @@
 
 import ast
 import builtins
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -154,7 +153,7 @@ def _sequence(made: Any) -> Handler:
         if isinstance(value.kind, Array):
             return containers.as_tuple(scope, node, value)
         if isinstance(value.kind, TupleKind):
-            return replace(value, fresh=True)
+            return containers.copied(value)
         raise scope.refuse(node, f"{made.__name__} of {in_words(value.kind)}", "use tuples and arrays")
 
     return handler

@@ -60,7 +60,7 @@ class Names:
                 targets = [one.target]
             elif isinstance(one, ast.Call) and isinstance(one.func, ast.Attribute) and one.func.attr in CHANGING:
                 targets = [one.func]
-            for target in targets:
+            for target in _written_out(targets):
                 base: ast.expr = target
                 while isinstance(base, ast.Subscript | ast.Attribute):
                     base = base.value
@@ -69,12 +69,17 @@ class Names:
                     found.setdefault(base.id, []).append((one.lineno, one.col_offset))  # type: ignore[attr-defined]
         return found
 
-    def shared_before_change(self, name: str) -> bool:
-        """Returns whether another name may refer to a local array when its elements are assigned."""
+    def shared_before_change(self, name: str, ndim: int = 0) -> bool:
+        """Returns whether another name may refer to a local value when its elements are assigned.
+
+        Args:
+            name: The local variable.
+            ndim: The number of dimensions of an array of numbers, whose elements are no parts of it; 0 for a list.
+        """
         changes = self._mutations.get(name, [])
         if name in self.parameters:
             return True
-        shared = list(self._escapes(name))
+        shared = list(self._escapes(name, ndim))
         if not changes or not shared:
             return False
         if any(isinstance(one, LOOPS) for one in self._walk()):
@@ -87,7 +92,7 @@ class Names:
         names = [part.id for part in _parts(value) if isinstance(part, ast.Name)] if value is not None else []
         return any(True for name in names for _ in self._escapes(name))
 
-    def _escapes(self, name: str) -> Iterator[tuple[int, int]]:
+    def _escapes(self, name: str, ndim: int = 0) -> Iterator[tuple[int, int]]:
         for one in self._walk():
             kept: list[ast.expr] = []
             if isinstance(one, ast.Assign | ast.AnnAssign | ast.AugAssign):
@@ -97,7 +102,7 @@ class Names:
                 kept = [one.iter]
             elif isinstance(one, ast.Call) and not _of_library(one.func):
                 kept = [*one.args, *(keyword.value for keyword in one.keywords)]
-            if any(_is_name(part, name) for value in kept for part in _parts(value)):
+            if any(_is_name(part, name) for value in kept for part in _parts(value, ndim)):
                 yield one.lineno, one.col_offset  # type: ignore[attr-defined]
 
 
@@ -106,39 +111,62 @@ _VIEWS = ("asarray", "ravel")
 """The functions of NumPy, and methods of arrays, that may return the array itself."""
 
 
+def _written_out(targets: list[ast.expr]) -> Iterator[ast.expr]:
+    """Yields the targets of an assignment, of tuples and lists their elements."""
+    for target in targets:
+        if isinstance(target, ast.Tuple | ast.List):
+            yield from _written_out(target.elts)
+        else:
+            yield target.value if isinstance(target, ast.Starred) else target
+
+
 def _is_name(node: ast.AST, name: str) -> bool:
     return isinstance(node, ast.Name) and node.id == name
 
 
-def _parts(node: ast.expr) -> Iterator[ast.expr]:
-    """Yields an expression, or the parts of those that keep a reference to them; views keep one to the array."""
+def _parts(node: ast.expr, ndim: int = 0) -> Iterator[ast.expr]:
+    """Yields an expression, or the parts of those that keep a reference to them; views keep one to the array.
+
+    Args:
+        node: The expression.
+        ndim: The number of dimensions of the arrays in question, whose elements are numbers; 0 for lists.
+    """
     if isinstance(node, ast.Tuple | ast.List):
         for part in node.elts:
-            yield from _parts(part)
+            yield from _parts(part, ndim)
     elif isinstance(node, ast.Dict):
         for part in node.values:
-            yield from _parts(part)
+            yield from _parts(part, ndim)
     elif isinstance(node, ast.IfExp):
-        yield from _parts(node.body)
-        yield from _parts(node.orelse)
+        yield from _parts(node.body, ndim)
+        yield from _parts(node.orelse, ndim)
     elif isinstance(node, ast.BoolOp):
         for part in node.values:
-            yield from _parts(part)
-    elif isinstance(node, (ast.Subscript, ast.Starred)):
-        yield from _parts(node.value)
+            yield from _parts(part, ndim)
+    elif isinstance(node, ast.Subscript | ast.Starred):
+        if not (isinstance(node, ast.Subscript) and _is_element(node, ndim)):
+            yield from _parts(node.value, ndim)
     elif isinstance(node, ast.ListComp):
-        yield from _parts(node.elt)
+        yield from _parts(node.elt, ndim)
     elif isinstance(node, ast.BinOp):  # of lists and tuples, which keep their elements
         for side in (node.left, node.right):
             if isinstance(side, (*_DISPLAYS, ast.BinOp)):
-                yield from _parts(side)
+                yield from _parts(side, ndim)
     elif isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in ("max", "min"):
         yield from (part for part in node.args if isinstance(part, ast.Name))
     elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in _VIEWS:
         for part in (node.func.value, *node.args[:1]):
-            yield from _parts(part)
+            yield from _parts(part, ndim)
     else:
         yield node
+
+
+def _is_element(node: ast.Subscript, ndim: int) -> bool:
+    """Returns whether an index has a number for each dimension, and so no slice, ``None`` or ``...``."""
+    index = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
+    are_numbers = all(not isinstance(one, ast.Slice | ast.Starred) for one in index)
+    has_others = any(isinstance(one, ast.Constant) and one.value in (None, ...) for one in index)
+    return len(index) == ndim and are_numbers and not has_others
 
 
 def _of_library(function: ast.expr) -> bool:

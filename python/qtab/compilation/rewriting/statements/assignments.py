@@ -9,6 +9,7 @@ from qtab.compilation.rewriting import specials
 from qtab.compilation.rewriting.expressions import containers
 from qtab.compilation.rewriting.expressions.operators import SYMBOLS
 from qtab.compilation.rewriting.statements.effects import check_pure
+from qtab.compilation.rewriting.statements.info_counts import is_info_count
 from qtab.compilation.rewriting.statements.left_out import note_attribute, note_change, note_kind, note_value, number
 from qtab.compilation.rewriting.statements.references import is_new, is_owned, shared_names
 from qtab.compilation.rewriting.statements.stores import changeable, store, store_element
@@ -63,6 +64,8 @@ def assign_value(scope: "Statements", node: ast.stmt, targets: "ast.expr | list[
     """Assigns a value to targets, and evaluates it once."""
     targets = targets if isinstance(targets, list) else [targets]
     several = len(targets) > 1 or isinstance(targets[0], ast.Tuple | ast.List)
+    if several:
+        _check_parts(scope, node, targets, value)
     if several and not value.is_fixed and not is_simple(value):
         value = in_variables(scope, node, value)
     if len(targets) > 1:
@@ -73,6 +76,25 @@ def assign_value(scope: "Statements", node: ast.stmt, targets: "ast.expr | list[
         raise scope.refuse(node, reason, "write .copy() after each part that is read")
     for target in targets:
         bind(scope, node, target, value)
+
+
+def _check_parts(scope: "Statements", node: ast.stmt, targets: list[ast.expr], value: Value) -> None:
+    """Refuses parts of a local array that are read, and whose array is changed by one of several targets."""
+    source = node.value if isinstance(node, ast.Assign) else None
+    stored = [one for target in targets for one in ast.walk(target) if isinstance(one, ast.Subscript)]
+    changed = {one.value.id for one in stored if isinstance(one.value, ast.Name)}
+    read = {one.id for one in ast.walk(source) if isinstance(one, ast.Name)} if source is not None else set()
+    if changed & read and _has_part(value):
+        reason = f"a part of {min(changed & read)} is read, and changed before it is assigned,"
+        raise scope.refuse(node, reason, "write .copy() after each part that is read")
+
+
+def _has_part(value: Value) -> bool:
+    """Returns whether a value is, or contains, an array that was not made by its expression."""
+    if value.parts is not None:
+        return any(map(_has_part, value.parts))
+    kinds = value.kind.items if isinstance(value.kind, TupleKind) else [value.kind]
+    return not value.fresh and any(isinstance(kind, Array) for kind in kinds)
 
 
 def _changed(target: ast.expr) -> Iterator[ast.Attribute]:
@@ -171,7 +193,7 @@ def augmented(scope: "Statements", node: ast.AugAssign) -> None:
         before = scope.expression(target)
         result = scope.combine(node, before, scope.expression(node.value), node.op)
         if isinstance(before.kind, Array):
-            if not scope.is_owned(target.id) or scope.names.shared_before_change(target.id):
+            if not scope.is_owned(target.id) or scope.names.shared_before_change(target.id, before.kind.ndim):
                 advice = "write x = x + y, which makes a new array"
                 raise scope.refuse(node, f"{target.id} may share its memory with another array", advice)
             _check_in_place(scope, node, before, result)
@@ -193,6 +215,8 @@ def augmented(scope: "Statements", node: ast.AugAssign) -> None:
             _check_in_place(scope, node, before, result)
             scope.program.attributes.changed_in_place.add(target.attr)
         bind(scope, node, target, result)
+        return
+    if is_info_count(scope, node):
         return
     if isinstance(target.value, ast.Name) and target.value.id in scope.infos:
         advice = 'write info["x"] = ... with the new value'

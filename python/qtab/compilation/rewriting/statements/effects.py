@@ -4,17 +4,16 @@ import ast
 import builtins
 import enum
 import inspect
-from types import FunctionType, ModuleType
+from types import FunctionType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting.attributes import MISSING
-from qtab.compilation.rewriting.infos.made import MOST_NESTED, bindings, is_made, values_of
 from qtab.compilation.rewriting.source.sources import source_of
-from qtab.compilation.rewriting.source.syntax import CHANGING, own_name, parameters_of
-from qtab.compilation.rewriting.values import is_immutable
+from qtab.compilation.rewriting.source.syntax import CHANGING, own_name
+from qtab.compilation.rewriting.statements.own_values import is_made_here, is_own, resolved
 from qtab.compilation.twins.own_code import own_methods, runs_code
 
 if TYPE_CHECKING:
@@ -32,9 +31,6 @@ PURE_METHODS = (
 )
 LOCAL_METHODS = ("add", "append", "extend", "insert", "pop", "sort", "update")
 """Methods that change a list or a dict that the function made."""
-NUMBERS_OF_METHODS = ("all", "any", "argmax", "argmin", "count", "index", "item", "max", "mean", "min", "std", "sum")
-NUMBERS_OF_BUILTINS = ("abs", "bool", "float", "int", "len", "round", "str", "sum")
-"""Methods and functions whose results have no other name."""
 CHANGES_ARGUMENT = ("copyto", "fill_diagonal", "nan_to_num", "place", "put", "put_along_axis", "putmask")
 """Functions of NumPy that change an array."""
 UNSAFE_NUMPY = ("save", "load", "fromfile", "memmap", "open", "set", "genfromtxt", "fromregex", "DataSource", "test")
@@ -44,7 +40,6 @@ EFFECTIVE = (
     *(ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef),
 )
 """Statements and expressions that are not left out."""
-_IMMUTABLE = (ast.Constant, ast.JoinedStr, ast.Compare, ast.UnaryOp, ast.Tuple)
 ADVICE = "compute it without drawing or changing attributes, or leave it out"
 
 
@@ -64,7 +59,7 @@ def _effect(
     scope: "Expressions", node: ast.AST, function: FunctionType, definition: ast.FunctionDef, seen: set[Any]
 ) -> str | None:
     """Returns the effect of an expression or statement; None if there is none."""
-    own, parameters = own_name(definition), set(parameters_of(definition))
+    own = own_name(definition)
     called = {id(one.func) for one in ast.walk(node) if isinstance(one, ast.Call)}
     for one in ast.walk(node):
         if isinstance(one, EFFECTIVE):
@@ -73,12 +68,13 @@ def _effect(
             return f"it enters {ast.unparse(one.context_expr)}"
         if isinstance(one, ast.Attribute) and one.attr in ("np_random", "_np_random"):
             return "it draws random numbers"
-        if isinstance(one, ast.Attribute) and one.attr in CHANGING and id(one) not in called:
+        is_argument = isinstance(one, ast.Attribute) and one.attr in CHANGING and id(one) not in called
+        if is_argument and not is_own(scope, one, function):  # type: ignore[arg-type]
             return f"it passes on {ast.unparse(one)}"
-        is_element = isinstance(one, ast.Subscript) and _is_made(scope, one.value, function, parameters)
+        is_element = isinstance(one, ast.Subscript) and is_made_here(scope, one.value, function)
         if isinstance(one, ast.Attribute | ast.Subscript) and isinstance(one.ctx, ast.Store) and not is_element:
             return f"it assigns {ast.unparse(one)}"
-        if isinstance(one, ast.AugAssign) and not _is_own(scope, one.target, function, parameters):
+        if isinstance(one, ast.AugAssign) and not is_own(scope, one.target, function):
             return f"it may change the value of {ast.unparse(one.target)}"
         if isinstance(one, ast.Attribute) and isinstance(one.value, ast.Name) and one.value.id == own:
             member, _ = scope.program.attributes.find(one.attr)
@@ -88,7 +84,7 @@ def _effect(
                 if inner is not None:
                     return inner
         if isinstance(one, ast.Name | ast.Attribute):
-            found = _resolved(one, function)
+            found = resolved(one, function)
             if isinstance(found, FunctionType) and not _is_library(found):  # which may be an argument, such as key=
                 inner = _of_function(scope, found, seen)
                 if inner is not None:
@@ -97,7 +93,7 @@ def _effect(
             if found is not None:
                 return found
         if isinstance(one, ast.Call):
-            found = _of_call(scope, one, function, own, parameters, seen)
+            found = _of_call(scope, one, function, own, seen)
             if found is not None:
                 return found
     return None
@@ -107,7 +103,7 @@ def constant_of(scope: "Expressions", node: ast.expr, function: FunctionType, ow
     """Returns the constant that a name, or an attribute, stands for; ``MISSING`` if it is none."""
     if isinstance(node, ast.Name):
         found = scope.fixed.get(node.id) if function is scope.source.function else None
-        return _resolved(node, function) if found is None else found.fixed
+        return resolved(node, function) if found is None else found.fixed
     if not isinstance(node, ast.Attribute):
         return MISSING
     if isinstance(node.value, ast.Name) and node.value.id == own:
@@ -127,44 +123,6 @@ def _of_operators(scope: "Expressions", value: Any, seen: set[Any]) -> str | Non
     return None
 
 
-def _is_made(scope: "Expressions", node: ast.expr, function: FunctionType, parameters: set[str]) -> bool:
-    """Returns whether a function changes only what it made itself, in a variable."""
-    is_variable = isinstance(node, ast.Name) and node.id not in parameters
-    return is_variable and is_made(scope.program.attributes, source_of(function), node)
-
-
-def _is_own(scope: "Expressions", node: ast.expr, function: FunctionType, parameters: set[str], depth: int = 0) -> bool:
-    """Returns whether a value is a number or a text, or is made by the function and has no name elsewhere."""
-    source = source_of(function)
-    if depth > MOST_NESTED or isinstance(node, ast.Subscript):
-        return False
-    if isinstance(node, _IMMUTABLE) or (
-        not isinstance(node, ast.Name) and is_made(scope.program.attributes, source, node)
-    ):
-        return True
-    parts: list[ast.expr] = []
-    if isinstance(node, ast.IfExp):
-        parts = [node.body, node.orelse]
-    elif isinstance(node, ast.BoolOp):
-        parts = node.values
-    elif isinstance(node, ast.Name) and node.id not in parameters:
-        parts = list(values_of(source, node.id))
-        if len(parts) != bindings(source, node.id):
-            return False
-    elif isinstance(node, ast.Call):
-        called = node.func
-        if isinstance(called, ast.Attribute):
-            return called.attr in NUMBERS_OF_METHODS and scope.program.attributes.find(called.attr)[0] is MISSING
-        is_known = isinstance(called, ast.Name) and called.id in NUMBERS_OF_BUILTINS and len(node.args) == 1
-        return is_known and _resolved(called, function) is getattr(builtins, ast.unparse(called))
-    elif (
-        isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == own_name(source.node)
-    ):
-        known = scope.program.attributes
-        return is_immutable(vars(known.twin).get(node.attr, known.find(node.attr)[0]))
-    return bool(parts) and all(_is_own(scope, one, function, parameters, depth + 1) for one in parts)
-
-
 def _of_function(scope: "Expressions", function: Any, seen: set[Any]) -> str | None:
     if not isinstance(function, FunctionType) or hasattr(function, "__wrapped__"):
         return f"it calls {getattr(function, '__name__', 'a function')}, whose effects are unknown"
@@ -182,21 +140,21 @@ def _of_function(scope: "Expressions", function: Any, seen: set[Any]) -> str | N
 
 
 def _of_call(
-    scope: "Expressions", node: ast.Call, function: FunctionType, own: str | None, parameters: set[str], seen: set[Any]
+    scope: "Expressions", node: ast.Call, function: FunctionType, own: str | None, seen: set[Any]
 ) -> str | None:
     callee = node.func
     shown = ast.unparse(callee)
     if isinstance(callee, ast.Attribute) and isinstance(callee.value, ast.Name) and callee.value.id == own:
         member, _ = scope.program.attributes.find(callee.attr)
         return _of_function(scope, getattr(member, "__func__", member), seen)
-    found = _resolved(callee, function)
+    found = resolved(callee, function)
     if isinstance(callee, ast.Attribute) and found is MISSING:
-        owner = _resolved(callee.value, function)
+        owner = resolved(callee.value, function)
         simple = owner is MISSING or isinstance(owner, np.ndarray | str | dict | list | tuple)
         if simple and callee.attr in PURE_METHODS and scope.program.attributes.find(callee.attr)[0] is MISSING:
             return None
         is_local = owner is MISSING and function is not scope.source.function
-        if is_local and callee.attr in LOCAL_METHODS and _is_made(scope, callee.value, function, parameters):
+        if is_local and callee.attr in LOCAL_METHODS and is_made_here(scope, callee.value, function):
             return None
         return f"it calls {shown}, whose effects are unknown"
     if isinstance(found, FunctionType) and not _is_library(found):
@@ -246,18 +204,3 @@ def _changes_argument(function: Any, node: ast.Call) -> bool:
     except (TypeError, ValueError):  # a function in C, of which these take out= by position
         return name in ("concat", "concatenate", "dot") and len(node.args) > 2
     return "out" in given
-
-
-def _resolved(node: ast.expr, function: FunctionType) -> Any:
-    """Returns the constant that a name or a dotted name stands for; ``MISSING`` if it is none."""
-    if isinstance(node, ast.Name):
-        if node.id in function.__code__.co_varnames:
-            return MISSING
-        return inspect.getclosurevars(function).nonlocals.get(
-            node.id, function.__globals__.get(node.id, getattr(builtins, node.id, MISSING))
-        )
-    if isinstance(node, ast.Attribute):
-        owner = _resolved(node.value, function)
-        if isinstance(owner, ModuleType | type):
-            return getattr(owner, node.attr, MISSING)
-    return MISSING

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 from qtab.compilation.rewriting import specials
 from qtab.compilation.rewriting.expressions import containers, membership
 from qtab.compilation.rewriting.program import converted
-from qtab.compilation.rewriting.source.syntax import calls_own_functions, changed_attributes, leaves_loop
+from qtab.compilation.rewriting.source.syntax import changed_attributes, leaves_loop
 from qtab.compilation.rewriting.statements import assignments
+from qtab.compilation.rewriting.statements.effects import constant_of
 from qtab.compilation.rewriting.statements.order import check_order
 from qtab.compilation.rewriting.statements.variables import in_variables
 from qtab.compilation.rewriting.values import INT, Array, TupleKind, Value, constant, in_words, scalar_of
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 
 MAX_UNROLLED = 32
 """The most rounds of a loop over a constant that are written one after the other."""
-LAZY = ("enumerate", "filter", "map", "reversed", "zip")
+LAZY = (enumerate, filter, map, reversed, zip)
 """The functions that read their arguments while a loop runs."""
 
 
@@ -47,10 +48,10 @@ def for_loop(scope: "Statements", node: ast.For) -> bool:
     if node.orelse:
         raise scope.refuse(node, "for with else", "use a boolean variable")
     if isinstance(node.iter, ast.Call) and isinstance(node.iter.func, ast.Name):
-        name = node.iter.func.id
-        if name == "range" and scope.expression(node.iter.func).fixed is range:
+        function = scope.expression(node.iter.func).fixed
+        if function is range:
             return _range(scope, node, node.iter)
-        if name == "enumerate" and len(node.iter.args) == 1 and not node.iter.keywords:
+        if function is enumerate and len(node.iter.args) == 1 and not node.iter.keywords:
             return _each(scope, node, scope.expression(node.iter.args[0]), True)
     return _each(scope, node, scope.expression(node.iter), False)
 
@@ -112,8 +113,16 @@ def _head(
 def _each(scope: "Statements", node: ast.For, iterable: Value, counted: bool) -> bool:
     check_order(scope, node.iter)
     shown = replace(iterable, views=iterable.views | _passed_on(scope, node.iter))
-    if calls_own_functions(ast.Module(node.body, [])) or shown.views & changed_attributes(node.body):
+    if shown.views & changed_attributes(node.body):
         scope.note_alias(shown, node.iter)
+    before = len(scope.called)
+    ended = _rounds(scope, node, iterable, counted)
+    for function in scope.called[before:]:
+        scope.note_alias(shown, node.iter, function)
+    return ended
+
+
+def _rounds(scope: "Statements", node: ast.For, iterable: Value, counted: bool) -> bool:
     scope.copies_state = True
     if iterable.is_fixed and not specials.is_special(iterable.fixed):
         items = containers.elements(scope, node.iter, iterable)
@@ -141,7 +150,10 @@ def _each(scope: "Statements", node: ast.For, iterable: Value, counted: bool) ->
 
 def _passed_on(scope: "Statements", iterable: ast.expr) -> frozenset[str]:
     """Returns the attributes whose elements functions such as ``zip`` give one after the other."""
-    if not (isinstance(iterable, ast.Call) and isinstance(iterable.func, ast.Name) and iterable.func.id in LAZY):
+    if not isinstance(iterable, ast.Call):
+        return frozenset()
+    function = constant_of(scope, iterable.func, scope.source.function, None)
+    if not any(function is one for one in LAZY):
         return frozenset()
     read = [views for node, views in scope.references if any(node is one for one in iterable.args)]
     return frozenset().union(*read, *[_passed_on(scope, one) for one in iterable.args])

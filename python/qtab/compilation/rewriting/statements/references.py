@@ -2,11 +2,15 @@
 
 import ast
 from collections.abc import Iterator
+from types import FunctionType
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from qtab.compilation.not_compilable import NotCompilable
+from qtab.compilation.rewriting.infos.dicts import returns_of
 from qtab.compilation.rewriting.infos.made import bindings, values_of
+from qtab.compilation.rewriting.source.sources import source_of
 from qtab.compilation.rewriting.source.syntax import own_name
 from qtab.compilation.rewriting.statements.effects import constant_of
 from qtab.compilation.rewriting.statements.left_out import known_value
@@ -16,6 +20,7 @@ if TYPE_CHECKING:
 
 _MADE = (ast.Constant, ast.JoinedStr, ast.Tuple, ast.List, ast.ListComp, ast.Dict, ast.Set, ast.BinOp, ast.Compare)
 _MAKE = (dict, list, set, sorted)
+_COLLECTIONS = (dict, list, set, np.ndarray)
 
 
 def shared_names(scope: "Expressions", target: ast.expr, value: ast.expr, is_alone: bool) -> Iterator[str]:
@@ -37,18 +42,42 @@ def shared_names(scope: "Expressions", target: ast.expr, value: ast.expr, is_alo
             yield from shared_names(scope, one, part, is_alone and is_written)
 
 
-def is_new(scope: "Expressions", node: ast.expr) -> bool:
-    """Returns whether an expression makes a value to which no other name refers, or is a constant."""
+def is_new(scope: "Expressions", node: ast.expr, within: FunctionType | None = None) -> bool:
+    """Returns whether an expression makes a value to which no other name refers, or is a constant.
+
+    Args:
+        scope: The function that is rewritten.
+        node: The expression.
+        within: The function that contains the expression; None if it is the one that is rewritten.
+    """
+    function = within or scope.source.function
     match node:
         case ast.IfExp(body=body, orelse=other):
-            return is_new(scope, body) and is_new(scope, other)
+            return is_new(scope, body, within) and is_new(scope, other, within)
         case ast.BoolOp(values=values):
-            return all(is_new(scope, one) for one in values)
-        case ast.Call(func=ast.Name() as function):
-            return any(constant_of(scope, function, scope.source.function, None) is one for one in _MAKE)
-        case ast.Call(func=ast.Attribute(value=owner, attr="copy" | "tolist")):
+            return all(is_new(scope, one, within) for one in values)
+        case ast.Call(func=ast.Name() as callee) if any(
+            constant_of(scope, callee, function, None) is one for one in _MAKE
+        ):
+            return True
+        case ast.Call(func=ast.Attribute(value=owner, attr="copy" | "tolist")) if within is None:
             return _has_library_methods(scope, owner)
+        case ast.Call(func=ast.Name() | ast.Attribute() as callee) if within is None:
+            return _returns_new(scope, callee)
     return isinstance(node, _MADE)
+
+
+def _returns_new(scope: "Expressions", callee: ast.expr) -> bool:
+    """Returns whether a function of the user makes the values that it returns, in its return statements."""
+    function = constant_of(scope, callee, scope.source.function, own_name(scope.source.node))
+    function = getattr(function, "__func__", function)
+    if not isinstance(function, FunctionType) or hasattr(function, "__wrapped__"):
+        return False
+    try:
+        values = [one.value for one in returns_of(source_of(function).node)]
+    except NotCompilable:
+        return False
+    return all(value is not None and is_new(scope, value, function) for value in values)
 
 
 def is_owned(scope: "Expressions", node: ast.Name) -> bool:
@@ -66,4 +95,6 @@ def _has_library_methods(scope: "Expressions", node: ast.expr) -> bool:
         return False
     if isinstance(node, ast.Name) and node.id not in scope.fixed and scope.names.is_local(node.id):
         return scope.kind_of_local(node.id) is not None
-    return isinstance(known_value(scope, node), dict | list | set | np.ndarray)
+    if isinstance(node, ast.Subscript) and isinstance(values := known_value(scope, node.value), list | tuple):
+        return all(isinstance(one, _COLLECTIONS) for one in values)
+    return isinstance(known_value(scope, node), _COLLECTIONS)

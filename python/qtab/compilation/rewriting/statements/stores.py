@@ -140,7 +140,7 @@ def changeable(scope: "Statements", node: ast.stmt, target: ast.Subscript) -> Va
     if isinstance(base, ast.Name) and base.id not in scope.fixed:
         value = scope.expression(base)
         if isinstance(value.kind, Array):
-            if not scope.is_owned(base.id) or scope.names.shared_before_change(base.id):
+            if not scope.is_owned(base.id) or scope.names.shared_before_change(base.id, value.kind.ndim):
                 advice = "write .copy() where the variable is assigned"
                 raise scope.refuse(node, f"{base.id} may share its memory with another array", advice)
             return value
