@@ -2,6 +2,8 @@
 
 from argparse import Namespace
 
+import gymnasium as gym
+
 from qtab.cli.errors import reading
 from qtab.cli.parser import Parser
 from qtab.envs.registry import spec_of
@@ -38,6 +40,15 @@ def load_run_and_env(options: Namespace) -> Run:
         ValueError: if ``--env`` is another environment.
     """
     saved, env = load_run(options), options.env
-    if env is not None and spec_of(env).id != saved.config.env.rpartition(":")[2]:
+    if env is not None and not _is_env_of(saved, env):
         raise ValueError(f"env must be that of the run, {str(saved.config.env)!r}, got {env!r}")
     return saved
+
+
+def _is_env_of(saved: Run, env: str) -> bool:
+    try:
+        return spec_of(env).id == saved.config.env.rpartition(":")[2]
+    except gym.error.UnregisteredEnv:
+        if env == saved.config.env:
+            raise
+        return False  # such as the id without its package, which is not imported

@@ -36,6 +36,8 @@ def _forget() -> None:
 def test_the_environment_is_imported_by_its_package(folder: Path, command: tuple[str, ...]) -> None:
     if command[0] == "record":
         pytest.importorskip("pygame")
+    expected = "--env must be that of the run, 'ponds:OwnPond-v0', got 'OwnPond-v0'"
+    assert expected in refused(*command, "--env", "OwnPond-v0", cwd=folder)
     done = qtab_here(*command, "--env", NAME, cwd=folder)
     assert done.returncode == 0, done
     expected = "--env must be that of the run, 'ponds:OwnPond-v0', got 'Taxi-v4'"
