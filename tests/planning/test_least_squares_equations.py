@@ -7,6 +7,7 @@ import pytest
 
 import qtab
 from qtab.planning import Transitions, lspi, lstdq
+from qtab.planning.least_squares.equations import MATRICES
 
 
 def test_weights_near_singularity_are_refused_or_right() -> None:
@@ -55,9 +56,9 @@ def test_matrices_that_do_not_fit_into_memory_are_refused(epsilon: float, monkey
         MemoryError, match=r"^matrices of 1,000,000 x 1,000,000 numbers for 1,000,000 features of 2 act"
     ):
         lspi(batch, np.ones((2, 10**6)), 0.9, epsilon=epsilon)
-    monkeypatch.setattr("qtab._utils.memory.memory_limit", lambda _: 8 * 5 * 2 * 10**2)
+    monkeypatch.setattr("qtab._utils.memory.memory_limit", lambda _: 8 * MATRICES * 2 * 10**2)
     with pytest.raises(
-        MemoryError, match=r"^matrices of 20 x 20 numbers for 10 features of 2 actions would take 15.6 KiB"
+        MemoryError, match=r"^matrices of 20 x 20 numbers for 10 features of 2 actions would take 25 KiB"
     ):
         lstdq(batch, np.ones((2, 10)), [0, 1], 0.9, epsilon=epsilon)  # the blocks of the actions fit, all of A does not
 

@@ -105,7 +105,8 @@ def readable_size(count: int) -> str:
     """Returns a number of bytes as text in a suitable unit."""
     power = min(int(math.log2(max(count, 1))) // 10, 4)
     unit = (plural("byte", count), "KiB", "MiB", "GiB", "TiB")[power]
-    return f"{count / 2 ** (10 * power):.3g} {unit}"
+    number = count / 2 ** (10 * power)
+    return f"{number:.0f} {unit}" if number >= 100 else f"{number:.3g} {unit}"  # not 1e+03
 
 
 def _windows_memory() -> tuple[int, int]:

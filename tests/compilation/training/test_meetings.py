@@ -84,10 +84,12 @@ def test_callbacks(made: Any, tmp_path: Path) -> None:
 
 @BOTH
 def test_resume_within_an_episode(made: Any, tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
-    endless: dict[str, Any] = {"algorithm": "monte_carlo", "max_episode_steps": 5_000, "episodes": 2}
-    with pytest.raises(MemoryError, match="memory_limit=60000") as caught:
-        trained(made(1.0), memory_limit=60_000, **endless)
-    run_of(caught.value).save(tmp_path / "part.npz")
+    endless: dict[str, Any] = {"algorithm": "monte_carlo", "max_episode_steps": 20_000, "episodes": 2}
+    with pytest.raises(MemoryError, match="memory_limit=150000") as caught:
+        trained(made(1.0), memory_limit=150_000, **endless)
+    part = run_of(caught.value)
+    assert len(part.state.checkpoint) > 10_000  # the steps of the unfinished episode
+    part.save(tmp_path / "part.npz")
     resumed = qtab.resume(qtab.load(tmp_path / "part.npz"), env=made(1.0))
     assert "stopped within" not in caplog.text
     assert_same(resumed, trained(made(1.0), "python", **endless))

@@ -114,3 +114,11 @@ def test_windows_is_asked_for_the_memory_of_the_machine(
     monkeypatch.setattr(memory, "_CONTROL_GROUPS", ())
     monkeypatch.setattr(memory, "Path", lambda _: Path("/nowhere"))
     assert (memory.memory_limit(None), memory.free_memory()) == (limit, free)
+
+
+@pytest.mark.parametrize(
+    ("count", "text"),
+    [(1, "1 byte"), (999, "999 bytes"), (1023, "1023 bytes"), (1536, "1.5 KiB"), (1023 * 2**10, "1023 KiB")],
+)
+def test_sizes_have_no_exponents(count: int, text: str) -> None:
+    assert memory.readable_size(count) == text
