@@ -11,6 +11,8 @@ from support.environments.gym_classes.extra import ExtraEnv
 from support.environments.marked import marked_line
 from support.lockstep.rewriting import assert_equal_steps
 
+FIRST = slice(0, 2)
+
 
 class Ravels(ExtraEnv):
     def extra(self):
@@ -137,16 +139,34 @@ class UnpacksIntoElements(ExtraEnv):
         return float(part[0])
 
 
+class NamesSlice(ExtraEnv):
+    def extra(self):
+        values = np.zeros(4)
+        part = values[FIRST]  # here
+        values[0] = 5.0
+        return float(part[0])
+
+
+class NamesSliceOfRow(ExtraEnv):
+    def extra(self):
+        grid = np.zeros((2, 2))
+        part = grid[0, FIRST]  # here
+        grid[0, 0] = 5.0
+        return float(part[0])
+
+
 SHARED = [
     *(Ravels, TakesAsArray, LoopsOverPart, LoopsOverParts, AddsToPair, AddsPairs, RepeatsList, ListsParts),
     *(TakesLarger, ExchangesRows, ExchangesHalves, ExchangesByMethod, KeepsRow, ExchangesLater, UnpacksIntoElements),
+    *(NamesSlice, NamesSliceOfRow),
 ]
 
 
 @pytest.mark.parametrize("cls", SHARED, ids=lambda cls: cls.__name__)
 def test_local_values_with_two_names_are_refused_where_one_changes(cls: Any) -> None:
     with pytest.raises(
-        NotCompilable, match=r"shares? (the |its )?memory|may have another name|is read, and changed"
+        NotCompilable,
+        match=r"shares? (the |its )?memory|may have another name|is read, and changed|a slice with a name",
     ) as caught:
         rewrite(cls())
     assert caught.value.line == marked_line(cls)

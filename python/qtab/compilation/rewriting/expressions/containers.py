@@ -105,12 +105,15 @@ def array_index(scope: "Expressions", node: ast.Subscript, kind: Array) -> tuple
     items = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
     if not items:
         raise scope.refuse(node, "an empty index of an array", "write array[:]")
+    is_local = isinstance(node.value, ast.Name) and scope.names.is_local(node.value.id)
     codes: list[str] = []
     left: list[int | None] = []
     position = 0
     for item in items:
         value = index_value(scope, item)
         if value.is_fixed and isinstance(value.fixed, slice):
+            if is_local and not isinstance(item, ast.Slice):  # whether it is a part or an element must be written
+                raise scope.refuse(item, "a slice with a name as the index of a local array", "write array[0:2]")
             size = None if kind.shape is None or position >= kind.ndim else kind.shape[position]
             left.append(None if size is None else len(range(size)[value.fixed]))
             parts = ["" if one is None else str(one) for one in (value.fixed.start, value.fixed.stop, value.fixed.step)]

@@ -18,12 +18,18 @@ def is_info_count(scope: "Statements", node: ast.AugAssign) -> bool:
     match node.target:
         case ast.Subscript(value=ast.Name(id=name), slice=ast.Constant(value=key)) if name in scope.infos:
             values = _values(scope.source.node, name, key)
-            if key == KEY or not all(value is not None and number(scope, value) is not None for value in values):
+            if key == KEY or not all(value is not None and _is_number(scope, value) for value in values):
                 return False
             check_pure(scope, node.value)
             scope.program.changes_infos = True
             return True
     return False
+
+
+def _is_number(scope: "Statements", node: ast.expr) -> bool:
+    """Returns whether an expression is a number, and was one where it was evaluated."""
+    names = [one.id for one in ast.walk(node) if isinstance(one, ast.Name)]
+    return number(scope, node) is not None and all(scope.names.counts[name] <= 1 for name in names)
 
 
 def _values(function: ast.AST, name: str, key: Any) -> Iterator[ast.expr | None]:
