@@ -47,7 +47,7 @@ def _values(function: ast.AST, name: str, key: Any) -> Iterator[ast.expr | None]
                 yield _item(parent.value, key)
             case ast.Subscript(), ast.AugAssign():
                 pass
-            case (ast.Subscript(slice=ast.Constant(value=other)), ast.Assign() | ast.AnnAssign()):
+            case ast.Subscript(slice=ast.Constant(value=other)), ast.Assign() | ast.AnnAssign():
                 if other == key:
                     yield above.value
             case _:  # it may have another name
