@@ -106,7 +106,7 @@ def readable_size(count: int) -> str:
     power = min(int(math.log2(max(count, 1))) // 10, 4)
     unit = (plural("byte", count), "KiB", "MiB", "GiB", "TiB")[power]
     number = count / 2 ** (10 * power)
-    return f"{number:.0f} {unit}" if number >= 100 else f"{number:.3g} {unit}"  # not 1e+03
+    return f"{number:.0f} {unit}" if number >= 100 else f"{number:.3g} {unit}"  # .3g gives 1e+03 from 999.5 on
 
 
 def _windows_memory() -> tuple[int, int]:

@@ -51,4 +51,4 @@ def _is_env_of(saved: Run, env: str) -> bool:
     except gym.error.UnregisteredEnv:
         if env == saved.config.env:
             raise
-        return False  # such as the id without its package, which is not imported
+        return False  # such as an id without its package, which is then not imported

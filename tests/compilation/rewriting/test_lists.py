@@ -43,9 +43,17 @@ class Starts(Moves):
     def start(self):
         return [self.cell, 0]
 
+    def corner(self):
+        made = [3, self.cell]
+        if self.cell == 8:
+            made = self.start()
+        return made
+
     def reward(self):
         if self.cell == 5:
             self.place = self.start()
+        if self.cell == 8:
+            self.place = self.corner()
         if self.cell == 6:
             self.place = start()
         if self.cell == 7:
@@ -79,7 +87,16 @@ class Loops(Moves):
         return total
 
 
-@pytest.mark.parametrize("cls", [Starts, Remembers, Loops])
+class Pairs(Moves):
+    """Keeps pairs in a list, which shows no later change."""
+
+    def reward(self):
+        rows = list(zip(self.place, self.other, strict=False))
+        self.place[1] += 1
+        return float(sum(one for one, _ in rows) + sum(other for _, other in rows))
+
+
+@pytest.mark.parametrize("cls", [Starts, Remembers, Loops, Pairs])
 def test_copies_and_new_lists_are_compiled(cls: type[ExtraEnv]) -> None:
     assert_equal_steps(cls(), rewrite(cls()), 300, 3)
 
@@ -117,6 +134,28 @@ class Either(Moves):
         mine = [1, self.cell]
         self.place = self.either(mine)  # here
         return float(mine[0])
+
+
+class KeepsToo(Moves):
+    def kept(self):
+        made = [1, self.cell]
+        self.other = made
+        return made
+
+    def reward(self):
+        self.place = self.kept()  # here
+        return float(self.other[0])
+
+
+class MakesTwo(Moves):
+    def two(self):
+        made = other = [1, self.cell]
+        self.other = other
+        return made
+
+    def reward(self):
+        self.place = self.two()  # here
+        return float(self.other[0])
 
 
 class Own(Moves):
@@ -177,7 +216,7 @@ class ReadsChange(Moves):
         return total
 
 
-class Pairs(Moves):
+class PairsByOtherName(Moves):
     def reward(self):
         total = 0.0
         for one, other in pairs(self.place, self.other):  # here
@@ -186,11 +225,59 @@ class Pairs(Moves):
         return total
 
 
-REFUSED = [OfModule, OfModuleLater, OfClass, Either, Own, OfOwn, CopiesRows, CallsChange, ReadsChange, Pairs]
+class PairsOfStar(Moves):
+    def reward(self):
+        total = 0.0
+        for one, other in zip(*[self.place, self.other], strict=False):  # here
+            self.place[1] += 1
+            total += one + other
+        return total
+
+
+class EitherReversed(Moves):
+    def reward(self):
+        total = 0.0
+        for number in reversed(self.place) if self.cell > 3 else reversed(self.other):  # here
+            self.place[0] += 1
+            total += number
+        return total
+
+
+REFUSED = [
+    *(OfModule, OfModuleLater, OfClass, Either, KeepsToo, MakesTwo, Own, OfOwn, CopiesRows),
+    *(CallsChange, ReadsChange, PairsByOtherName, PairsOfStar, EitherReversed),
+]
 
 
 @pytest.mark.parametrize("cls", REFUSED, ids=lambda cls: cls.__name__)
 def test_lists_with_other_names_that_change_are_refused(cls: type[ExtraEnv]) -> None:
     with pytest.raises(NotCompilable, match=r"shares (the )?memory") as caught:
+        rewrite(cls())
+    assert caught.value.line == marked_line(cls)
+
+
+class KeepsReversed(Moves):
+    def reward(self):
+        numbers = reversed(self.place)  # here
+        return float(sum(numbers) + sum(numbers))
+
+
+class KeepsNumbers(Moves):
+    def reward(self):
+        numbers = enumerate((3, 4))  # here
+        return float(sum(one for one, _ in numbers) + sum(one for one, _ in numbers))
+
+
+class ReturnsReversed(Moves):
+    def turned(self):
+        return reversed(self.place)  # here
+
+    def reward(self):
+        return float(sum(self.turned()))
+
+
+@pytest.mark.parametrize("cls", [KeepsReversed, KeepsNumbers, ReturnsReversed])
+def test_iterators_which_can_be_read_once_are_not_kept(cls: type[ExtraEnv]) -> None:
+    with pytest.raises(NotCompilable, match=r"the iterator .* can be read once.*write list\(") as caught:
         rewrite(cls())
     assert caught.value.line == marked_line(cls)

@@ -69,7 +69,7 @@ class Scope:
         self.changing: list[ast.AST] = []
         """The calls in the statement that change the state."""
         self.called: list[Compiled] = []
-        """The user's functions that are called in the function."""
+        """The user's functions that this function calls, in order."""
         self.unknown: set[str] = set()
         """The local variables that statements assign which cannot be compiled."""
         self.whole: ast.expr | None = None

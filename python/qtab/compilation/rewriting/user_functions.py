@@ -6,13 +6,14 @@ from typing import TYPE_CHECKING
 
 from qtab.compilation.not_compilable import Follows, NotCompilable
 from qtab.compilation.rewriting import specials
+from qtab.compilation.rewriting.expressions.containers import has_numbers
 from qtab.compilation.rewriting.program import Compiled, Flow, Program
 from qtab.compilation.rewriting.scope import LOCAL, Scope
 from qtab.compilation.rewriting.source.sources import Source
-from qtab.compilation.rewriting.statements.references import is_new
+from qtab.compilation.rewriting.statements.references import returns_new
 from qtab.compilation.rewriting.statements.statements import Statements
 from qtab.compilation.rewriting.statements.variables import kept
-from qtab.compilation.rewriting.values import InfoKind, Scalar, TupleKind, Value, constant
+from qtab.compilation.rewriting.values import InfoKind, Scalar, Value, constant, kind_of
 
 if TYPE_CHECKING:
     from qtab.compilation.rewriting.expressions.expressions import Expressions
@@ -153,13 +154,6 @@ def _may_be_parameter(rewriter: Statements, value: Value) -> bool:
     return not is_known and not isinstance(value.kind, Scalar | InfoKind)
 
 
-def _makes_lists(rewriter: Statements, result: Value) -> bool:
-    """Returns whether the result is a list or a tuple that every return statement makes."""
-    is_list = isinstance(result.kind, TupleKind) or isinstance(result.fixed, list)
-    nodes = [node.value if isinstance(node, ast.Return) else None for _, node, _ in rewriter.returns]
-    return is_list and all(node is not None and is_new(rewriter, node) for node in nodes)
-
-
 def _note_observations(rewriter: Statements) -> None:
     """Notes the attributes whose memory the observations share that ``reset`` or ``step`` returns."""
     for value, node, _ in rewriter.returns:
@@ -180,11 +174,12 @@ def _finish(rewriter: Statements, parameters: dict[str, Value]) -> None:
         raise rewriter.refuse(
             node, "the function returns None here, and a value elsewhere", "return a value everywhere"
         )
-    compiled.returns_parameter = any(_may_be_parameter(rewriter, value) for value in values)
     result = rewriter.result()
+    kind = kind_of(result.fixed) if isinstance(result.fixed, list) else result.kind
+    makes_list = has_numbers(kind) and returns_new(rewriter, rewriter.source.function)
+    compiled.returns_parameter = not makes_list and any(_may_be_parameter(rewriter, value) for value in values)
     is_named = compiled.returns_parameter or any(rewriter.names.are_shared(node) for _, node, _ in rewriter.returns)
-    is_fresh = result.fresh or _makes_lists(rewriter, result)
-    compiled.result = replace(result, fresh=is_fresh and not is_named)
+    compiled.result = replace(result, fresh=(result.fresh or makes_list) and not is_named)
     if rewriter.role:
         _note_observations(rewriter)
     always = set.intersection(*rewriter.flows_at_return)

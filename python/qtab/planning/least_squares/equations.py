@@ -16,8 +16,8 @@ from qtab.planning.least_squares.transitions import Transitions
 FloatArray: TypeAlias = NDArray[np.float64]
 EPS = np.finfo(np.float64).eps
 MATRICES = 8
-"""The number of arrays of the size of A, or of its diagonal blocks, that exist at the same time: up to 6.7 were
-measured, SciPy's copies included."""
+"""The number of arrays of the size of A, or of its diagonal blocks, that exist at the same time, with a margin: at most
+6.7 were measured, including SciPy's copies."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -112,8 +112,8 @@ def array_index(scope: "Expressions", node: ast.Subscript, kind: Array) -> tuple
     for item in items:
         value = index_value(scope, item)
         if value.is_fixed and isinstance(value.fixed, slice):
-            if is_local and not isinstance(item, ast.Slice):  # whether it is a part or an element must be written
-                raise scope.refuse(item, "a slice with a name as the index of a local array", "write array[0:2]")
+            if is_local and not isinstance(item, ast.Slice):  # the syntax must show whether it is an element
+                raise scope.refuse(item, "a slice kept in a variable as the index of a local array", "write array[0:2]")
             size = None if kind.shape is None or position >= kind.ndim else kind.shape[position]
             left.append(None if size is None else len(range(size)[value.fixed]))
             parts = ["" if one is None else str(one) for one in (value.fixed.start, value.fixed.stop, value.fixed.step)]
@@ -174,10 +174,24 @@ def as_tuple(scope: "Expressions", node: ast.AST, value: Value) -> Value:
     return Value(TupleKind((scalar,) * kind.shape[0]), f"{name}({value.code})")
 
 
-def copied(value: Value) -> Value:
-    """Returns a new tuple or list with the same elements, which may be lists or arrays with other names."""
-    are_numbers = all(isinstance(item, Scalar) for item in value.kind.items)
+def copied(value: Value, are_rows_new: bool = False) -> Value:
+    """Returns a new tuple or list with the same elements; those that are lists or arrays may have other names.
+
+    Args:
+        value: The tuple or list.
+        are_rows_new: Whether its elements are new as well if they are tuples, as those of ``zip``.
+    """
+
+    def is_number(kind: Any) -> bool:
+        return isinstance(kind, Scalar) or (are_rows_new and has_numbers(kind))
+
+    are_numbers = all(map(is_number, value.kind.items))
     return replace(value, fresh=True, views=frozenset() if are_numbers else value.views)
+
+
+def has_numbers(kind: Any) -> bool:
+    """Returns whether a value is a tuple or a list of numbers."""
+    return isinstance(kind, TupleKind) and all(isinstance(item, Scalar) for item in kind.items)
 
 
 def lookup(scope: "Expressions", node: ast.AST, container: Any, index: Value) -> Value:

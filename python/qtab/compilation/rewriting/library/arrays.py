@@ -1,6 +1,7 @@
 """Methods of arrays, and the reductions that round as NumPy's."""
 
 import ast
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -38,8 +39,8 @@ def method(scope: "Expressions", node: ast.Call, name: str, base: Value) -> Valu
         return cast(scope, node, base, values[0])
     if name in ("flatten", "ravel") and not values and not named:
         size = None if kind.shape is None else (int(np.prod(kind.shape)),)
-        views = base.views if name == "ravel" else frozenset[str]()  # in Python, ravel may return a view
-        return Value(Array(kind.dtype, 1, size), f"{base.code}.flatten()", fresh=True, views=views)
+        made = Value(Array(kind.dtype, 1, size), f"{base.code}.flatten()", fresh=True)
+        return replace(made, views=base.views, fresh=False) if name == "ravel" else made  # which may return a view
     if name in ("tolist", "item") and not values and kind.dtype not in ("bool", "int64", "float64"):
         wide = "np.float64" if "float" in kind.dtype else "np.int64"
         raise scope.refuse(node, f"the method {name} of an array of {kind.dtype}", f"write .astype({wide}).{name}()")

@@ -2,6 +2,7 @@
 
 import ast
 import builtins
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from qtab.compilation.rewriting.expressions import containers
 from qtab.compilation.rewriting.library import Handler
 from qtab.compilation.rewriting.program import as_float, tuple_value
+from qtab.compilation.rewriting.statements.effects import constant_of
 from qtab.compilation.rewriting.values import (
     BOOL,
     FLOAT,
@@ -26,6 +28,9 @@ from qtab.compilation.rewriting.values import (
 
 if TYPE_CHECKING:
     from qtab.compilation.rewriting.expressions.expressions import Expressions
+
+LAZY = (enumerate, filter, map, reversed, zip)
+"""The functions that read their arguments when their results are read."""
 
 
 def _one(scope: "Expressions", node: ast.Call, values: list[Value], named: dict[str, Value]) -> Value:
@@ -153,7 +158,10 @@ def _sequence(made: Any) -> Handler:
         if isinstance(value.kind, Array):
             return containers.as_tuple(scope, node, value)
         if isinstance(value.kind, TupleKind):
-            return containers.copied(value)
+            argument = node.args[0]
+            callee = argument.func if isinstance(argument, ast.Call) else argument
+            function = constant_of(scope, callee, scope.source.function, None)
+            return containers.copied(value, any(function is one for one in LAZY))
         raise scope.refuse(node, f"{made.__name__} of {in_words(value.kind)}", "use tuples and arrays")
 
     return handler
@@ -172,13 +180,16 @@ def _dict(scope: "Expressions", node: ast.Call, values: list[Value], named: dict
 
 def _folded(function: Any) -> Handler:
     """Returns a handler for functions that are called with constants only."""
+    is_lazy = function in LAZY
 
     def handler(scope: "Expressions", node: ast.Call, values: list[Value], named: dict[str, Value]) -> Value:
+        if is_lazy and node is scope.whole:
+            reason = f"the iterator {function.__name__}(...), which can be read once, is assigned or returned"
+            raise scope.refuse(node, reason, f"write list({function.__name__}(...))")
         if all(value.is_fixed for value in (*values, *named.values())):
             plain = {name: value.fixed for name, value in named.items()}
             result = scope.folded(node, lambda *given: function(*given, **plain), *[value.fixed for value in values])
-            lazy = function in (enumerate, zip, reversed, map, filter)
-            return constant(list(result.fixed)) if lazy else result
+            return constant(list(result.fixed)) if is_lazy else result
         if function in (enumerate, zip, reversed):
             return _lazy(scope, node, function, values)
         if function is range:
@@ -194,13 +205,14 @@ def _lazy(scope: "Expressions", node: ast.Call, function: Any, values: list[Valu
     if function is not enumerate:  # the elements change their order, or are left out
         for one in (one for row in many for one in row):
             scope.no_effects(one, node)
+    views = frozenset[str]().union(*(value.views for value in values))
     if function is reversed:
-        return scope.tuple_of(many[0][::-1], node)
+        return replace(scope.tuple_of(many[0][::-1], node), views=views)
     rows = [[constant(i), one] for i, one in enumerate(many[0])] if function is enumerate else [
         list(row) for row in zip(*many, strict=False)
     ]  # fmt: skip
     lifted = [tuple_value(tuple(scope.lift(one, node) for one in row)) for row in rows]
-    return tuple_value(tuple(lifted))
+    return replace(tuple_value(tuple(lifted)), views=views)
 
 
 def _round(scope: "Expressions", node: ast.Call, values: list[Value], named: dict[str, Value]) -> Value:

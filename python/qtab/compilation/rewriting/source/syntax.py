@@ -56,7 +56,7 @@ class Names:
             targets: list[ast.expr] = []
             if isinstance(one, ast.Assign):
                 targets = one.targets
-            elif isinstance(one, ast.AugAssign):
+            elif isinstance(one, ast.AugAssign | ast.AnnAssign | ast.For):
                 targets = [one.target]
             elif isinstance(one, ast.Call) and isinstance(one.func, ast.Attribute) and one.func.attr in CHANGING:
                 targets = [one.func]
@@ -74,7 +74,7 @@ class Names:
 
         Args:
             name: The local variable.
-            ndim: The number of dimensions of an array of numbers, whose elements are no parts of it; 0 for a list.
+            ndim: The number of dimensions of an array, whose elements are copied numbers; 0 for a list.
         """
         changes = self._mutations.get(name, [])
         if name in self.parameters:
@@ -90,7 +90,11 @@ class Names:
         """Returns whether another name may refer to one of the local arrays that a statement returns."""
         value = node.value if isinstance(node, ast.Return) else None
         names = [part.id for part in _parts(value) if isinstance(part, ast.Name)] if value is not None else []
-        return any(True for name in names for _ in self._escapes(name))
+        return any(map(self.has_other_name, names))
+
+    def has_other_name(self, name: str) -> bool:
+        """Returns whether another name may refer to a local value."""
+        return any(True for _ in self._escapes(name))
 
     def _escapes(self, name: str, ndim: int = 0) -> Iterator[tuple[int, int]]:
         for one in self._walk():
@@ -98,7 +102,7 @@ class Names:
             if isinstance(one, ast.Assign | ast.AnnAssign | ast.AugAssign):
                 keeps = isinstance(one.value, _DISPLAYS) or not isinstance(one, ast.AugAssign)
                 kept = [one.value] if keeps and one.value is not None else []
-            elif isinstance(one, ast.For) and not isinstance(one.iter, ast.Name):
+            elif isinstance(one, ast.For) and not (ndim and isinstance(one.iter, ast.Name)):
                 kept = [one.iter]
             elif isinstance(one, ast.Call) and not _of_library(one.func):
                 kept = [*one.args, *(keyword.value for keyword in one.keywords)]
@@ -112,7 +116,7 @@ _VIEWS = ("asarray", "ravel")
 
 
 def _written_out(targets: list[ast.expr]) -> Iterator[ast.expr]:
-    """Yields the targets of an assignment, of tuples and lists their elements."""
+    """Yields the targets of an assignment, with tuples and lists replaced by their elements."""
     for target in targets:
         if isinstance(target, ast.Tuple | ast.List):
             yield from _written_out(target.elts)
@@ -162,7 +166,7 @@ def _parts(node: ast.expr, ndim: int = 0) -> Iterator[ast.expr]:
 
 
 def _is_element(node: ast.Subscript, ndim: int) -> bool:
-    """Returns whether an index has a number for each dimension, and so no slice, ``None`` or ``...``."""
+    """Returns whether an index selects an element: a number for each dimension, no slice, ``None`` or ``...``."""
     index = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
     are_numbers = all(not isinstance(one, ast.Slice | ast.Starred) for one in index)
     has_others = any(isinstance(one, ast.Constant) and one.value in (None, ...) for one in index)
@@ -187,7 +191,7 @@ def changed_attributes(body: list[ast.stmt]) -> set[str]:
     for statement in body:
         for one in ast.walk(statement):
             targets = one.targets if isinstance(one, ast.Assign) else []
-            for target in [one.target] if isinstance(one, ast.AugAssign | ast.AnnAssign) else targets:
+            for target in [one.target] if isinstance(one, ast.AugAssign | ast.AnnAssign | ast.For) else targets:
                 found |= {part.attr for part in ast.walk(target) if isinstance(part, ast.Attribute)}
     return found
 

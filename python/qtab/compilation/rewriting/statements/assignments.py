@@ -79,7 +79,7 @@ def assign_value(scope: "Statements", node: ast.stmt, targets: "ast.expr | list[
 
 
 def _check_parts(scope: "Statements", node: ast.stmt, targets: list[ast.expr], value: Value) -> None:
-    """Refuses parts of a local array that are read, and whose array is changed by one of several targets."""
+    """Refuses to read a part of a local array in an assignment to several targets, one of which changes it."""
     source = node.value if isinstance(node, ast.Assign) else None
     stored = [one for target in targets for one in ast.walk(target) if isinstance(one, ast.Subscript)]
     changed = {one.value.id for one in stored if isinstance(one.value, ast.Name)}
@@ -118,7 +118,9 @@ def _is_unread(scope: "Statements", target: ast.expr) -> bool:
     if isinstance(target, ast.Attribute) and isinstance(target.value, ast.Name):
         base = scope.fixed.get(target.value.id)
         known = scope.program.attributes
-        return base is not None and base.fixed is specials.SELF and target.attr not in known.read
+        is_own = base is not None and base.fixed is specials.SELF
+        has_setter = hasattr(type(known.find(target.attr)[0]), "__set__")
+        return is_own and target.attr not in known.read and not has_setter
     return False
 
 

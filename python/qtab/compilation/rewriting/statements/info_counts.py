@@ -33,13 +33,13 @@ def _is_number(scope: "Statements", node: ast.expr) -> bool:
 
 
 def _values(function: ast.AST, name: str, key: Any) -> Iterator[ast.expr | None]:
-    """Yields the values of a key in the dicts of a variable; None for one that may be missing or unknown."""
+    """Yields the values that a key of the dict in a variable gets; None for one that may be missing or unknown."""
     parents = {id(inner): one for one in ast.walk(function) for inner in ast.iter_child_nodes(one)}
     for node in ast.walk(function):
         if not (isinstance(node, ast.Name) and node.id == name):
             continue
         parent = parents[id(node)]
-        above = parents[id(parent)]
+        above = parents.get(id(parent))
         match parent, above:
             case ast.Tuple(), ast.Return():
                 pass

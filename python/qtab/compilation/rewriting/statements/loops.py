@@ -1,7 +1,6 @@
 """Loops: unrolled over constants, or kept."""
 
 import ast
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from qtab.compilation.rewriting import specials
@@ -9,7 +8,6 @@ from qtab.compilation.rewriting.expressions import containers, membership
 from qtab.compilation.rewriting.program import converted
 from qtab.compilation.rewriting.source.syntax import changed_attributes, leaves_loop
 from qtab.compilation.rewriting.statements import assignments
-from qtab.compilation.rewriting.statements.effects import constant_of
 from qtab.compilation.rewriting.statements.order import check_order
 from qtab.compilation.rewriting.statements.variables import in_variables
 from qtab.compilation.rewriting.values import INT, Array, TupleKind, Value, constant, in_words, scalar_of
@@ -19,8 +17,6 @@ if TYPE_CHECKING:
 
 MAX_UNROLLED = 32
 """The most rounds of a loop over a constant that are written one after the other."""
-LAZY = (enumerate, filter, map, reversed, zip)
-"""The functions that read their arguments while a loop runs."""
 
 
 def while_loop(scope: "Statements", node: ast.While) -> bool:
@@ -91,6 +87,8 @@ def _head(
     scope.depth += 1
     scope.program.depth += 1
     for one in ast.walk(node.target):
+        if isinstance(one, ast.Attribute | ast.Subscript):
+            raise scope.refuse(node.target, "a loop that assigns to an attribute or an element", "use a local variable")
         if isinstance(one, ast.Name) and one.id not in scope.dynamic:
             scope.dynamic.add(one.id)
             scope.unstable = True
@@ -112,13 +110,12 @@ def _head(
 
 def _each(scope: "Statements", node: ast.For, iterable: Value, counted: bool) -> bool:
     check_order(scope, node.iter)
-    shown = replace(iterable, views=iterable.views | _passed_on(scope, node.iter))
-    if shown.views & changed_attributes(node.body):
-        scope.note_alias(shown, node.iter)
+    if iterable.views & changed_attributes(node.body):
+        scope.note_alias(iterable, node.iter)
     before = len(scope.called)
     ended = _rounds(scope, node, iterable, counted)
     for function in scope.called[before:]:
-        scope.note_alias(shown, node.iter, function)
+        scope.note_alias(iterable, node.iter, function)
     return ended
 
 
@@ -146,17 +143,6 @@ def _rounds(scope: "Statements", node: ast.For, iterable: Value, counted: bool) 
         names = {one.id for one in ast.walk(node.target) if isinstance(one, ast.Name)}
         scope.fixed = {name: value for name, value in scope.fixed.items() if name not in names or name in before}
     return False
-
-
-def _passed_on(scope: "Statements", iterable: ast.expr) -> frozenset[str]:
-    """Returns the attributes whose elements functions such as ``zip`` give one after the other."""
-    if not isinstance(iterable, ast.Call):
-        return frozenset()
-    function = constant_of(scope, iterable.func, scope.source.function, None)
-    if not any(function is one for one in LAZY):
-        return frozenset()
-    read = [views for node, views in scope.references if any(node is one for one in iterable.args)]
-    return frozenset().union(*read, *[_passed_on(scope, one) for one in iterable.args])
 
 
 def _indexed(scope: "Statements", node: ast.For, items: list[Value], counted: bool) -> bool:

@@ -25,21 +25,22 @@ FUNCTIONS = (
     *(np.clip, np.count_nonzero, np.dot, np.linalg.norm, np.mean, np.median, np.prod, np.std, np.sum, np.var),
     *(np.argmax, np.argmin, np.where, divmod),
 )
-"""The other functions whose results have no other name, nor do those of ``math`` and NumPy's universal functions."""
+"""Other functions whose results have no other name; the same holds for ``math`` and NumPy's universal functions."""
 ARRAYS = (np.empty, np.ones, np.zeros)
 DTYPES = (bool, float, int)
+"""The functions that make arrays of numbers, with these dtypes."""
 _IMMUTABLE = (ast.Constant, ast.JoinedStr, ast.Compare, ast.UnaryOp, ast.Tuple)
 
 
 def is_made_here(scope: "Expressions", node: ast.expr, function: FunctionType) -> bool:
-    """Returns whether an expression is a variable with only dicts, lists or arrays that the function made."""
+    """Returns whether an expression is a variable that only ever holds what the function made."""
     source = source_of(function)
     is_variable = isinstance(node, ast.Name) and node.id not in parameters_of(source.node)
     return is_variable and is_made(scope.program.attributes, source, node)
 
 
 def is_own(scope: "Expressions", node: ast.expr, function: FunctionType, depth: int = 0) -> bool:
-    """Returns whether a value is a number or a text, or is made by the function and has no name elsewhere."""
+    """Returns whether a value is a number or a string, or is made by the function and has no name elsewhere."""
     source = source_of(function)
     if depth > MOST_NESTED:
         return False

@@ -3,15 +3,15 @@
 import ast
 from collections.abc import Iterator
 from types import FunctionType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting.infos.dicts import returns_of
 from qtab.compilation.rewriting.infos.made import bindings, values_of
-from qtab.compilation.rewriting.source.sources import source_of
-from qtab.compilation.rewriting.source.syntax import own_name
+from qtab.compilation.rewriting.source.sources import Source, source_of
+from qtab.compilation.rewriting.source.syntax import Names, own_name, parameters_of
 from qtab.compilation.rewriting.statements.effects import constant_of
 from qtab.compilation.rewriting.statements.left_out import known_value
 
@@ -51,6 +51,7 @@ def is_new(scope: "Expressions", node: ast.expr, within: FunctionType | None = N
         within: The function that contains the expression; None if it is the one that is rewritten.
     """
     function = within or scope.source.function
+    is_current = function is scope.source.function
     match node:
         case ast.IfExp(body=body, orelse=other):
             return is_new(scope, body, within) and is_new(scope, other, within)
@@ -60,33 +61,39 @@ def is_new(scope: "Expressions", node: ast.expr, within: FunctionType | None = N
             constant_of(scope, callee, function, None) is one for one in _MAKE
         ):
             return True
-        case ast.Call(func=ast.Attribute(value=owner, attr="copy" | "tolist")) if within is None:
+        case ast.Call(func=ast.Attribute(value=owner, attr="copy" | "tolist")) if is_current:
             return _has_library_methods(scope, owner)
-        case ast.Call(func=ast.Name() | ast.Attribute() as callee) if within is None:
-            return _returns_new(scope, callee)
+        case ast.Call(func=ast.Name() | ast.Attribute() as callee) if is_current:
+            called = constant_of(scope, callee, function, own_name(scope.source.node))
+            called = getattr(called, "__func__", called)
+            return called is not function and returns_new(scope, called)
+        case ast.Name(id=name) if within is not None:
+            source = source_of(within)
+            return _has_new_values(scope, source, name, within) and not Names(source).has_other_name(name)
     return isinstance(node, _MADE)
 
 
-def _returns_new(scope: "Expressions", callee: ast.expr) -> bool:
-    """Returns whether a function of the user makes the values that it returns, in its return statements."""
-    function = constant_of(scope, callee, scope.source.function, own_name(scope.source.node))
-    function = getattr(function, "__func__", function)
+def returns_new(scope: "Expressions", function: Any) -> bool:
+    """Returns whether a function is the user's, and makes every value that it returns."""
     if not isinstance(function, FunctionType) or hasattr(function, "__wrapped__"):
         return False
     try:
         values = [one.value for one in returns_of(source_of(function).node)]
     except NotCompilable:
         return False
-    return all(value is not None and is_new(scope, value, function) for value in values)
+    return bool(values) and all(value is not None and is_new(scope, value, function) for value in values)
 
 
 def is_owned(scope: "Expressions", node: ast.Name) -> bool:
     """Returns whether a variable has only values that the function made and to which no other name refers."""
-    values = list(values_of(scope.source, node.id))
-    several = [one.value for one in ast.walk(scope.source.node) if isinstance(one, ast.Assign) and len(one.targets) > 1]
-    are_all = bool(values) and len(values) == bindings(scope.source, node.id)
-    are_own = all(is_new(scope, one) and one not in several for one in values)
-    return are_all and are_own and not scope.names.shared_before_change(node.id)
+    return _has_new_values(scope, scope.source, node.id, None) and not scope.names.shared_before_change(node.id)
+
+
+def _has_new_values(scope: "Expressions", source: Source, name: str, within: FunctionType | None) -> bool:
+    values = list(values_of(source, name))
+    several = [one.value for one in ast.walk(source.node) if isinstance(one, ast.Assign) and len(one.targets) > 1]
+    are_all = bool(values) and len(values) == bindings(source, name) and name not in parameters_of(source.node)
+    return are_all and all(is_new(scope, one, within) and one not in several for one in values)
 
 
 def _has_library_methods(scope: "Expressions", node: ast.expr) -> bool:

@@ -1,6 +1,7 @@
 """Assignments to attributes of the environment, and to elements of its arrays and lists."""
 
 import ast
+from types import MemberDescriptorType
 from typing import TYPE_CHECKING, Any
 
 from qtab.compilation.rewriting import specials
@@ -33,7 +34,8 @@ def store(scope: "Statements", node: ast.stmt, name: str, value: Value) -> None:
     """Assigns a value to an attribute of the environment."""
     known = scope.program.attributes
     member, _ = known.find(name)
-    if isinstance(member, property) or name in ("np_random", "_np_random", "observation_space", "action_space"):
+    is_descriptor = hasattr(type(member), "__set__") and not isinstance(member, MemberDescriptorType)  # of a slot
+    if is_descriptor or name in ("np_random", "_np_random", "observation_space", "action_space"):
         raise scope.refuse(node, f"self.{name} is assigned", "assign it in __init__ only, or use another attribute")
     known.note_assigned(name)
     if name not in known.read:
