@@ -147,6 +147,12 @@ def _any_or_all(symbol: str, empty: bool) -> Handler:
     return handler
 
 
+def makes_iterator(scope: "Expressions", node: ast.expr) -> bool:
+    """Returns whether an expression calls a function such as ``zip``, whose result can be read once."""
+    function = constant_of(scope, node.func, scope.source.function, None) if isinstance(node, ast.Call) else None
+    return any(function is one for one in LAZY)
+
+
 def _sequence(made: Any) -> Handler:
     def handler(scope: "Expressions", node: ast.Call, values: list[Value], named: dict[str, Value]) -> Value:
         if not values:
@@ -158,10 +164,7 @@ def _sequence(made: Any) -> Handler:
         if isinstance(value.kind, Array):
             return containers.as_tuple(scope, node, value)
         if isinstance(value.kind, TupleKind):
-            argument = node.args[0]
-            callee = argument.func if isinstance(argument, ast.Call) else argument
-            function = constant_of(scope, callee, scope.source.function, None)
-            return containers.copied(value, any(function is one for one in LAZY))
+            return containers.copied(value, makes_iterator(scope, node.args[0]))
         raise scope.refuse(node, f"{made.__name__} of {in_words(value.kind)}", "use tuples and arrays")
 
     return handler
@@ -180,16 +183,12 @@ def _dict(scope: "Expressions", node: ast.Call, values: list[Value], named: dict
 
 def _folded(function: Any) -> Handler:
     """Returns a handler for functions that are called with constants only."""
-    is_lazy = function in LAZY
 
     def handler(scope: "Expressions", node: ast.Call, values: list[Value], named: dict[str, Value]) -> Value:
-        if is_lazy and node is scope.whole:
-            reason = f"the iterator {function.__name__}(...), which can be read once, is assigned or returned"
-            raise scope.refuse(node, reason, f"write list({function.__name__}(...))")
         if all(value.is_fixed for value in (*values, *named.values())):
             plain = {name: value.fixed for name, value in named.items()}
             result = scope.folded(node, lambda *given: function(*given, **plain), *[value.fixed for value in values])
-            return constant(list(result.fixed)) if is_lazy else result
+            return constant(list(result.fixed)) if function in LAZY else result
         if function in (enumerate, zip, reversed):
             return _lazy(scope, node, function, values)
         if function is range:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from qtab.compilation.rewriting import specials
 from qtab.compilation.rewriting.expressions import containers
 from qtab.compilation.rewriting.expressions.operators import SYMBOLS
+from qtab.compilation.rewriting.library.builtin_functions import makes_iterator
 from qtab.compilation.rewriting.statements.effects import check_pure
 from qtab.compilation.rewriting.statements.info_counts import is_info_count
 from qtab.compilation.rewriting.statements.left_out import note_attribute, note_change, note_kind, note_value, number
@@ -49,6 +50,8 @@ def assign(scope: "Statements", node: ast.stmt, targets: list[ast.expr], value_n
                 scope.kinds[scope.version(target.id)] = INFO
                 scope.note_set(target.id)
         return
+    if not all(isinstance(target, ast.Tuple | ast.List) for target in targets):
+        refuse_iterator(scope, value_node)
     scope.shared = {name for one in targets for name in shared_names(scope, one, value_node, len(targets) == 1)}
     scope.whole = value_node
     value = scope.expression(value_node)
@@ -58,6 +61,13 @@ def assign(scope: "Statements", node: ast.stmt, targets: list[ast.expr], value_n
     if specials.is_special(value.fixed) and not all(isinstance(target, ast.Name) for target in targets):
         raise specials.refused_special(scope, value_node, value)
     assign_value(scope, node, targets, value)
+
+
+def refuse_iterator(scope: "Statements", node: ast.expr) -> None:
+    """Refuses an iterator that is kept or returned, which could be read twice in compiled code."""
+    if makes_iterator(scope, node):
+        advice = f"write list({ast.unparse(node)})"
+        raise scope.refuse(node, "an iterator, which can be read once, is assigned or returned,", advice)
 
 
 def assign_value(scope: "Statements", node: ast.stmt, targets: "ast.expr | list[ast.expr]", value: Value) -> None:

@@ -225,6 +225,8 @@ class Statements(Displays):
 
     def _do_return(self, node: ast.Return) -> bool:
         self.whole = node.value
+        if node.value is not None:
+            assignments.refuse_iterator(self, node.value)
         value = constant(None) if node.value is None else self._returned(node.value)
         if value.is_fixed and self.has_effects(value):
             self.emit(value.code, node)
