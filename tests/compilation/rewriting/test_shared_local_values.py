@@ -198,9 +198,43 @@ class LoopsIntoElement(ExtraEnv):
         return float(part[0])
 
 
+class TakesOfTuple(ExtraEnv):
+    def extra(self):
+        first, second = np.zeros(3), np.ones(3)
+        taken = (first, second)[self.cell % 2]
+        first[0] = 2.0  # here
+        return float(taken[0] + second[0])
+
+
+class AddsToTaken(ExtraEnv):
+    def extra(self):
+        first = np.zeros(3)
+        taken = [first][0]
+        first += 2.0  # here
+        return float(taken[0])
+
+
+class AddsInLoop(ExtraEnv):
+    def extra(self):
+        values, total = np.zeros(3), 0.0
+        for value in values:
+            values += 1.0  # here
+            total += value
+        return total
+
+
+class ListsBoth(ExtraEnv):
+    def extra(self):
+        first, second = np.zeros(3), np.ones(3)
+        both = [one for one in (first, second)]  # noqa: C416 - the comprehension is tested
+        first += 1.0  # here
+        return float(both[0][0] + second[0])
+
+
 SHARED = [
     *(Ravels, TakesAsArray, LoopsOverPart, LoopsOverParts, AddsToPair, AddsPairs, RepeatsList, ListsParts),
     *(TakesLarger, ExchangesRows, ExchangesHalves, ExchangesByMethod, KeepsRow, ExchangesLater, UnpacksIntoElements),
+    *(TakesOfTuple, AddsToTaken, AddsInLoop, ListsBoth),
     *(NamesSlice, NamesSliceOfRow, ChangesRavelled, ExchangesRavelled, GrowsInLoop, Annotates, LoopsIntoElement),
 ]
 

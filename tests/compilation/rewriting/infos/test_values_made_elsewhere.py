@@ -13,7 +13,7 @@ from support.lockstep.rewriting import assert_equal_steps
 
 class Shows(ExtraEnv):
     def reset(self, *, seed=None, options=None):
-        self.left, self.right = np.zeros(3), np.zeros(3)
+        self.left, self.right, self.grid = np.zeros(3), np.zeros(3), np.ones((2, 3))
         return super().reset(seed=seed)
 
     def pair(self):
@@ -114,6 +114,32 @@ class TakesGreatest(Shows):
         return {}
 
 
+class SumsInto(Shows):
+    def shown(self):
+        return {"sum": self.grid.sum(axis=0, out=self.left)}
+
+
+class SumsIntoByPosition(Shows):
+    def shown(self):
+        return {"sum": self.grid.sum(0, None, self.left)}
+
+
+class RoundsInto(Shows):
+    def shown(self):
+        return {"rounded": self.right.round(0, self.left)}
+
+
+class TakesObject(Shows):
+    def __init__(self):
+        super().__init__()
+        self.objects = np.array([None, None], object)
+
+    def shown(self):
+        taken = self.objects[0]
+        taken += 1.0
+        return {}
+
+
 class PassesOn(Shows):
     def __init__(self):
         super().__init__()
@@ -124,6 +150,7 @@ class PassesOn(Shows):
 
 
 CHANGES = [
+    *(SumsInto, SumsIntoByPosition, RoundsInto, TakesObject),
     *(CountsInObjects, TakesPart, TakesGreatest, PassesOn),
     *(UnpacksResult, UnpacksCopy, TakesDefault, CountsItself, SumsFromStart, CallsUnwrapped, Matches, ChangesNumPy),
 ]
@@ -148,6 +175,8 @@ class ShowsNumbers(Shows):
             counts[i] += 1
         row, column = divmod(self.cell, 3)
         x, y = self.place
+        mean = self.grid.mean(axis=0)
+        mean += 1.0
         least, first, clipped = min(self.cell, 3), self.left[0], np.clip(self.left, 0.0, 1.0)
         speed += 1.0
         least += 1

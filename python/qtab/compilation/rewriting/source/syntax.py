@@ -102,7 +102,7 @@ class Names:
             if isinstance(one, ast.Assign | ast.AnnAssign | ast.AugAssign):
                 keeps = isinstance(one.value, _DISPLAYS) or not isinstance(one, ast.AugAssign)
                 kept = [one.value] if keeps and one.value is not None else []
-            elif isinstance(one, ast.For) and not (ndim and isinstance(one.iter, ast.Name)):
+            elif isinstance(one, ast.For) and not (ndim and isinstance(one.iter, ast.Name) and not _grows(one, name)):
                 kept = [one.iter]
             elif isinstance(one, ast.Call) and not _of_library(one.func):
                 kept = [*one.args, *(keyword.value for keyword in one.keywords)]
@@ -122,6 +122,11 @@ def _written_out(targets: list[ast.expr]) -> Iterator[ast.expr]:
             yield from _written_out(target.elts)
         else:
             yield target.value if isinstance(target, ast.Starred) else target
+
+
+def _grows(node: ast.For, name: str) -> bool:
+    """Returns whether the body of a loop changes a variable by an operator, such as ``x += 1``."""
+    return any(isinstance(one, ast.AugAssign) and _is_name(one.target, name) for one in ast.walk(node))
 
 
 def _is_name(node: ast.AST, name: str) -> bool:
@@ -151,7 +156,8 @@ def _parts(node: ast.expr, ndim: int = 0) -> Iterator[ast.expr]:
         if not (isinstance(node, ast.Subscript) and _is_element(node, ndim)):
             yield from _parts(node.value, ndim)
     elif isinstance(node, ast.ListComp):
-        yield from _parts(node.elt, ndim)
+        for part in (node.elt, *[one.iter for one in node.generators if not isinstance(one.iter, ast.Name)]):
+            yield from _parts(part, ndim)
     elif isinstance(node, ast.BinOp):  # of lists and tuples, which keep their elements
         for side in (node.left, node.right):
             if isinstance(side, (*_DISPLAYS, ast.BinOp)):
@@ -166,11 +172,11 @@ def _parts(node: ast.expr, ndim: int = 0) -> Iterator[ast.expr]:
 
 
 def _is_element(node: ast.Subscript, ndim: int) -> bool:
-    """Returns whether an index selects an element: a number for each dimension, no slice, ``None`` or ``...``."""
+    """Returns whether an index of a variable selects an element: a number for each dimension, no slice or ``None``."""
     index = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
     are_numbers = all(not isinstance(one, ast.Slice | ast.Starred) for one in index)
     has_others = any(isinstance(one, ast.Constant) and one.value in (None, ...) for one in index)
-    return len(index) == ndim and are_numbers and not has_others
+    return isinstance(node.value, ast.Name) and len(index) == ndim and are_numbers and not has_others
 
 
 def _of_library(function: ast.expr) -> bool:

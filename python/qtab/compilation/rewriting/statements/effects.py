@@ -29,6 +29,11 @@ PURE_METHODS = (
     *("items", "join", "keys", "lower", "max", "mean", "min", "ravel", "reshape", "round", "std", "sum", "title"),
     *("tobytes", "tolist", "upper", "values"),
 )
+MOST_ARGUMENTS = {
+    **dict.fromkeys(("all", "any", "argmax", "argmin", "max", "min", "round"), 1),
+    **dict.fromkeys(("mean", "std", "sum"), 2),
+}
+"""How many arguments an array's method takes before ``out``."""
 LOCAL_METHODS = ("add", "append", "extend", "insert", "pop", "sort", "update")
 """Methods that change a list or a dict that the function made."""
 CHANGES_ARGUMENT = ("copyto", "fill_diagonal", "nan_to_num", "place", "put", "put_along_axis", "putmask")
@@ -151,7 +156,8 @@ def _of_call(
     if isinstance(callee, ast.Attribute) and found is MISSING:
         owner = resolved(callee.value, function)
         simple = owner is MISSING or isinstance(owner, np.ndarray | str | dict | list | tuple)
-        if simple and callee.attr in PURE_METHODS and scope.program.attributes.find(callee.attr)[0] is MISSING:
+        is_method = callee.attr in PURE_METHODS and scope.program.attributes.find(callee.attr)[0] is MISSING
+        if simple and is_method and not _has_output(callee.attr, node):
             return None
         is_local = owner is MISSING and function is not scope.source.function
         if is_local and callee.attr in LOCAL_METHODS and is_made_here(scope, callee.value, function):
@@ -175,6 +181,13 @@ def _of_call(
     if _is_library(found) and not _changes_argument(found, node):
         return None
     return f"it calls {shown}, whose effects are unknown"
+
+
+def _has_output(name: str, node: ast.Call) -> bool:
+    """Returns whether a call of an array's method may give ``out=``, also by position."""
+    is_starred = any(isinstance(one, ast.Starred) for one in node.args)
+    is_named = any(one.arg in ("out", None) for one in node.keywords)
+    return name in MOST_ARGUMENTS and (is_starred or is_named or len(node.args) > MOST_ARGUMENTS[name])
 
 
 def _is_library(value: Any) -> bool:

@@ -45,9 +45,9 @@ def _values(function: ast.AST, name: str, key: Any) -> Iterator[ast.expr | None]
                 pass
             case (ast.Assign(targets=[_]) | ast.AnnAssign(), _) if isinstance(node.ctx, ast.Store):
                 yield _item(parent.value, key)
-            case ast.Subscript(), ast.AugAssign():
+            case (ast.Subscript(), ast.AugAssign()) | (ast.Subscript(ctx=ast.Load()), _):  # others refuse to read it
                 pass
-            case ast.Subscript(slice=ast.Constant(value=other)), ast.Assign() | ast.AnnAssign():
+            case ast.Subscript(slice=ast.Constant(value=other), ctx=ast.Store()), ast.Assign() | ast.AnnAssign():
                 if other == key:
                     yield above.value
             case _:  # it may have another name

@@ -77,7 +77,7 @@ def is_own(scope: "Expressions", node: ast.expr, function: FunctionType, depth: 
             value=ast.Attribute(value=ast.Name(id=name), attr=attribute), slice=ast.Constant(value=int())
         ):
             value = vars(scope.program.attributes.twin).get(attribute) if name == own_name(source.node) else None
-            is_vector = isinstance(value, np.ndarray) and value.ndim == 1
+            is_vector = isinstance(value, np.ndarray) and value.ndim == 1 and not value.dtype.hasobject
             return is_vector or (type(value) is tuple and all(map(is_immutable, value)))
         case ast.Subscript(value=ast.Call(func=ast.Name() as callee)):
             return resolved(callee, function) is divmod
