@@ -179,7 +179,7 @@ def copied(value: Value, are_rows_new: bool = False) -> Value:
 
     Args:
         value: The tuple or list.
-        are_rows_new: Whether its elements are new as well if they are tuples, as those of ``zip``.
+        are_rows_new: Whether its elements are new as well if they are tuples, like those of ``zip``.
     """
 
     def is_number(kind: Any) -> bool:
@@ -190,7 +190,7 @@ def copied(value: Value, are_rows_new: bool = False) -> Value:
 
 
 def has_numbers(kind: Any) -> bool:
-    """Returns whether a value is a tuple or a list of numbers."""
+    """Returns whether a kind is that of a tuple or a list of numbers."""
     return isinstance(kind, TupleKind) and all(isinstance(item, Scalar) for item in kind.items)
 
 

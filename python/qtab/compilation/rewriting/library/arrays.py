@@ -40,7 +40,7 @@ def method(scope: "Expressions", node: ast.Call, name: str, base: Value) -> Valu
     if name in ("flatten", "ravel") and not values and not named:
         size = None if kind.shape is None else (int(np.prod(kind.shape)),)
         made = Value(Array(kind.dtype, 1, size), f"{base.code}.flatten()", fresh=True)
-        return replace(made, views=base.views, fresh=False) if name == "ravel" else made  # which may return a view
+        return replace(made, views=base.views, fresh=base.fresh) if name == "ravel" else made  # which may return a view
     if name in ("tolist", "item") and not values and kind.dtype not in ("bool", "int64", "float64"):
         wide = "np.float64" if "float" in kind.dtype else "np.int64"
         raise scope.refuse(node, f"the method {name} of an array of {kind.dtype}", f"write .astype({wide}).{name}()")

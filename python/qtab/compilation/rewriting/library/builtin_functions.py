@@ -148,9 +148,14 @@ def _any_or_all(symbol: str, empty: bool) -> Handler:
 
 
 def makes_iterator(scope: "Expressions", node: ast.expr) -> bool:
-    """Returns whether an expression calls a function such as ``zip``, whose result can be read once."""
-    function = constant_of(scope, node.func, scope.source.function, None) if isinstance(node, ast.Call) else None
-    return any(function is one for one in LAZY)
+    """Returns whether an expression makes what can be read only once, such as ``zip(...)`` or a generator."""
+    return isinstance(node, ast.GeneratorExp) or _called(scope, node) in LAZY
+
+
+def _called(scope: "Expressions", node: ast.expr) -> Any:
+    """Returns the builtin class that an expression calls; None for others."""
+    found = constant_of(scope, node.func, scope.source.function, None) if isinstance(node, ast.Call) else None
+    return found if isinstance(found, type) else None
 
 
 def _sequence(made: Any) -> Handler:
@@ -164,7 +169,7 @@ def _sequence(made: Any) -> Handler:
         if isinstance(value.kind, Array):
             return containers.as_tuple(scope, node, value)
         if isinstance(value.kind, TupleKind):
-            return containers.copied(value, makes_iterator(scope, node.args[0]))
+            return containers.copied(value, _called(scope, node.args[0]) in (enumerate, zip))
         raise scope.refuse(node, f"{made.__name__} of {in_words(value.kind)}", "use tuples and arrays")
 
     return handler

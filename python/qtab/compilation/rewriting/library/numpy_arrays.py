@@ -24,7 +24,7 @@ def asarray(scope: "Expressions", node: ast.Call, values: list[Value], named: di
     """``np.asarray``: a new array in compiled code, but the same one in Python unless its dtype differs."""
     made = array(scope, node, values, named)
     given = values[0] if values else named.get("object", made)
-    return replace(made, views=given.views, fresh=False) if made.kind == given.kind else made
+    return replace(made, views=given.views, fresh=given.fresh) if made.kind == given.kind else made
 
 
 def filled(function: str) -> Handler:

@@ -90,11 +90,7 @@ class Names:
         """Returns whether another name may refer to one of the local arrays that a statement returns."""
         value = node.value if isinstance(node, ast.Return) else None
         names = [part.id for part in _parts(value) if isinstance(part, ast.Name)] if value is not None else []
-        return any(map(self.has_other_name, names))
-
-    def has_other_name(self, name: str) -> bool:
-        """Returns whether another name may refer to a local value."""
-        return any(True for _ in self._escapes(name))
+        return any(True for name in names for _ in self._escapes(name))
 
     def _escapes(self, name: str, ndim: int = 0) -> Iterator[tuple[int, int]]:
         for one in self._walk():
@@ -102,7 +98,7 @@ class Names:
             if isinstance(one, ast.Assign | ast.AnnAssign | ast.AugAssign):
                 keeps = isinstance(one.value, _DISPLAYS) or not isinstance(one, ast.AugAssign)
                 kept = [one.value] if keeps and one.value is not None else []
-            elif isinstance(one, ast.For) and not (ndim and isinstance(one.iter, ast.Name) and not _grows(one, name)):
+            elif isinstance(one, ast.For) and not (isinstance(one.iter, ast.Name) and not _grows(one, name)):
                 kept = [one.iter]
             elif isinstance(one, ast.Call) and not _of_library(one.func):
                 kept = [*one.args, *(keyword.value for keyword in one.keywords)]
@@ -110,7 +106,7 @@ class Names:
                 yield one.lineno, one.col_offset  # type: ignore[attr-defined]
 
 
-_DISPLAYS = (ast.Tuple, ast.List, ast.ListComp)
+_DISPLAYS = (ast.Tuple, ast.List, ast.ListComp, ast.GeneratorExp)
 _VIEWS = ("asarray", "ravel")
 """The functions of NumPy, and methods of arrays, that may return the array itself."""
 
@@ -155,7 +151,7 @@ def _parts(node: ast.expr, ndim: int = 0) -> Iterator[ast.expr]:
     elif isinstance(node, ast.Subscript | ast.Starred):
         if not (isinstance(node, ast.Subscript) and _is_element(node, ndim)):
             yield from _parts(node.value, ndim)
-    elif isinstance(node, ast.ListComp):
+    elif isinstance(node, ast.ListComp | ast.GeneratorExp):
         for part in (node.elt, *[one.iter for one in node.generators if not isinstance(one.iter, ast.Name)]):
             yield from _parts(part, ndim)
     elif isinstance(node, ast.BinOp):  # of lists and tuples, which keep their elements

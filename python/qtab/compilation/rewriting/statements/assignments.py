@@ -64,10 +64,10 @@ def assign(scope: "Statements", node: ast.stmt, targets: list[ast.expr], value_n
 
 
 def refuse_iterator(scope: "Statements", node: ast.expr) -> None:
-    """Refuses an iterator that is kept or returned, which could be read twice in compiled code."""
+    """Refuses an iterator that is kept or returned, which compiled code could read twice."""
     if makes_iterator(scope, node):
-        advice = f"write list({ast.unparse(node)})"
-        raise scope.refuse(node, "an iterator, which can be read once, is assigned or returned,", advice)
+        advice = f"write list({ast.unparse(node)})" if isinstance(node, ast.Call) else "write a list: [...]"
+        raise scope.refuse(node, "an iterator, which can be read only once, is kept in a variable or returned,", advice)
 
 
 def assign_value(scope: "Statements", node: ast.stmt, targets: "ast.expr | list[ast.expr]", value: Value) -> None:

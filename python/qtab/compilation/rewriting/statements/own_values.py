@@ -27,8 +27,9 @@ FUNCTIONS = (
 )
 """Other functions whose results have no other name; the same holds for ``math`` and NumPy's universal functions."""
 ARRAYS = (np.empty, np.ones, np.zeros)
+"""The functions that make arrays of numbers."""
 DTYPES = (bool, float, int)
-"""The functions that make arrays of numbers, with these dtypes."""
+"""The dtypes that they may be given."""
 _IMMUTABLE = (ast.Constant, ast.JoinedStr, ast.Compare, ast.UnaryOp, ast.Tuple)
 
 

@@ -10,8 +10,8 @@ import numpy as np
 from qtab.compilation.not_compilable import NotCompilable
 from qtab.compilation.rewriting.infos.dicts import returns_of
 from qtab.compilation.rewriting.infos.made import bindings, values_of
-from qtab.compilation.rewriting.source.sources import Source, source_of
-from qtab.compilation.rewriting.source.syntax import Names, own_name, parameters_of
+from qtab.compilation.rewriting.source.sources import source_of
+from qtab.compilation.rewriting.source.syntax import own_name
 from qtab.compilation.rewriting.statements.effects import constant_of
 from qtab.compilation.rewriting.statements.left_out import known_value
 
@@ -67,9 +67,6 @@ def is_new(scope: "Expressions", node: ast.expr, within: FunctionType | None = N
             called = constant_of(scope, callee, function, own_name(scope.source.node))
             called = getattr(called, "__func__", called)
             return called is not function and returns_new(scope, called)
-        case ast.Name(id=name) if within is not None:
-            source = source_of(within)
-            return _has_new_values(scope, source, name, within) and not Names(source).has_other_name(name)
     return isinstance(node, _MADE)
 
 
@@ -86,14 +83,11 @@ def returns_new(scope: "Expressions", function: Any) -> bool:
 
 def is_owned(scope: "Expressions", node: ast.Name) -> bool:
     """Returns whether a variable has only values that the function made and to which no other name refers."""
-    return _has_new_values(scope, scope.source, node.id, None) and not scope.names.shared_before_change(node.id)
-
-
-def _has_new_values(scope: "Expressions", source: Source, name: str, within: FunctionType | None) -> bool:
-    values = list(values_of(source, name))
-    several = [one.value for one in ast.walk(source.node) if isinstance(one, ast.Assign) and len(one.targets) > 1]
-    are_all = bool(values) and len(values) == bindings(source, name) and name not in parameters_of(source.node)
-    return are_all and all(is_new(scope, one, within) and one not in several for one in values)
+    values = list(values_of(scope.source, node.id))
+    several = [one.value for one in ast.walk(scope.source.node) if isinstance(one, ast.Assign) and len(one.targets) > 1]
+    are_all = bool(values) and len(values) == bindings(scope.source, node.id)
+    are_own = all(is_new(scope, one) and one not in several for one in values)
+    return are_all and are_own and not scope.names.shared_before_change(node.id)
 
 
 def _has_library_methods(scope: "Expressions", node: ast.expr) -> bool:
